@@ -1,0 +1,62 @@
+# Two steps, environment and pipeline; `make help` lists the rest.
+
+PYTHON ?= python3
+CORES ?= 2
+UV_VERSION := 0.13.8
+
+BIN := .venv/bin
+# Twice quiet: errors only. The project itself is built with the locked hatchling, so nothing unlocked is ever fetched.
+PIP := $(BIN)/python -m pip --quiet --quiet --no-input --disable-pip-version-check
+COMPILE := pip compile --quiet --universal --generate-hashes --no-emit-index-url --no-annotate --python-version 3.11 \
+	--custom-compile-command "make lock"
+
+.DELETE_ON_ERROR:
+.PHONY: all env test reproduce bench lock clean help
+
+all: env  ## build the environment, then run the whole pipeline
+	$(BIN)/snakemake --cores $(CORES)
+
+env: .venv/installed  ## build the locked environment in .venv
+
+# A new lock means a new environment: what it no longer names must not stay importable.
+.venv/locked: requirements.lock
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { \
+		echo "sonicvacuum needs Python 3.11 or newer and '$(PYTHON)' is not; name another one: make PYTHON=python3.12" >&2; exit 1; }
+	@echo "Building .venv from requirements.lock; this takes a minute or two."
+	@$(PYTHON) -m venv --clear .venv
+	@$(PIP) install --require-hashes -r requirements.lock
+	@touch $@
+
+.venv/installed: .venv/locked pyproject.toml
+	@$(PIP) install --no-deps --no-build-isolation --editable .
+	@touch $@
+
+.venv/benched: .venv/installed requirements-bench.lock
+	@$(PIP) install --require-hashes -r requirements-bench.lock
+	@touch $@
+
+test: env  ## check format, style, import contracts, and run the tests
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	$(BIN)/snakefmt --check Snakefile workflow
+	$(BIN)/lint-imports
+	$(BIN)/pytest
+
+reproduce: env  ## regenerate figures' numbers and ledger in a clean folder and compare with those in git
+	$(BIN)/snakemake --cores $(CORES) reproduce
+
+bench: .venv/benched  ## measure the engine against other codes, on one core
+	$(BIN)/snakemake --cores 1 bench
+
+lock:  ## resolve the requirements anew; versions already locked stay unless UPGRADE=--upgrade
+	@tools=$$(mktemp -d) && trap 'rm -rf "$$tools"' EXIT && $(PYTHON) -m venv "$$tools" && \
+	"$$tools/bin/python" -m pip --quiet --quiet install uv==$(UV_VERSION) && \
+	"$$tools/bin/uv" $(COMPILE) $(UPGRADE) pyproject.toml --group dev --output-file requirements.lock && \
+	"$$tools/bin/uv" $(COMPILE) $(UPGRADE) --group bench --constraints requirements.lock --output-file requirements-bench.lock
+
+clean:  ## remove the environment, the results and all caches
+	rm -rf .venv results .snakemake .pytest_cache .ruff_cache .import_linter_cache .hypothesis .benchmarks
+	find src tests workflow -name __pycache__ -type d -prune -exec rm -rf {} +
+
+help:  ## list these targets
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-10s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
