@@ -39,7 +39,7 @@ test: env  ## check format, style, import contracts, and run the tests
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/snakefmt --check Snakefile workflow
-	$(BIN)/lint-imports
+	$(BIN)/lint-imports --no-logo
 	$(BIN)/pytest
 
 reproduce: env  ## regenerate figures' numbers and ledger in a clean folder and compare with those in git

@@ -1,4 +1,4 @@
-"""Settings shared by all tests: property tests draw the same examples on every machine and are never timed."""
+"""Settings of all tests: property tests draw the same examples on every machine and are never timed."""
 
 from hypothesis import settings
 
