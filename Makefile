@@ -8,8 +8,10 @@ CHECK_PYTHON = $(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2
 	echo "sonicvacuum needs Python 3.11 or newer, '$(PYTHON)' is not: name another, e.g. make PYTHON=python3.12" >&2; exit 1; }
 
 BIN := .venv/bin
-# Twice quiet: errors only. The project itself is built with the locked hatchling, so nothing unlocked is ever fetched.
+# Twice quiet: errors only. Build tools come from a lock too, so nothing unlocked is ever fetched.
 PIP := $(BIN)/python -m pip --quiet --quiet --no-input --disable-pip-version-check
+INSTALL := $(PIP) install --no-build-isolation
+LOCKED := $(INSTALL) --require-hashes -r
 COMPILE := pip compile --quiet --universal --generate-hashes --no-emit-index-url --no-annotate --python-version 3.11 \
 	--custom-compile-command "make lock"
 
@@ -21,20 +23,21 @@ all: env  ## build the environment, then run the whole pipeline
 
 env: .venv/installed  ## build the locked environment in .venv
 
-# A new lock means a new environment: what it no longer names must not stay importable. The stamp is a copy of the lock, so
-# that a file which is only younger (a checkout, `make lock` without news) rebuilds nothing.
-.venv/locked: requirements.lock
-	@cmp -s $< $@ || { $(CHECK_PYTHON) && \
+# A new lock means a new environment: what it no longer names must not stay importable. The stamp is a copy of the locks,
+# so that a file which is only younger (a checkout, `make lock` without news) rebuilds nothing.
+.venv/locked: requirements-build.lock requirements.lock
+	@cat $^ | cmp -s - $@ || { $(CHECK_PYTHON) && \
 		echo "Building .venv from requirements.lock; this takes a minute or two." && \
-		$(PYTHON) -m venv --clear .venv && $(PIP) install --require-hashes -r $<; }
-	@cp $< $@
+		$(PYTHON) -m venv --clear .venv && \
+		$(LOCKED) requirements-build.lock && $(LOCKED) requirements.lock; }
+	@cat $^ > $@
 
 .venv/installed: .venv/locked pyproject.toml
-	@$(PIP) install --no-deps --no-build-isolation --editable .
+	@$(INSTALL) --no-deps --editable .
 	@touch $@
 
 .venv/benched: .venv/installed requirements-bench.lock
-	@$(PIP) install --require-hashes -r requirements-bench.lock
+	@$(LOCKED) requirements-bench.lock
 	@touch $@
 
 test: env  ## check format, style, import contracts, and run the tests
@@ -54,8 +57,10 @@ bench: .venv/benched  ## measure the engine against other codes, on one core
 lock:  ## resolve the requirements anew; versions already locked stay unless UPGRADE=--upgrade
 	@tools=$$(mktemp -d) && trap 'rm -rf "$$tools"' EXIT && $(PYTHON) -m venv "$$tools" && \
 	"$$tools/bin/python" -m pip --quiet --quiet install uv==$(UV_VERSION) && \
-	"$$tools/bin/uv" $(COMPILE) $(UPGRADE) pyproject.toml --group dev --output-file requirements.lock && \
-	"$$tools/bin/uv" $(COMPILE) $(UPGRADE) --group bench --constraints requirements.lock --output-file requirements-bench.lock
+	lock() { "$$tools/bin/uv" $(COMPILE) $(UPGRADE) "$$@"; } && \
+	lock pyproject.toml --group dev --output-file requirements.lock && \
+	lock --group build --constraints requirements.lock --output-file requirements-build.lock && \
+	lock --group bench --constraints requirements.lock --output-file requirements-bench.lock
 
 clean:  ## remove the environment, the results and all caches
 	rm -rf .venv results .snakemake .pytest_cache .ruff_cache .import_linter_cache .hypothesis .benchmarks
