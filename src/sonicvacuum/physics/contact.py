@@ -1,0 +1,56 @@
+"""Hertz contact of two bodies: from elastic constants and radii to the constant K of F = K delta^{3/2}."""
+
+import math
+
+import numpy as np
+
+
+def reduced_modulus(modulus_a, poisson_a, modulus_b, poisson_b):
+    """Effective modulus E* in Pa of two materials: 1/E* = (1−ν_a²)/E_a + (1−ν_b²)/E_b.
+
+    Johnson, Contact Mechanics (1985), Eq. (4.10). Moduli in Pa, any broadcastable shapes.
+
+    Raises:
+        ValueError: for a modulus that is not positive or a Poisson's ratio outside (−1, 0.5].
+    """
+    for modulus, poisson in ((modulus_a, poisson_a), (modulus_b, poisson_b)):
+        if np.any(np.asarray(modulus) <= 0.0):
+            raise ValueError(f"modulus is {modulus} Pa; it must be positive")
+        if np.any(np.asarray(poisson) <= -1.0) or np.any(np.asarray(poisson) > 0.5):
+            raise ValueError(f"Poisson's ratio is {poisson}; it must lie between −1 and 0.5")
+    return 1.0 / ((1.0 - np.square(poisson_a)) / modulus_a + (1.0 - np.square(poisson_b)) / modulus_b)
+
+
+def reduced_radius(radius_a: float, radius_b: float) -> float:
+    """Effective radius R* in m of two spheres, 1/R* = 1/R_a + 1/R_b; `math.inf` stands for a flat.
+
+    Johnson, Contact Mechanics (1985), Eq. (4.3).
+
+    Raises:
+        ValueError: when a radius is not positive, or both bodies are flat.
+    """
+    if not (radius_a > 0.0 and radius_b > 0.0):
+        raise ValueError(f"radii are {radius_a} and {radius_b} m; they must be positive")
+    curvature = 1.0 / radius_a + 1.0 / radius_b
+    if curvature == 0.0:
+        raise ValueError("two flats have no Hertz contact; at least one body must be a sphere")
+    return 1.0 / curvature
+
+
+def hertz_constant(reduced_modulus, radius: float):
+    """K = (4/3) E* √R* in N/m^{3/2}, so that F = K delta^{3/2} (Johnson 1985, Eq. 4.23)."""
+    return 4.0 / 3.0 * reduced_modulus * math.sqrt(radius)
+
+
+def compression_at(force, stiffness):
+    """Compression in m at which a Hertz contact bears `force` (N): (F/K)^{2/3}."""
+    return np.cbrt(np.square(np.asarray(force) / stiffness))
+
+
+def contact_time(mass, stiffness, speed):
+    """The time (m²/(K² v))^{1/5} in s that sets the duration of a Hertz impact.
+
+    Johnson, Contact Mechanics (1985), Sec. 11.4: an impact of reduced mass m at speed v lasts
+    3.214 times this (2.94 (5/4)^{2/5}).
+    """
+    return (mass**2 / (stiffness**2 * speed)) ** 0.2
