@@ -1,0 +1,66 @@
+"""`config.yaml`: the cases to simulate and what to make of them, checked before any job runs."""
+
+from typing import Annotated, Any
+
+import msgspec
+from msgspec import Meta, Struct
+
+from sonicvacuum.card import Card, CardError, CaseBlock, Name, merged, resolve, variant_names
+from sonicvacuum.files import InputError, convert, read_yaml
+
+
+class Config(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The top level of `config.yaml`.
+
+    Attributes:
+        cases: name → block, see `sonicvacuum.card.CaseBlock`.
+        ledger: column of the ledger → the variants that stand for it, the first that a case has being taken.
+    """
+
+    cases: Annotated[dict[Name, dict[str, Any]], Meta(min_length=1)]
+    ledger: dict[Name, list[Name]]
+
+
+def read(path) -> Config:
+    """The configuration in a file, every case resolved once.
+
+    Raises:
+        InputError: naming the file, the key, the value and the cure.
+    """
+    config = convert(read_yaml(path), Config, path)
+    for case, block in config.cases.items():
+        for variant in variant_names(block):
+            card(config, case, variant, path)
+    return config
+
+
+def card(config: Config, case: str, variant: str, path="config.yaml") -> Card:
+    """The resolved card of one variant of one case; InputError where there is none or it is not sound."""
+    if case not in config.cases:
+        raise InputError(f"{path}: cases.{case}: no such case; known: {', '.join(config.cases)}")
+    written = config.cases[case]
+    variants = written.get("variants")
+    if variants is not None and not (
+        isinstance(variants, dict) and all(isinstance(v, dict | None) for v in variants.values())
+    ):
+        raise InputError(f"{path}: cases.{case}.variants: expected name: {{overrides}}, one line each")
+    if variant not in variant_names(written):
+        known = ", ".join(variant_names(written))
+        raise InputError(f"{path}: cases.{case}: no variant {variant!r}; known: {known}")
+    block = convert(merged(written, variant), CaseBlock, path, f"cases.{case}")
+    try:
+        return resolve(case, variant, block)
+    except CardError as error:
+        raise InputError(f"{path}: cases.{case}.{error}") from None
+
+
+def card_names(config: Config) -> list[str]:
+    """`case.variant` of every card, in order."""
+    return [f"{case}.{variant}" for case, block in config.cases.items() for variant in variant_names(block)]
+
+
+def schema() -> dict[str, Any]:
+    """JSON schema of `config.yaml`, for editors; made from the types that check it."""
+    (whole, case), parts = msgspec.json.schema_components([Config, CaseBlock], ref_template="#/$defs/{name}")
+    parts["Config"]["properties"]["cases"]["additionalProperties"] = case
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **whole, "$defs": parts}

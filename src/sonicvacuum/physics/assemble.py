@@ -1,0 +1,32 @@
+"""From a card to the chains that the stepper integrates: one lane for each impact speed."""
+
+import math
+
+import numpy as np
+
+from sonicvacuum.card import Card, CardMaterial
+from sonicvacuum.physics.chain import Chain, Elastic
+
+
+def assemble(card: Card, speeds=None) -> Chain:
+    """The chains of a card, without effects; lane k is struck at `speeds[k]` in m/s, default the card's."""
+    speeds = np.array(card.striker.speeds_m_s if speeds is None else speeds, dtype=float)
+    radius = card.striker.radius_m
+    return Chain(
+        beads=card.beads,
+        bead=_elastic(card.bead.surface),
+        striker=_elastic(card.striker.surface),
+        wall=_elastic(card.wall),
+        bead_radius=card.bead.diameter_m / 2.0,
+        striker_radius=math.inf if radius is None else radius,
+        bead_mass=card.bead.mass_kg,
+        striker_mass=card.striker.mass_kg,
+        speed=speeds,
+        gravity=card.gravity_m_s2,
+        static_force=card.static_force_N,
+        coating=math.inf if card.bead.coating_m is None else card.bead.coating_m,
+    )
+
+
+def _elastic(material: CardMaterial) -> Elastic:
+    return Elastic(material.name, material.modulus_Pa, material.poisson)

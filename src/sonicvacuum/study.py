@@ -1,0 +1,156 @@
+"""One card from simulation to gauge readings: what the pipeline keeps of a case and reads back.
+
+Every card is simulated twice, with the chosen step and with half of it: the difference of any quantity
+between the two is its numerical error.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from sonicvacuum.card import Card
+from sonicvacuum.files import InputError, replacing
+from sonicvacuum.observe.sensor import Sensor, contacts_needed, reading
+from sonicvacuum.physics.assemble import assemble
+from sonicvacuum.physics.chain import Chain
+from sonicvacuum.physics.run import History, simulate
+
+# An aimed striker's speed is settled when the gauge's peak is this close to its aim.
+AIM_TOLERANCE = 1e-6
+
+
+@dataclass(frozen=True)
+class Study:
+    """A simulated card.
+
+    Attributes:
+        card: what was simulated.
+        speeds: (runs,) striker speeds in m/s; an aimed speed is the one found.
+        time: (samples,) s.
+        contacts: recorded contacts.
+        force: (samples, contacts, runs) dynamic contact forces in N.
+        refined: the same with half the step.
+        energy, momentum: (entries, runs) balance, see `History`.
+    """
+
+    card: Card
+    speeds: np.ndarray
+    time: np.ndarray
+    contacts: tuple[int, ...]
+    force: np.ndarray
+    refined: np.ndarray
+    energy: np.ndarray
+    momentum: np.ndarray
+
+    @cached_property
+    def chain(self) -> Chain:
+        """The chains as integrated, lane k at speed k."""
+        return assemble(self.card, self.speeds)
+
+    @property
+    def interval(self) -> float:
+        """Time between samples in s."""
+        return self.card.interval_s
+
+    def force_of(self, contact: int, refined: bool = False) -> np.ndarray:
+        """(samples, runs) dynamic force in N of one contact."""
+        return (self.refined if refined else self.force)[:, self.contacts.index(contact)]
+
+    def read(self, sensor: Sensor, refined: bool = False) -> np.ndarray:
+        """(samples, runs) reading in N of any gauge whose contacts were recorded."""
+        force = self.refined if refined else self.force
+        forces = {c: force[:, k] for k, c in enumerate(self.contacts)}
+        return reading(sensor, forces, self.interval, self.card.beads)
+
+    def readings(self, refined: bool = False) -> dict[str, np.ndarray]:
+        """Sensor id → (samples, runs) reading of the card's own gauges."""
+        return {s.id: self.read(s, refined) for s in sensors(self.card)}
+
+
+def sensors(card: Card) -> tuple[Sensor, ...]:
+    """The card's gauges."""
+    return tuple(
+        Sensor(id=s.id, kind=s.kind, bead=s.bead, droop_s=s.droop_s, lowpass_s=s.lowpass_s)
+        for s in card.sensors
+    )
+
+
+def recorded_contacts(card: Card) -> tuple[int, ...]:
+    """All contacts of a single run; of a sweep those from the first gauge to the last, and the wall."""
+    if len(card.striker.speeds_m_s) == 1:
+        return tuple(range(card.beads + 1))
+    needed = contacts_needed(sensors(card), card.beads)
+    inner = [c for c in needed if c < card.beads]
+    between = range(min(inner), max(inner) + 1) if inner else ()
+    return (*between, card.beads)
+
+
+def run(card: Card) -> Study:
+    """Simulate a card, at the chosen step and at half of it."""
+    speeds = np.array(card.striker.speeds_m_s)
+    if card.striker.aim is not None:
+        speeds = _aimed(card, speeds)
+    contacts = recorded_contacts(card)
+    plain, refined = (_simulate(card, speeds, contacts, refine, audit=refine == 1.0) for refine in (1.0, 2.0))
+    return Study(
+        card=card,
+        speeds=speeds,
+        time=plain.time,
+        contacts=contacts,
+        force=plain.force,
+        refined=refined.force,
+        energy=plain.energy,
+        momentum=plain.momentum,
+    )
+
+
+def _simulate(card, speeds, contacts, refine=1.0, audit=False) -> History:
+    chain = assemble(card, speeds)
+    return simulate(chain, contacts, card.duration_s, card.interval_s, refine=refine, audit=audit)
+
+
+def _aimed(card, speeds):
+    """Striker speeds at which the aimed sensor's peak is the wanted one; peaks grow about as speed^(6/5)."""
+    sensor = next(s for s in sensors(card) if s.id == card.striker.aim.sensor)
+    for _ in range(20):
+        history = _simulate(card, speeds, contacts_needed((sensor,), card.beads))
+        forces = {c: history.of(c) for c in history.contacts}
+        ratio = card.striker.aim.amplitude_N / reading(sensor, forces, card.interval_s, card.beads).max(
+            axis=0
+        )
+        if np.all(np.abs(ratio - 1.0) < AIM_TOLERANCE):
+            return speeds
+        speeds = speeds * ratio ** (5.0 / 6.0)
+    raise InputError(
+        f"{card.name}: striker.aim: no speed found at which {sensor.id} reads "
+        f"{card.striker.aim.amplitude_N} N; start from another speed_m_s"
+    )
+
+
+def save(study: Study, path) -> None:
+    """Write all but the card to an .npz file; equal studies give equal bytes."""
+    with replacing(path, "wb") as stream:
+        np.savez(
+            stream,
+            speeds=study.speeds,
+            contacts=np.array(study.contacts),
+            force=study.force,
+            refined=study.refined,
+            energy=study.energy,
+            momentum=study.momentum,
+        )
+
+
+def load(card: Card, path) -> Study:
+    """The study that `save` wrote for this card; InputError where the file is not one."""
+    try:
+        with np.load(path) as data:
+            parts = dict(data)
+    except (OSError, ValueError) as error:
+        raise InputError(
+            f"{path}: not a saved simulation ({error}); run sonicvacuum simulate again"
+        ) from None
+    time = np.arange(len(parts["force"])) * card.interval_s
+    contacts = tuple(int(c) for c in parts.pop("contacts"))
+    return Study(card=card, time=time, contacts=contacts, **parts)
