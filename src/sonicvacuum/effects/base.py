@@ -1,0 +1,243 @@
+"""What an effect is: one thing that the nominal model may lack, with its header and its change of the model.
+
+A `Setup` is what is simulated and what reads it; an effect maps a setup and its parameters to another
+setup. Effects act on chains (masses, stiffnesses, force laws, loads) or on sensors, never on results.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from sonicvacuum.physics.chain import Chain
+from sonicvacuum.physics.laws import Term
+
+MICRO = 1e-6
+PLACES = (None, "bead", "contact", "sensor")
+PRIORS = ("log-uniform", "uniform", "log-normal", "normal")
+
+
+@dataclass(frozen=True)
+class Setup:
+    """A batch of chains and the sensors that read them.
+
+    Attributes:
+        chain: (lanes) chains.
+        sensors: frozen dataclasses with the fields id, kind, bead, droop_s, lowpass_s, offset_fraction, gain;
+            the last four are floats or (lanes,) arrays (droop_s None: no discharge).
+    """
+
+    chain: Chain
+    sensors: tuple = ()
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One continuous parameter of an effect, in the unit that its name ends with.
+
+    Attributes:
+        name: key in records, verdicts and calls.
+        unit: of the values.
+        off: value at which the parameter leaves the nominal model as it is, `math.inf` where the effect fades
+            as the value grows; a function of the setup where the record says it; None for a parameter that
+            only shapes an effect which another parameter switches on.
+        low, high: bounds of the search.
+        prior: one of `PRIORS`; "normal" and "log-normal" are centred at `off` with the width `scale`
+            (relative for "log-normal"), the others lie between low and high.
+        scale: typical departure from `off`; typical value where `off` is None or infinite.
+        help: one line.
+        least, most: values outside [least, most] have no meaning and are refused.
+    """
+
+    name: str
+    unit: str
+    off: float | Callable[[Setup], np.ndarray] | None
+    low: float
+    high: float
+    prior: str
+    scale: float
+    help: str
+    least: float = -math.inf
+    most: float = math.inf
+
+    @property
+    def switches(self) -> bool:
+        """Whether the parameter has an off value."""
+        return self.off is not None
+
+    def off_in(self, setup: Setup):
+        """Off value for a setup, a float or (lanes,) array; None for a parameter that only shapes."""
+        return self.off(setup) if callable(self.off) else self.off
+
+    def at(self, strength: float, setup: Setup):
+        """Value at `strength` times the typical departure: 0 is off, 1 is typical; linear near off.
+
+        Where the effect fades as the value grows, the value is scale / strength. A parameter that only shapes
+        stays at its typical value, one that cannot exceed `high` departs downwards.
+        """
+        off = self.off_in(setup)
+        if off is None:
+            return self.scale
+        if np.all(np.isinf(off)):
+            return self.scale / strength if strength else math.inf
+        towards = np.where(off + self.scale > self.high, -1.0, 1.0)
+        return off + towards * strength * self.scale
+
+    def check(self, value, effect: str):
+        """Raise ValueError for a value that has no meaning."""
+        bad = np.isnan(value) | (np.asarray(value) < self.least) | (np.asarray(value) > self.most)
+        if np.any(bad):
+            culprit = np.asarray(value, dtype=float)[bad].flat[0]
+            raise ValueError(
+                f"effect {effect}: {self.name} is {culprit:g}; "
+                f"use a value from {self.least:g} to {self.most:g}"
+            )
+
+
+@dataclass(frozen=True)
+class Effect:
+    """One effect of the catalogue: the header that every effect fills in, and the change it makes.
+
+    Attributes:
+        id: canonical name, never given another meaning.
+        title: a few words.
+        missing: what the nominal model lacks, one line.
+        equation: what is added or replaced, plain text.
+        reference: where the form comes from; says so where a form was chosen.
+        parameters: continuous parameters; at least one has an off value.
+        places: "bead", "contact" or "sensor" where the effect sits at one of them, else None; that word is
+            then one more parameter, a number (or (lanes,) whole numbers): beads and contacts as the chain
+            counts them, sensors from 0 in the order of the setup, or by id.
+        signature: what it moves in the readings, and which way.
+        when_to_use: what makes it likely.
+        when_not: where it means nothing, or where another effect is the better name.
+        dissipative: whether it takes mechanical energy.
+        change: (setup, **parameters) → setup; parameters arrive checked and are not all off.
+        choices: (setup) → possible places, in order.
+    """
+
+    id: str
+    title: str
+    missing: str
+    equation: str
+    reference: str
+    parameters: tuple[Parameter, ...]
+    signature: str
+    when_to_use: str
+    when_not: str
+    dissipative: bool
+    change: Callable[..., Setup] = field(repr=False)
+    places: str | None = None
+    choices: Callable[[Setup], tuple[int, ...]] | None = field(default=None, repr=False)
+
+    def parameter(self, name: str) -> Parameter:
+        """The continuous parameter of that name (KeyError if there is none)."""
+        return {p.name: p for p in self.parameters}[name]
+
+    def candidates(self, setup: Setup) -> tuple[int, ...]:
+        """Places at which the effect can sit in this setup; empty for an effect without place."""
+        return self.choices(setup) if self.choices else ()
+
+    def is_off(self, setup: Setup, **parameters) -> bool:
+        """Whether every parameter that switches is at its off value in all lanes (absent ones are off)."""
+        return all(
+            np.all(np.asarray(parameters[p.name]) == p.off_in(setup))
+            for p in self.parameters
+            if p.switches and p.name in parameters
+        )
+
+    def apply(self, setup: Setup, **parameters) -> Setup:
+        """The setup with the effect in it, or the same object where the effect is off.
+
+        Parameters are floats or (lanes,) arrays in the units of their names; a setup of one chain is
+        repeated to match. Those left out are off, or typical if they only shape.
+
+        Raises:
+            ValueError: for an unknown parameter, a value without meaning, a missing or impossible place.
+        """
+        self._check(setup, parameters)
+        if self.is_off(setup, **parameters):
+            return setup
+        lanes = np.broadcast_shapes(*(np.shape(p) for p in parameters.values()))
+        if lanes not in ((), (1,)) and setup.chain.lanes == 1:
+            setup = replace(setup, chain=setup.chain.take(np.zeros(lanes[0], dtype=int)))
+        given = {
+            p.name: parameters.get(p.name, p.off_in(setup) if p.switches else p.scale)
+            for p in self.parameters
+        }
+        if self.places:
+            given[self.places] = self._place(setup, parameters)
+        return self.change(setup, **given)
+
+    def _check(self, setup, parameters):
+        names = [p.name for p in self.parameters] + ([self.places] if self.places else [])
+        for name in parameters:
+            if name not in names:
+                raise ValueError(f"effect {self.id} has no parameter {name}; it has {', '.join(names)}")
+            if np.ndim(parameters[name]) > 1:
+                shape = np.shape(parameters[name])
+                raise ValueError(f"effect {self.id}: {name} has the shape {shape}; give a number or (lanes,)")
+        for p in self.parameters:
+            if p.name in parameters:
+                p.check(parameters[p.name], self.id)
+
+    def _place(self, setup, parameters):
+        if self.places not in parameters:
+            raise ValueError(f"effect {self.id} needs the parameter {self.places}: where it sits")
+        place, possible = parameters[self.places], self.candidates(setup)
+        if isinstance(place, str):
+            ids = [s.id for s in setup.sensors]
+            place = ids.index(place) if place in ids else -1
+        if not np.all(np.isin(place, possible)):
+            raise ValueError(
+                f"effect {self.id}: {self.places} is {parameters[self.places]}; "
+                f"possible here: {', '.join(map(str, possible)) or 'none'}"
+            )
+        return place
+
+
+def add_term(setup: Setup, term: Term, coefficients: Callable, **parameters) -> Setup:
+    """The setup with one more term in its force law; see `Chain.with_action`.
+
+    Raises:
+        ValueError: where the chain has that term already.
+    """
+    if any(a.term.name == term.name for a in setup.chain.actions):
+        raise ValueError(
+            f"the model has {term.name} already; change its parameters instead of adding it again"
+        )
+    return replace(setup, chain=setup.chain.with_action(term, coefficients, **parameters))
+
+
+def depart_at(setup: Setup, what: str, place, value, neutral: float) -> Setup:
+    """The setup with `value` at `place` and `neutral` elsewhere; both may differ from lane to lane."""
+    chain = setup.chain
+    for index in np.unique(place):
+        chain = chain.with_departure(what, int(index), np.where(np.asarray(place) == index, value, neutral))
+    return replace(setup, chain=chain)
+
+
+def change_sensors(setup: Setup, change: Callable) -> Setup:
+    """The setup with every sensor replaced by change(index, sensor)."""
+    return replace(setup, sensors=tuple(change(k, s) for k, s in enumerate(setup.sensors)))
+
+
+def plain(value):
+    """A float where one number suffices, else the array."""
+    return float(value) if np.ndim(value) == 0 else value
+
+
+def beads_of(setup: Setup) -> tuple[int, ...]:
+    """All beads of the chain, 1 … beads."""
+    return tuple(range(1, setup.chain.beads + 1))
+
+
+def reduced_mass(chain: Chain, mass: np.ndarray) -> np.ndarray:
+    """(bodies, lanes) reduced mass in kg of the two bodies of each contact; at the wall, the body's own."""
+    bodies = len(mass)
+    if bodies == chain.beads + 1:
+        ahead = np.vstack([mass[1:], np.full((1, mass.shape[1]), np.inf)])
+    else:
+        ahead = chain.masses(bodies + 1)[1:]
+    return 1.0 / (1.0 / mass + 1.0 / ahead)

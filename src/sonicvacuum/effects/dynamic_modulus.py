@@ -1,0 +1,38 @@
+"""The contact material is stiffer (or softer) at impact rates than its handbook modulus says."""
+
+from dataclasses import replace
+
+from sonicvacuum.effects.base import Effect, Parameter, Setup
+
+
+def change(setup: Setup, modulus_ratio) -> Setup:
+    """Scale the modulus of every body that is made of the beads' contact material."""
+    chain = setup.chain
+    scaled = {
+        body: replace(elastic, modulus=elastic.modulus * modulus_ratio)
+        for body in ("bead", "striker", "wall")
+        if (elastic := getattr(chain, body)).name == chain.bead.name
+    }
+    return replace(setup, chain=replace(chain, **scaled))
+
+
+EFFECT = Effect(
+    id="dynamic-modulus",
+    title="Dynamic modulus",
+    missing="the beads' contact material is stiffer (softer) at impact rates than the handbook says",
+    equation="E -> s E in every contact of that material",
+    reference="Daraio & Nesterenko, Phys. Rev. E 73, 026612 (2006), Sec. III; Nesterenko, Dynamics of "
+    "Heterogeneous Materials (Springer, 2001), ch. 1",
+    parameters=(
+        Parameter(
+            "modulus_ratio", "1", 1.0, 0.1, 30.0, "log-uniform", 0.5, "modulus over handbook value", 1e-6
+        ),
+    ),
+    signature="speed as s^{1/3} at given force, forces as s^{2/5} at given striker; no decay, 1/6 "
+    "power law kept",
+    when_to_use="polymers and coatings loaded at 10^2 to 10^3 per second against moduli from slow tests",
+    when_not="metals and ceramics; where speed depends on force otherwise than F^{1/6} see "
+    "contact-exponent, coating-thickness, relaxing-contact",
+    dissipative=False,
+    change=change,
+)
