@@ -1,0 +1,28 @@
+"""The whole reproduction: from the cases of config.yaml to Figures 3-6, the ledger of claims and the report."""
+
+from snakemake.utils import min_version
+
+min_version("9.0")
+
+
+include: "workflow/rules/common.smk"
+
+
+rule all:
+    default_target: True
+    input:
+        "results/report.html",
+        "results/ledger.csv",
+        "results/assumptions.csv",
+        "results/benchmarks.csv",
+        expand("figures/{figure}.{kind}", figure=FIGURES, kind=["csv", "svg", "png"]),
+
+
+include: "workflow/rules/cards.smk"
+include: "workflow/rules/simulate.smk"
+include: "workflow/rules/observe.smk"
+include: "workflow/rules/figures.smk"
+include: "workflow/rules/report.smk"
+
+
+report: "workflow/report/workflow.rst"

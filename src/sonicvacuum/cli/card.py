@@ -1,0 +1,66 @@
+"""`sonicvacuum card`, `materials`, `schema`: what is going to be simulated, and with which numbers."""
+
+import json
+
+import click
+
+from sonicvacuum import config as configuration
+from sonicvacuum.card import Card, dump, load
+from sonicvacuum.cli import existing
+from sonicvacuum.files import InputError, explain, replacing
+from sonicvacuum.materials import MATERIALS
+
+
+@click.command()
+@click.option("--config", "path", default="config.yaml", show_default=True, type=existing())
+@click.option("--case", help="Name of the case; without it, all cards are listed.")
+@click.option("--variant", default="nominal", show_default=True)
+@click.option("--out", type=click.Path(dir_okay=False), help="File to write; default: standard output.")
+def card(path, case, variant, out):
+    """Resolve one case of the configuration into a card (JSON, SI units)."""
+    config = configuration.read(path)
+    if case is None:
+        click.echo("\n".join(configuration.card_names(config)))
+        return
+    text = dump(configuration.card(config, case, variant, path))
+    if out is None:
+        click.echo(text, nl=False)
+        return
+    with replacing(out, "wb") as stream:
+        stream.write(text)
+
+
+@click.command()
+def materials():
+    """Print the built-in table of materials with its sources."""
+    click.echo(f"{'name':18} {'E/GPa':>7} {'nu':>6} {'kg/m3':>7} {'yield/MPa':>9}  source")
+    for name, m in MATERIALS.items():
+        strength = "" if m.yield_strength is None else f"{m.yield_strength / 1e6:g}"
+        row = f"{name:18} {m.modulus / 1e9:7g} {m.poisson:6g} {m.density:7g} {strength:>9}  {m.source}"
+        click.echo(row)
+
+
+@click.command()
+@click.option("--out", type=click.Path(dir_okay=False), help="File to write; default: standard output.")
+def schema(out):
+    """JSON schema of the configuration, for editors that complete and check while typing."""
+    text = json.dumps(configuration.schema(), indent=1, sort_keys=True) + "\n"
+    if out is None:
+        click.echo(text, nl=False)
+        return
+    with replacing(out) as stream:
+        stream.write(text)
+
+
+def read_card(path) -> Card:
+    """The card in a JSON file; InputError where it is not one."""
+    import msgspec
+
+    with open(path, "rb") as stream:
+        text = stream.read()
+    try:
+        return load(text)
+    except msgspec.ValidationError as error:
+        raise InputError(explain(error, json.loads(text), path)) from None
+    except msgspec.DecodeError as error:
+        raise InputError(f"{path}: not a card ({error}); write one with: sonicvacuum card --out") from None

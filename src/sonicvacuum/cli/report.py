@@ -1,0 +1,54 @@
+"""`sonicvacuum report`, `publish`, `timings`: the page, what of it is kept in git, and how long it took."""
+
+import click
+
+from sonicvacuum.cli import existing
+from sonicvacuum.cli.card import read_card
+from sonicvacuum.files import replacing
+
+_FILE = existing()
+
+
+@click.command()
+@click.option("--ledger", required=True, type=_FILE)
+@click.option("--assumptions", required=True, type=_FILE)
+@click.option("--metrics", required=True, type=_FILE)
+@click.option("--claims", required=True, type=_FILE)
+@click.option("--figure", "figures", multiple=True, type=_FILE, help="SVG of a figure; repeat.")
+@click.option("--caption", "captions", multiple=True, type=_FILE, help="Caption of each figure, same order.")
+@click.option("--card", "cards", multiple=True, type=_FILE, help="Resolved card; repeat.")
+@click.option("--lock", "locks", multiple=True, type=_FILE, help="Lock file of the environment; repeat.")
+@click.option("--out", required=True, type=click.Path(dir_okay=False), help="Page (HTML) to write.")
+def report(ledger, assumptions, metrics, claims, figures, captions, cards, locks, out):
+    """Write the self-contained page with figures, ledger, audit and provenance."""
+    from sonicvacuum.report.page import build
+
+    if len(figures) != len(captions):
+        raise click.UsageError(f"{len(figures)} figures but {len(captions)} captions; give one for each")
+    read = [read_card(card) for card in cards]
+    text = build(ledger, assumptions, metrics, claims, figures, captions, read, locks)
+    with replacing(out) as stream:
+        stream.write(text)
+
+
+@click.command()
+@click.option("--ledger", required=True, type=_FILE)
+@click.option("--readme", required=True, type=_FILE, help="README whose result table is renewed.")
+@click.option(
+    "--reference", required=True, type=click.Path(dir_okay=False), help="Where the ledger is kept in git."
+)
+def publish(ledger, readme, reference):
+    """Keep the ledger as the reference of later checks and renew the README's result table."""
+    from sonicvacuum.report.publish import publish as write
+
+    write(ledger, readme, reference)
+
+
+@click.command()
+@click.argument("folder", type=click.Path(exists=True, file_okay=False))
+@click.option("--out", required=True, type=click.Path(dir_okay=False), help="Summary (CSV) to write.")
+def timings(folder, out):
+    """Summarise the benchmark files of the workflow in FOLDER."""
+    from sonicvacuum.report.timings import write
+
+    write(folder, out)

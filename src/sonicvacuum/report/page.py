@@ -1,0 +1,126 @@
+"""`results/report.html`: what was asked, the figures, the ledger, the audit, and how each number was made."""
+
+import re
+from pathlib import Path
+
+import jinja2
+
+from sonicvacuum.card import Card
+from sonicvacuum.report import provenance, tables
+
+
+def build(ledger_path, assumptions_path, metrics_path, claims_path, figures, captions, cards, locks) -> str:
+    """The page as HTML text, figures inside.
+
+    Args:
+        ledger_path, assumptions_path, metrics_path, claims_path: CSV files that the pipeline wrote or reads.
+        figures: SVG files, named figN.svg.
+        captions: text files (reStructuredText, plain sentences), one for each figure.
+        cards: resolved `Card`s.
+        locks: lock files of the environment.
+
+    Raises:
+        InputError: when a table has other columns than it should.
+    """
+    ledger = tables.read(ledger_path, tables.LEDGER)
+    claims = tables.read(claims_path, CLAIMS).set_index("claim")
+    ledger["statement"] = [claims["statement"].get(c, "") for c in ledger["claim"]]
+    ledger["note"] = [claims["note"].get(c, "") for c in ledger["claim"]]
+    metrics = tables.read(metrics_path, tables.METRICS)
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("sonicvacuum.report", "."),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+    )
+    environment.filters["number"] = tables.number
+    return environment.get_template("page.html.j2").render(
+        ledger=ledger.to_dict("records"),
+        counts=tables.counts(ledger),
+        verdicts=tables.VERDICTS,
+        disagreements=tables.disagreements(ledger).to_dict("records"),
+        assumptions=tables.read(assumptions_path, tables.ASSUMPTIONS).to_dict("records"),
+        headline=_headline(metrics),
+        figures=[_figure(svg, text) for svg, text in zip(figures, captions, strict=True)],
+        cards=[_card_row(card, metrics) for card in cards],
+        versions=provenance.versions(),
+        source=provenance.source_digest(),
+        lock=provenance.digest(locks),
+    )
+
+
+CLAIMS = [
+    "claim",
+    "section",
+    "statement",
+    "quantity",
+    "unit",
+    "value",
+    "sigma",
+    "sigma_source",
+    "test",
+    "metric",
+    "note",
+]
+
+
+def _figure(svg, caption):
+    """One figure, its SVG inlined with ids of its own, so that the clip paths of two figures never meet."""
+    name = Path(svg).stem
+    text = Path(svg).read_text(encoding="utf-8")
+    text = text[text.index("<svg") :]
+    text = re.sub(r'\bid="([^"]+)"', rf'id="{name}-\1"', text)
+    text = re.sub(r"url\(#([^)]+)\)", rf"url(#{name}-\1)", text)
+    text = re.sub(r'href="#([^"]+)"', rf'href="#{name}-\1"', text)
+    caption = " ".join(Path(caption).read_text(encoding="utf-8").split())
+    return {
+        "name": name,
+        "number": name.removeprefix("fig"),
+        "svg": jinja2.filters.Markup(text),
+        "caption": caption,
+    }
+
+
+def _headline(metrics):
+    """The numbers a reader looks for first: speed and amplitude of the single wave, chain by chain."""
+    wanted = (
+        ("Coated beads, 2.76 GPa (handbook)", "fig3a.handbook", "197 ± 20"),
+        ("Coated beads, 4.75 GPa (membrane)", "fig3a.membrane", "197 ± 20"),
+        ("Coated beads, 15 GPa (matched)", "fig3a.matched", "197 ± 20"),
+        ("Bare steel beads", "fig3b.nominal", "578 ± 58"),
+    )
+    value = metrics.set_index(["case", "quantity", "sensor"])["value"].to_dict()
+    return [
+        {
+            "chain": title,
+            "printed": printed,
+            "speed": value.get((case, "speed", "g9-g5"), ""),
+            "amplitude": value.get((case, "amplitude", "g9"), ""),
+            "width": value.get((case, "width", "g9"), ""),
+        }
+        for title, case, printed in wanted
+    ]
+
+
+def _card_row(card: Card, metrics):
+    own = metrics[metrics["case"].str.split("@").str[0] == card.name]
+    speeds = card.striker.speeds_m_s
+    worst = {q: own.loc[own["quantity"] == q, "value"] for q in ("energy_drift", "momentum_drift")}
+    return {
+        "name": card.name,
+        "title": card.title,
+        "beads": f"{card.beads} × {card.bead.diameter_m * 1e3:g} mm, {card.bead.mass_kg * 1e3:g} g",
+        "modulus": card.bead.surface.modulus_Pa / 1e9,
+        "striker": f"{card.striker.mass_kg * 1e3:g} g, "
+        + _range(speeds)
+        + (" (aimed)" if card.striker.aim else ""),
+        "gravity": "vertical" if card.gravity_m_s2 else "horizontal",
+        **{q: max(map(float, filter(None, v)), default="") for q, v in worst.items()},
+    }
+
+
+def _range(speeds):
+    return (
+        f"{speeds[0]:g} m/s"
+        if len(speeds) == 1
+        else f"{min(speeds):g}–{max(speeds):g} m/s, {len(speeds)} runs"
+    )

@@ -1,0 +1,160 @@
+"""Cards: what a user writes becomes SI once, variants change what they say and nothing else."""
+
+import copy
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from sonicvacuum.card import CardError, CaseBlock, dump, load, merged, resolve, variant_names
+from sonicvacuum.config import Config, card, card_names, read, schema
+from sonicvacuum.files import InputError, convert
+
+CASE = {
+    "title": "a chain",
+    "chain": {
+        "beads": 5,
+        "orientation": "vertical",
+        "bead": {
+            "diameter_mm": 4.86,
+            "mass_g": 0.44,
+            "material": "parylene-c",
+            "coating_um": 50,
+            "core": "stainless-steel",
+        },
+        "wall": {"material": "stainless-steel"},
+    },
+    "striker": {"shape": "flat", "material": "alumina", "mass_g": 0.47, "speed_m_s": 0.44},
+    "sensors": [{"id": "g1", "kind": "embedded", "bead": 3}, {"id": "wall", "kind": "wall"}],
+    "duration_us": 500,
+    "variants": {
+        "soft": {"materials": {"parylene-c": {"modulus_GPa": 2.0}}},
+        "flat": {"chain": {"orientation": "horizontal"}},
+    },
+}
+
+
+def altered(path, value):
+    """The case with one key set, or removed by `...`."""
+    case = copy.deepcopy(CASE)
+    *parents, last = path
+    block = case
+    for key in parents:
+        block = block[key]
+    if value is ...:
+        del block[last]
+    else:
+        block[last] = value
+    return case
+
+
+def resolved(case, variant="soft"):
+    return card(Config(cases={"c": case}, ledger={}), "c", variant, "config.yaml")
+
+
+def test_units_become_si():
+    c = resolved(CASE)
+    lengths = (c.bead.diameter_m, c.bead.mass_kg, c.bead.coating_m)
+    assert lengths == pytest.approx((0.00486, 0.00044, 50e-6), rel=1e-15)  # one rounding in the division
+    assert (c.duration_s, c.interval_s) == pytest.approx((500e-6, 0.5e-6), rel=1e-15)  # likewise
+    assert c.bead.surface.modulus_Pa == 2e9
+
+
+def test_overrides_leave_the_rest_of_the_table_alone():
+    surface = resolved(CASE).bead.surface
+    assert (surface.poisson, surface.density_kg_m3) == (0.388, 1289.0)
+    assert resolved(CASE).wall.modulus_Pa == 193e9
+
+
+def test_variants_change_only_what_they_name():
+    soft, flat = resolved(CASE, "soft"), resolved(CASE, "flat")
+    assert (soft.gravity_m_s2, flat.gravity_m_s2) == (9.81, 0.0)
+    assert flat.bead.surface.modulus_Pa == 2.76e9
+    assert soft.striker == flat.striker
+
+
+def test_a_case_without_variants_is_nominal():
+    case = altered(["variants"], ...)
+    assert variant_names(case) == ["nominal"]
+    assert resolved(case, "nominal").name == "c.nominal"
+
+
+def test_merging_does_not_touch_what_was_written():
+    before = copy.deepcopy(CASE)
+    merged(CASE, "soft")
+    assert before == CASE
+
+
+def test_a_card_survives_its_file():
+    assert load(dump(resolved(CASE))) == resolved(CASE)
+
+
+@given(st.floats(1e-3, 50.0), st.floats(1e-3, 100.0), st.lists(st.floats(1e-3, 10.0), min_size=1, max_size=5))
+def test_any_positive_numbers_survive(diameter, mass, speeds):
+    case = altered(["chain", "bead", "diameter_mm"], diameter + 0.2)
+    case["chain"]["bead"]["mass_g"] = mass
+    case["striker"]["speed_m_s"] = speeds
+    c = resolved(case)
+    assert load(dump(c)) == c
+    assert c.striker.speeds_m_s == tuple(speeds)
+
+
+MISTAKES = [
+    (["striker", "speed_m_s"], "1e-1", "striker.speed_m_s", "1.0e-1"),
+    (["striker", "speed_m_s"], -0.4, "striker.speed_m_s", "-0.4"),
+    (["striker", "speed_m_s"], [], "striker.speed_m_s", "[]"),
+    (["striker", "shape"], "cone", "striker.shape", "cone"),
+    (["striker", "shape"], "sphere", "striker.diameter_mm", "needs its diameter"),
+    (["striker", "velocity"], 1.0, "striker.velocity", "unknown key"),
+    (["striker", "material"], "kryptonite", "striker.material", "modulus_GPa"),
+    (["striker", "aim"], {"sensor": "g7", "amplitude_N": 1.0}, "striker.aim.sensor", "g7"),
+    (["chain", "bead", "mass_g"], ..., "chain.bead.mass_g", "missing"),
+    (["chain", "bead", "core"], ..., "chain.bead", "coating_um and core"),
+    (["chain", "bead", "coating_um"], 5000, "chain.bead.coating_um", "thinner"),
+    (["chain", "beads"], 0, "chain.beads", "0"),
+    (["chain", "beads"], 2, "sensors[0].bead", "2 beads"),
+    (["chain", "orientation"], False, "chain.orientation", "YAML reads"),
+    (["sensors", 0, "bead"], ..., "sensors[0].bead", "embedded"),
+    (["sensors", 1, "bead"], 2, "sensors[1].bead", "remove"),
+    (["sensors"], [], "sensors", "[]"),
+    (["title"], ..., "title", "missing"),
+    (["variants"], ["soft"], "variants", "overrides"),
+]
+
+
+@pytest.mark.parametrize(("path", "value", "place", "hint"), MISTAKES)
+def test_a_mistake_is_named_with_its_place_and_cure(path, value, place, hint):
+    with pytest.raises(InputError) as error:
+        resolved(altered(path, value))
+    message = str(error.value)
+    assert message.startswith(f"config.yaml: cases.c.{place}")
+    assert hint in message
+    assert "\n" not in message
+
+
+def test_unknown_case_and_variant_list_the_known_ones():
+    with pytest.raises(InputError, match=r"cases\.d: no such case; known: c"):
+        card(Config(cases={"c": CASE}, ledger={}), "d", "soft")
+    with pytest.raises(InputError, match=r"no variant 'hard'; known: soft, flat"):
+        resolved(CASE, "hard")
+
+
+def test_resolve_names_the_key_of_an_unsound_block():
+    block = convert(altered(["variants"], ...) | {"variants": {}}, CaseBlock, "f")
+    with pytest.raises(CardError, match=r"sensors\[0\]\.bead"):
+        resolve("c", "nominal", convert(altered(["sensors", 0, "bead"], 9), CaseBlock, "f"))
+    assert resolve("c", "nominal", block).beads == 5
+
+
+def test_the_projects_own_configuration_is_sound(request):
+    config = read(request.config.rootpath / "config.yaml")
+    names = card_names(config)
+    assert len(names) == len(set(names)) > 20
+    assert {"fig3a.handbook", "fig3a.matched", "fig3b.nominal"} <= set(names)
+
+
+def test_the_schema_in_git_is_the_one_that_checks(request):
+    import json
+
+    kept = request.config.rootpath / "workflow/schemas/config.schema.json"
+    assert json.loads(kept.read_text()) == json.loads(json.dumps(schema()))

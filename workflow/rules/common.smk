@@ -1,0 +1,53 @@
+"""What all rules share: the checked configuration, the names of cards and figures, the sources of each layer."""
+
+from pathlib import Path
+
+import msgspec
+from snakemake.exceptions import WorkflowError
+
+from sonicvacuum import config as configuration
+from sonicvacuum.files import InputError
+
+CONFIG_FILE = "config.yaml"
+FIGURES = ["fig3", "fig4", "fig5", "fig6"]
+
+try:
+    CONFIG = configuration.read(CONFIG_FILE)
+except InputError as error:
+    raise WorkflowError(str(error))
+
+CARDS = configuration.card_names(CONFIG)
+
+
+wildcard_constraints:
+    card="[A-Za-z0-9_-]+[.][A-Za-z0-9_-]+",
+    figure="fig[0-9]+",
+
+
+# Snakemake does not see edits to an installed package: each rule names the sources it runs as inputs.
+# A layer is a module or a package below src/sonicvacuum; every rule depends on the locked environment too.
+LAYERS = {
+    "card": ["card.py", "materials.py", "config.py", "files.py", "cli/__init__.py", "cli/card.py"],
+    "physics": ["physics", "study.py", "observe/sensor.py", "cli/simulate.py"],
+    "observe": ["observe", "paper", "cli/observe.py"],
+    "ledger": ["paper", "cli/ledger.py"],
+    "figures": ["figures", "cli/draw.py"],
+    "report": ["report", "cli/report.py"],
+}
+LOCKS = ["requirements.lock", "requirements-build.lock"]
+
+
+def sources(*layers):
+    """Source files of some layers and the locks, in a fixed order."""
+    package = Path("src/sonicvacuum")
+    found = set()
+    for part in (part for layer in layers for part in LAYERS[layer]):
+        path = package / part
+        found.update(path.rglob("*.py") if path.is_dir() else [path])
+    return sorted(str(path) for path in found if path.name != "bench.py") + LOCKS
+
+
+def resolved(wildcards):
+    """Text of a card: as a parameter it reruns the rule of this card alone when the configuration changes."""
+    case, variant = wildcards.card.split(".")
+    return msgspec.json.encode(configuration.card(CONFIG, case, variant)).decode()

@@ -1,0 +1,27 @@
+"""Figures 3-6: first the numbers that are drawn, then the drawing made from them."""
+
+
+rule draw:
+    input:
+        cards=lambda wildcards: expand("results/cards/{card}.json", card=drawn(wildcards.figure)),
+        histories=lambda wildcards: expand("results/histories/{card}.npz", card=drawn(wildcards.figure)),
+        metrics=lambda wildcards: expand("results/metrics/{card}.csv", card=drawn(wildcards.figure)),
+        sources=sources("card", "physics", "observe", "figures"),
+    output:
+        table="figures/{figure}.csv",
+        svg=report(
+            "figures/{figure}.svg",
+            category="Figures",
+            caption="../report/{figure}.rst",
+            labels={"figure": "{figure}"},
+        ),
+        png="figures/{figure}.png",
+    log:
+        "results/logs/draw/{figure}.log",
+    benchmark:
+        "results/benchmarks/draw/{figure}.tsv"
+    message:
+        "Drawing {wildcards.figure}"
+    shell:
+        "sonicvacuum draw {wildcards.figure} --cards results/cards --histories results/histories"
+        " --out figures 2> {log}"

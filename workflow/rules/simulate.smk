@@ -1,0 +1,17 @@
+"""Each card integrated at the chosen step and at half of it."""
+
+
+rule simulate:
+    input:
+        card="results/cards/{card}.json",
+        sources=sources("card", "physics"),
+    output:
+        "results/histories/{card}.npz",
+    log:
+        "results/logs/simulate/{card}.log",
+    benchmark:
+        "results/benchmarks/simulate/{card}.tsv"
+    message:
+        "Simulating {wildcards.card}"
+    shell:
+        "sonicvacuum simulate {input.card} --out {output} 2> {log}"

@@ -1,0 +1,94 @@
+"""The reproducibility check: the whole pipeline in two clean folders, compared with each other and with git.
+
+One folder is made with one core, the other with two; every product must be the same to the byte. Figure
+tables and ledger are then compared with the committed ones, column by column, within the tolerances of
+workflow/resources/tolerances.csv. Exit code 1 and a table of differences when something differs.
+"""
+
+import filecmp
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pandas as pd
+
+from sonicvacuum.report import agreement
+
+PARTS = ("Snakefile", "config.yaml", "workflow", "src", "requirements.lock", "requirements-build.lock")
+# Times, by their nature different in every run.
+UNLIKE = ("results/logs", "results/benchmarks", "results/benchmarks.csv", ".snakemake")
+
+
+def clean_copy(root: Path, target: Path) -> Path:
+    """The parts of the project that the pipeline reads, and nothing that it wrote."""
+    shutil.rmtree(target, ignore_errors=True)
+    target.mkdir(parents=True)
+    for part in PARTS:
+        source = root / part
+        if source.is_dir():
+            shutil.copytree(source, target / part, ignore=shutil.ignore_patterns("__pycache__", "*.pyc"))
+        else:
+            shutil.copy2(source, target / part)
+    return target
+
+
+def run(folder: Path, cores: int) -> None:
+    """The default target of the workflow in a folder."""
+    print(f"running the pipeline in {folder.name} with --cores {cores}", flush=True)
+    command = [sys.executable, "-m", "snakemake", "--cores", str(cores), "--quiet", "all", "--nocolor"]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
+    if done.returncode:
+        sys.exit(f"the pipeline failed in {folder}:\n{done.stdout[-4000:]}{done.stderr[-8000:]}")
+
+
+def products(folder: Path) -> set[str]:
+    """Relative paths of all that the pipeline wrote, times excepted."""
+    paths = (
+        p.relative_to(folder).as_posix() for top in ("results", "figures") for p in (folder / top).rglob("*")
+    )
+    return {p for p in paths if (folder / p).is_file() and not p.startswith(UNLIKE)}
+
+
+def unequal(one: Path, other: Path) -> list[str]:
+    """Products that are missing on one side or differ in a byte."""
+    mine, yours = products(one), products(other)
+    differ = {p for p in mine & yours if not filecmp.cmp(one / p, other / p, shallow=False)}
+    return sorted(differ | (mine ^ yours))
+
+
+def against_git(root: Path, fresh: Path) -> list[dict]:
+    """Differences of the figure tables and the ledger from the committed ones."""
+    tolerances = agreement.read_tolerances(root / "workflow/resources/tolerances.csv")
+    pairs = [(path, fresh / "figures" / path.name) for path in sorted(root.glob("figures/fig[0-9].csv"))]
+    pairs.append((root / "workflow/resources/reference/ledger.csv", fresh / "results/ledger.csv"))
+    found = []
+    for reference, made in pairs:
+        tables = (pd.read_csv(path, dtype=str, keep_default_na=False) for path in (reference, made))
+        found += agreement.differences(reference.stem, *tables, tolerances)
+    return found
+
+
+def main() -> int:
+    """Run and compare; 0 when everything agrees."""
+    root = Path.cwd()
+    folders = [clean_copy(root, root / "results/reproduce" / name) for name in ("one-core", "two-cores")]
+    for cores, folder in enumerate(folders, start=1):
+        run(folder, cores)
+    different = unequal(*folders)
+    print(
+        f"--cores 1 against --cores 2: {len(products(folders[0]))} files, {len(different)} differ", flush=True
+    )
+    print("".join(f"  {path}\n" for path in different), end="")
+    found = against_git(root, folders[0])
+    print(f"against the committed tables: {len(found)} cells differ beyond their tolerance")
+    if found:
+        print(agreement.readable(found))
+        print(
+            "If the change is meant: make, then .venv/bin/snakemake --cores 1 publish, and commit the tables."
+        )
+    return 1 if different or found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
