@@ -14,8 +14,8 @@ inflection (chi = 1.13 at nu = 0.388) and continued along its tangent there, as 
 (Johnson, Contact Mechanics, Sec. 5.8) is linear in chi too: F/F_Hertz = (3 pi/4) (1−nu)²/(1−2nu) chi. Twice
 continuously differentiable, and rising for all loads. Against the exact solution for the layer (in the
 tests) the factor at nu = 0.388 is 1.5 % low at chi = 0.3, 10 % at 0.8, 20 % at 2; with a layer thinner by
-15 % it follows the exact curve to 2 %. At nu = 1/2 the general formula gives the last coefficient −0.097
-where the paper's special case prints +0.0975; the tangent makes that difference small.
+15 % it follows the exact curve to 5 % up to there. At nu = 1/2 the general formula gives the last
+coefficient −0.097 where the paper's special case prints +0.0975.
 """
 
 import numpy as np
