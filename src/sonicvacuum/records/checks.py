@@ -1,0 +1,160 @@
+"""What in a valid record looks suspicious: no errors, but worth a look before a verdict is trusted."""
+
+from collections import Counter
+from itertools import pairwise
+
+import numpy as np
+
+from sonicvacuum.observe.pulse import main_pulse
+from sonicvacuum.records.assemble import assemble
+from sonicvacuum.records.ranges import impact_scales
+from sonicvacuum.records.reader import read
+from sonicvacuum.records.record import Gauge, Record, Run
+
+# Samples per contact time below which pulses are poorly resolved.
+FEW_SAMPLES = 8
+WEAK = 10.0
+# Estimated over stated noise outside of these is worth a word, given enough samples at rest.
+NOISE = (0.5, 2.0)
+REST_SAMPLES = 20
+# Forces count as rest until they first exceed this many standard deviations, and for so much of that time.
+ONSET = 6.0
+QUIET = 0.8
+# Equal samples in a row at the top of a trace: the recorder's range was exceeded.
+CLIPPED = 5
+HEAVY = 300.0
+FAST = 20.0
+SLOW = 1e-3
+
+
+def check(path) -> list[str]:
+    """Warnings about a record that can be read; InputError for one that cannot."""
+    return warnings(read(path))
+
+
+def warnings(record: Record) -> list[str]:
+    """One line for each suspicious thing, beginning with the place it concerns."""
+    found = [*_materials(record), *_strikers(record)]
+    for run, contact in zip(record.runs, _contact_times(record), strict=True):
+        if run.signals is not None:
+            found += _traces(record, run, contact)
+    return found
+
+
+def noise_at_rest(run: Run, gauge: Gauge) -> tuple[float, float, int]:
+    """Mean and standard deviation in N of a trace before the pulse arrives, and the number of samples."""
+    force = run.signals.readings[gauge.id]
+    above = np.abs(force) > max(ONSET * gauge.sigma, 0.02 * float(np.abs(force).max()))
+    quiet = force[: int(QUIET * (above.argmax() if above.any() else len(force)))]
+    if len(quiet) < 2:
+        return 0.0, 0.0, len(quiet)
+    return float(quiet.mean()), float(quiet.std(ddof=1)), len(quiet)
+
+
+def _contact_times(record):
+    times = [0.0] * len(record.runs)
+    for batch in assemble(record):
+        for lane, k in enumerate(batch.runs):
+            times[k] = impact_scales(batch.chain.take([lane]))[1]
+    return times
+
+
+def _materials(record):
+    chain = record.block.chain
+    used = {chain.bead.material, chain.bead.core, chain.wall.material}
+    used |= {r.striker.material for r in record.block.runs}
+    for name in record.block.materials:
+        if name not in used:
+            yield f"materials.{name}: nothing in the record is made of it"
+    if not record.modulus_rel_sigma(chain.bead.material):
+        yield f"materials.{chain.bead.material}: no modulus_rel_sigma; say how well the modulus is known"
+
+
+def _strikers(record):
+    bead = record.block.chain.bead
+    for k, run in enumerate(record.block.runs):
+        s, key = run.striker, f"runs[{k}].striker ({run.id})"
+        if s.shape == "flat" and s.diameter_mm is not None:
+            yield f"{key}: diameter_mm of a flat striker is not used"
+        if record.beads == 0:
+            if s.material != bead.material:
+                yield f"{key}: material {s.material} is not used: {bead.material} touches (chain.bead)"
+            if (s.diameter_mm, s.mass_g) != (bead.diameter_mm, bead.mass_g):
+                yield f"{key}: diameter or mass differ from chain.bead; the striker's are used"
+        elif s.mass_g > HEAVY * bead.mass_g:
+            yield f"{key}: mass_g is {s.mass_g:g}, {s.mass_g / bead.mass_g:.0f} beads' masses; is it in mg?"
+        if not SLOW <= s.speed_m_s <= FAST:
+            yield f"{key}: speed_m_s is {s.speed_m_s:g}; is the unit right?"
+    files = Counter(r.signals for r in record.block.runs if r.signals)
+    yield from (f"{name}: serves {n} runs" for name, n in files.items() if n > 1)
+
+
+def _traces(record, run, contact):
+    signals, name = run.signals, f"run {run.id}"
+    if signals.interval_s * FEW_SAMPLES > contact:
+        yield (
+            f"{name}: samples are {signals.interval_s * 1e6:.3g} us apart, a contact lasts about "
+            f"{contact * 1e6:.3g} us: pulses are poorly resolved"
+        )
+    if signals.start_s > contact:
+        yield f"{name}: starts {signals.start_s * 1e6:.3g} us after the impact"
+    peaks = {}
+    for gauge in record.gauges:
+        yield from _trace(run, gauge, f"{name}, {gauge.id}")
+        pulse = main_pulse(signals.trace(gauge.id, gauge.sigma))
+        if pulse.found:
+            peaks[gauge.id] = pulse.time
+        elif pulse.reason.startswith("truncated"):
+            yield f"{name}, {gauge.id}: {pulse.reason}"
+    yield from _order(record, peaks, name)
+
+
+def _trace(run, gauge, name):
+    force = run.signals.readings[gauge.id]
+    top, bottom = float(force.max()), float(force.min())
+    if top < WEAK * gauge.sigma:
+        yield f"{name}: the peak, {top:.3g} N, is only {top / gauge.sigma:.2g} times the noise"
+    if -bottom > max(top, ONSET * gauge.sigma):
+        yield (
+            f"{name}: swings further down ({bottom:.3g} N) than up; positive force means compression: is the "
+            "sign right?"
+        )
+    flat = _row(force == top)
+    if top > WEAK * gauge.sigma and flat >= CLIPPED:
+        yield f"{name}: {flat} equal samples at the top, {top:.3g} N: the recorder seems to clip"
+    steps = np.unique(np.abs(np.diff(np.unique(force))))
+    if (
+        len(steps)
+        and gauge.sigma < 0.9 * float(steps[0]) / np.sqrt(12.0)
+        and len(np.unique(force)) < len(force) / 2
+    ):
+        yield f"{name}: values lie {steps[0]:.3g} N apart; sigma_N must be at least that over √12"
+    yield from _rest(run, gauge, name)
+
+
+def _rest(run, gauge, name):
+    mean, spread, samples = noise_at_rest(run, gauge)
+    if samples < REST_SAMPLES:
+        return
+    if not NOISE[0] * gauge.sigma <= spread <= NOISE[1] * gauge.sigma:
+        yield f"{name}: noise before the pulse is {spread:.2g} N, sigma_N says {gauge.sigma:g}"
+    if abs(mean) > max(gauge.sigma, 5.0 * spread / np.sqrt(samples)):
+        yield f"{name}: the trace rests at {mean:.2g} N before the pulse, not at 0"
+
+
+def _order(record, peaks, name):
+    """Gauges must see the pulse in the order in which they stand behind the striker."""
+    place = {g.id: g.bead or record.beads + 1 for g in record.gauges}
+    ids = sorted(peaks, key=lambda s: place[s])
+    for near, far in pairwise(ids):
+        if place[near] < place[far] and peaks[near] > peaks[far]:
+            yield (
+                f"{name}: the pulse reaches {far} before {near}, which stands closer to the striker; bead 1 "
+                "is the struck one: are the beads counted from the wrong end, or columns exchanged?"
+            )
+
+
+def _row(flags):
+    """Length of the longest run of True."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([0], flags.astype(int), [0]))))
+    return int((edges[1::2] - edges[::2]).max(initial=0))

@@ -1,0 +1,76 @@
+"""What the command line does with records: start one from a template, check some and say what is in them."""
+
+from importlib.resources import files
+from pathlib import Path
+
+from sonicvacuum.files import InputError, replacing
+from sonicvacuum.records.checks import warnings
+from sonicvacuum.records.reader import FILE, read
+from sonicvacuum.records.record import Record, Run
+
+
+def template() -> str:
+    """A commented `record.yaml`, valid as it is."""
+    return files("sonicvacuum.records").joinpath("template.yaml").read_text(encoding="utf-8")
+
+
+def new(folder) -> Path:
+    """Write the template into a folder, made if need be, and return its path.
+
+    Raises:
+        InputError: when the folder has a record already, or cannot be written.
+    """
+    file = Path(folder) / FILE
+    if file.exists():
+        raise InputError(f"{file}: exists already; choose another folder or remove it")
+    try:
+        with replacing(file) as stream:
+            stream.write(template())
+    except OSError as error:
+        raise InputError(f"{file}: {error.strerror or error}; choose a folder that can be written") from None
+    return file
+
+
+def check(folders) -> str:
+    """Summaries of records, one after the other; InputError for the first that cannot be read."""
+    return "\n".join(summary(read(folder)) for folder in folders)
+
+
+def summary(record: Record) -> str:
+    """What is in a record, and what in it looks suspicious."""
+    kind = "one ball on a wall" if record.beads == 0 else f"{record.beads} beads"
+    gauges = ", ".join(f"{g.id} ({'wall' if g.bead is None else f'bead {g.bead}'})" for g in record.gauges)
+    lines = [
+        f"{record.name}: {record.title}",
+        f"  {kind} of {record.surface.name}, {record.diameter_m * 1e3:g} mm, "
+        f"{record.bead_mass_kg * 1e3:g} g, {record.block.chain.orientation}; gauges: {gauges or 'none'}",
+        *(line for run in record.runs for line in _run(record, run)),
+    ]
+    found = warnings(record)
+    lines += [f"  warning: {w}" for w in found] or ["  nothing suspicious"]
+    return "\n".join(lines)
+
+
+def _run(record: Record, run: Run):
+    s = run.striker
+    yield (
+        f"  run {run.id}: striker {s.surface.name}, {s.mass_kg * 1e3:g} g, {s.speed_m_s:g} m/s; "
+        f"{len(run.observables)} scalars" + (", traces:" if run.signals else ", no traces")
+    )
+    if run.signals:
+        yield (
+            f"    {run.signals.samples} samples, {run.signals.interval_s * 1e6:g} us apart, from "
+            f"{run.signals.start_s * 1e6:g} us"
+        )
+        for g in record.gauges:
+            peak = float(run.signals.readings[g.id].max())
+            yield f"    {g.id}: peak {peak:.4g} N, {peak / g.sigma:.3g} times the noise"
+    for o in run.observables:
+        yield f"    {o.label} = {o.value:g} ± {o.sigma:g}" + _unit(o.quantity)
+
+
+def _unit(quantity):
+    from sonicvacuum.observe.quantities import QUANTITIES
+
+    unit = QUANTITIES[quantity].unit
+    return "" if unit == "1" else f" {unit}"

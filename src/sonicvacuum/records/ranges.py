@@ -1,0 +1,165 @@
+"""Physical ranges of what a record says, and which wrong unit a number outside them suggests.
+
+The limits are wide: they refuse what no laboratory has (a bead of 5 µm said to be in mm, steel of 193e9 GPa),
+so that a slip of a unit is caught and an unusual experiment is not. Forces and times are held against the
+scales of a Hertz impact with the record's own numbers.
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from sonicvacuum.materials import MATERIALS
+from sonicvacuum.physics.chain import Chain
+from sonicvacuum.physics.contact import contact_time
+
+# Solids from aerogel-like shells to osmium, with room for wires and glue.
+DENSITY = (50.0, 30000.0)
+LIKELY_DENSITY = (500.0, 20000.0)
+# A handbook modulus and one for the same material in a record differ by less.
+MODULUS_FACTOR = 100.0
+# Largest force of a record over that of the same impact on one contact.
+FORCE = (3e-3, 100.0)
+# Over the contact time: a duration, the whole record, one sampling interval.
+DURATION = (0.03, 300.0)
+SHORTEST_RECORD = 0.2
+LONGEST_INTERVAL = 2.0
+# A striker lighter than this fraction of a bead suggests its mass was given in kg.
+LIGHTEST_STRIKER = 3e-3
+
+
+class SuspectError(ValueError):
+    """A number outside its range; `key` is its place in the record."""
+
+    def __init__(self, key: str, problem: str):
+        super().__init__(f"{key}: {problem}")
+        self.key = key
+
+
+@dataclass(frozen=True)
+class Range:
+    """What a number in `unit` may be, and the factors by which other units would make it larger or smaller.
+
+    Attributes:
+        unit: of the number.
+        low, high: limits, both included.
+        others: other unit → the number it would show for 1 `unit`.
+    """
+
+    unit: str
+    low: float
+    high: float
+    others: Mapping[str, float]
+
+    def check(self, key: str, value: float) -> None:
+        """SuspectError for a value outside the range."""
+        if self.low <= value <= self.high:
+            return
+        raise SuspectError(
+            key,
+            f"is {value:g} {self.unit}, outside {self.low:g} to {self.high:g} {self.unit}"
+            + suspicion(self.unit, value, self.low, self.high, self.others),
+        )
+
+
+def suspicion(unit: str, value: float, low: float, high: float, others: Mapping[str, float]) -> str:
+    """`; the number looks like one in mm/s: convert it to m/s`, or a plain request to correct the number."""
+    fitting = [name for name, factor in others.items() if low <= value / factor <= high]
+    if not fitting:
+        return "; correct the number"
+    return f"; the number looks like one in {' or '.join(fitting)}: convert it to {unit}"
+
+
+LENGTH = {"m": 1e-3, "cm": 0.1, "um": 1e3}
+DIAMETER = Range("mm", 0.02, 500.0, LENGTH)
+COATING = Range("um", 1e-3, 2e4, {"m": 1e-6, "mm": 1e-3, "nm": 1e3})
+MASS = Range("g", 1e-9, 1e6, {"kg": 1e-3, "mg": 1e3})
+MODULUS = Range("GPa", 1e-5, 1500.0, {"MPa": 1e3, "Pa": 1e9})
+SPEED = Range("m/s", 1e-5, 100.0, {"mm/s": 1e3, "cm/s": 1e2, "km/s": 1e-3})
+STATIC_FORCE = Range("N", 0.0, 1e4, {"mN": 1e3})
+RELATIVE = Range("(a fraction)", 0.0, 2.0, {"%": 1e2})
+TRIGGER = Range("us", 0.0, 1e4, {"ns": 1e3})
+WAVE_SPEED = Range("m/s", 1.0, 6000.0, {"km/s": 1e-3, "mm/s": 1e3, "cm/s": 1e2})
+RATIO = Range("(a ratio)", 0.0, 100.0, {"%": 1e2})
+RESTITUTION = Range("(a ratio)", -1.0, 1.2, {"%": 1e2})
+COUNT = Range("(a count)", 0.0, 1000.0, {})
+WIDTH = Range("diameters", 0.3, 1e3, {"m": 5e-3, "mm": 5.0})
+
+
+def check_mass(key: str, mass_g: float, diameter_mm: float) -> None:
+    """SuspectError for a ball whose mass and diameter make a density that no solid has."""
+    MASS.check(f"{key}.mass_g", mass_g)
+    density = _density(mass_g, diameter_mm)
+    if DENSITY[0] <= density <= DENSITY[1]:
+        return
+    guesses = [
+        f"mass in {name}"
+        for name, factor in MASS.others.items()
+        if _likely(_density(mass_g / factor, diameter_mm))
+    ]
+    guesses += [
+        f"diameter in {name}"
+        for name, factor in LENGTH.items()
+        if _likely(_density(mass_g, diameter_mm / factor))
+    ]
+    cure = f"; suspected: {' or '.join(guesses)}" if guesses else ""
+    raise SuspectError(
+        f"{key}.mass_g",
+        f"is {mass_g:g} g, which at a diameter of {diameter_mm:g} mm is a density of {density:.3g} kg/m3, "
+        f"outside {DENSITY[0]:g} to {DENSITY[1]:g}{cure}; give g and mm",
+    )
+
+
+def check_striker_mass(key: str, mass_g: float, bead_g: float) -> None:
+    """SuspectError for a flat striker so light beside a bead that its mass must be in kg."""
+    MASS.check(f"{key}.mass_g", mass_g)
+    if mass_g < LIGHTEST_STRIKER * bead_g:
+        raise SuspectError(
+            f"{key}.mass_g",
+            f"is {mass_g:g} g, {mass_g / bead_g:.2g} of a bead's mass; "
+            "the number looks like one in kg: convert it to g",
+        )
+
+
+def check_modulus(key: str, name: str, modulus_GPa: float) -> None:
+    """SuspectError for a modulus outside the range, or far from the table's for a material it knows."""
+    MODULUS.check(f"{key}.modulus_GPa", modulus_GPa)
+    if name not in MATERIALS:
+        return
+    table = MATERIALS[name].modulus / 1e9
+    if table / MODULUS_FACTOR <= modulus_GPa <= table * MODULUS_FACTOR:
+        return
+    raise SuspectError(
+        f"{key}.modulus_GPa",
+        f"is {modulus_GPa:g} GPa; the table has {table:g} GPa for {name}"
+        + suspicion("GPa", modulus_GPa, table / 10.0, table * 10.0, MODULUS.others),
+    )
+
+
+def impact_scales(chain: Chain) -> tuple[float, float]:
+    """Force in N and contact time in s of the chain's impact, the largest and the longest of its lanes.
+
+    Force: K (5 m v²/(4 K))^{3/5} of a Hertz impact, m the striker's mass, or v √(k m) where a static force
+    makes the contacts stiff springs; time: 3.21 (m²/(K² v))^{1/5} (Johnson, Contact Mechanics, 1985, Sec. 11.4).
+    """
+    stiffness = chain.stiffness if chain.beads else chain.striker_stiffness
+    mass = chain.bead_mass if chain.beads else chain.striker_mass
+    energy = max_of(1.25 * chain.striker_mass * chain.speed**2)
+    force = max_of(stiffness) * (energy / max_of(stiffness)) ** 0.6
+    static = max_of(chain.static_force + chain.beads * chain.bead_mass * chain.gravity)
+    spring = 1.5 * max_of(stiffness) ** (2.0 / 3.0) * static ** (1.0 / 3.0)
+    linear = max_of(chain.speed) * math.sqrt(spring * max_of(mass))
+    return max(force, linear), 3.21 * max_of(contact_time(mass, stiffness, chain.speed))
+
+
+def max_of(values) -> float:
+    """Largest of an array as a float."""
+    return float(values.max())
+
+
+def _density(mass_g, diameter_mm):
+    return mass_g * 1e-3 / (math.pi / 6.0 * (diameter_mm * 1e-3) ** 3)
+
+
+def _likely(density):
+    return LIKELY_DENSITY[0] <= density <= LIKELY_DENSITY[1]

@@ -1,0 +1,170 @@
+"""Reading a record: closed schema, physical ranges, traces; the first fault ends it with one message."""
+
+import math
+import re
+from pathlib import Path
+
+from sonicvacuum.card import CardError
+from sonicvacuum.files import InputError, convert, read_yaml
+from sonicvacuum.records import signals
+from sonicvacuum.records.assemble import assemble
+from sonicvacuum.records.blocks import OBSERVABLES, UNITS, RecordBlock
+from sonicvacuum.records.ranges import FORCE, LONGEST_INTERVAL, SHORTEST_RECORD, SuspectError, impact_scales
+from sonicvacuum.records.record import Record
+from sonicvacuum.records.validate import validate
+
+FILE = "record.yaml"
+_HINTS = {
+    "orientation": "write vertical or horizontal",
+    "kind": "write embedded or wall",
+    "shape": "write flat or sphere",
+    "format": "this program reads format: 1",
+    "id": "quote it; letters, digits and _ . + - only",
+    "from": "name a sensor's id",
+    "to": "name a sensor's id",
+    "sensor": "name a sensor's id",
+    "signals": "name a CSV file that lies beside record.yaml",
+}
+
+
+def read(path) -> Record:
+    """The record in a folder.
+
+    Args:
+        path: the folder, or its `record.yaml`.
+
+    Raises:
+        InputError: naming the file, the key or line, the value and the cure.
+    """
+    folder = Path(path)
+    if folder.name == FILE and folder.is_file():
+        folder = folder.parent
+    if not folder.is_dir():
+        raise InputError(f"{path}: no such folder; give the folder that holds {FILE}")
+    file = folder / FILE
+    if not file.is_file():
+        raise InputError(f"{folder}: has no {FILE}; sonicvacuum record new {folder} writes one to fill in")
+    block = parse(read_yaml(file), file)
+    ids = [s.id for s in block.sensors]
+    traces = {r.id: signals.read(folder / r.signals, ids) for r in block.runs if r.signals}
+    record = Record(block, traces, folder.resolve().name)
+    for run in block.runs:
+        if run.signals:
+            check_scales(record, run.id, folder / run.signals)
+    return record
+
+
+def parse(content: dict, path=FILE) -> RecordBlock:
+    """The checked block of a YAML mapping; InputError as in `read`."""
+    _check_finite(content, path)
+    _check_observables(content, path)
+    try:
+        block = convert(content, RecordBlock, path)
+    except InputError as error:
+        raise InputError(_hinted(str(error))) from None
+    try:
+        validate(block)
+    except (SuspectError, CardError) as error:
+        raise InputError(f"{path}: {error}") from None
+    return block
+
+
+def _check_finite(content, path, place=""):
+    """YAML knows .nan and .inf, and lets a ratio of them through every comparison."""
+    if isinstance(content, dict):
+        parts = [(f"{place}.{k}" if place else str(k), v) for k, v in content.items()]
+    elif isinstance(content, list):
+        parts = [(f"{place}[{k}]", v) for k, v in enumerate(content)]
+    else:
+        if isinstance(content, float) and not math.isfinite(content):
+            raise InputError(f"{path}: {place}: is {content}; write a finite number, or leave the key out")
+        return
+    for key, value in parts:
+        _check_finite(value, path, key)
+
+
+def _check_observables(content, path):
+    """Unknown quantities and units, with the list of known ones."""
+    for place, entry in _observables(content):
+        if "quantity" not in entry:
+            continue
+        quantity, unit = entry["quantity"], entry.get("unit")
+        if not isinstance(quantity, str) or quantity not in OBSERVABLES:
+            raise InputError(f"{path}: {place}.quantity: is {quantity!r}; known: {', '.join(OBSERVABLES)}")
+        if unit is not None and str(unit) != UNITS[quantity]:
+            raise InputError(
+                f"{path}: {place}.unit: is {unit!r}; {quantity} is given in {UNITS[quantity]}: "
+                "convert value and sigma"
+            )
+
+
+def _observables(content):
+    runs = content.get("runs")
+    for k, run in enumerate(runs if isinstance(runs, list) else []):
+        entries = run.get("observables") if isinstance(run, dict) else None
+        for j, entry in enumerate(entries if isinstance(entries, list) else []):
+            if isinstance(entry, dict):
+                yield f"runs[{k}].observables[{j}]", entry
+
+
+def _hinted(message):
+    """The message with what may stand at its key, where the types cannot say it in plain words."""
+    found = re.search(r": (?:[^:\s]*\.)?(\w+): (?:is .*: )?(invalid|expected)", message, re.DOTALL)
+    if not found or found.group(1) not in _HINTS:
+        return message
+    message = re.sub(r"expected `str` matching regex .*", "not allowed here", message, flags=re.DOTALL)
+    return f"{message}; {_HINTS[found.group(1)]}"
+
+
+def check_scales(record: Record, run: str, path) -> None:
+    """Times and forces of a run's traces against the scales of its impact.
+
+    Raises:
+        InputError: where time or force is so far off that its unit must be another.
+    """
+    place = next(k for k, r in enumerate(record.runs) if r.id == run)
+    batch = next(b for b in assemble(record) if place in b.runs)
+    force, contact = impact_scales(batch.chain.take([batch.runs.index(place)]))
+    traces = record.signals[run]
+    _check_times(traces, contact, path)
+    peak = max(float(abs(r).max()) for r in traces.readings.values())
+    expected = f"the impact makes about {force:.2g} N"
+    if peak > FORCE[1] * force:
+        unit = "mN" if peak / 1e3 <= FORCE[1] * force else "another unit"
+        raise InputError(
+            f"{path}: forces reach {peak:.3g} N, while {expected}: they look like {unit}; convert them to N, "
+            "or correct the striker in record.yaml"
+        )
+    if 0.0 < peak < FORCE[0] * force and peak > 10.0 * _noise(record):
+        raise InputError(
+            f"{path}: forces reach {peak:.3g} N only, while {expected}: they look like kN or volts; convert "
+            "them to N, or correct the striker in record.yaml"
+        )
+
+
+def _noise(record):
+    return max((g.sigma for g in record.gauges), default=0.0)
+
+
+def _check_times(traces, contact, path):
+    span, interval = traces.interval_s * (traces.samples - 1), traces.interval_s
+    shown = f"a contact of this impact lasts about {contact * 1e6:.2g} us"
+    if span < SHORTEST_RECORD * contact:
+        units = [
+            u for u, f in (("ms", 1e3), ("s", 1e6)) if SHORTEST_RECORD * contact <= span * f < 1e4 * contact
+        ]
+        look = f"times look like {' or '.join(units)}" if units else "the record is too short"
+        raise InputError(
+            f"{path}, column {signals.TIME}: the record lasts {span * 1e6:.3g} us, while {shown}: {look}; "
+            "convert times to microseconds"
+        )
+    if interval > LONGEST_INTERVAL * contact:
+        raise InputError(
+            f"{path}, column {signals.TIME}: samples are {interval * 1e6:.3g} us apart, while {shown}: times "
+            "look like ns, or the sampling is too coarse; convert times to microseconds"
+        )
+    if traces.start_s > span or traces.start_s < -0.9 * span:
+        raise InputError(
+            f"{path}, column {signals.TIME}: the record starts at {traces.start_s * 1e6:g} us; count time "
+            "from about the moment of impact"
+        )

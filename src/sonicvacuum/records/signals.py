@@ -1,0 +1,218 @@
+"""The traces of one run: a CSV file, header `time_us,<sensor ids>`, forces in N at equidistant times.
+
+A file is read whole by a fast parser; only where that fails is it gone through again row by row, to name the
+line and the column at fault.
+"""
+
+import io
+import math
+import re
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from sonicvacuum.files import InputError, read_text, replacing
+from sonicvacuum.observe.trace import Trace
+
+TIME = "time_us"
+FEWEST = 16
+# Times may be off the equidistant ones by this fraction of the interval, or by the rounding of the digits
+# printed while that is below the second fraction (a missing row puts times off by half an interval or more).
+EVEN = 0.01
+ROUNDED = 0.25
+_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
+
+
+@dataclass(frozen=True, eq=False)
+class Signals:
+    """The traces of one run, as recorded.
+
+    Attributes:
+        time_us: (S,) recorded time in microseconds: true time plus the run's trigger shift.
+        readings: sensor id → (S,) force in N, positive in compression, change from rest.
+    """
+
+    time_us: np.ndarray
+    readings: dict[str, np.ndarray]
+
+    @property
+    def samples(self) -> int:
+        """Number of samples."""
+        return len(self.time_us)
+
+    @cached_property
+    def start_s(self) -> float:
+        """Recorded time of the first sample in s."""
+        return float(self.time_us[0]) / 1e6
+
+    @cached_property
+    def interval_s(self) -> float:
+        """Time between samples in s."""
+        return float(self.time_us[-1] - self.time_us[0]) / (len(self.time_us) - 1) / 1e6
+
+    @cached_property
+    def time_s(self) -> np.ndarray:
+        """(S,) recorded time in s, exactly equidistant."""
+        return self.start_s + self.interval_s * np.arange(self.samples)
+
+    def trace(self, sensor: str, noise: float = 0.0) -> Trace:
+        """One gauge's signal, as the search for pulses takes it; `noise` in N."""
+        return Trace(self.start_s, self.interval_s, self.readings[sensor], noise)
+
+    def equals(self, other: "Signals") -> bool:
+        """Whether both hold the same numbers, bit for bit."""
+        return (
+            list(self.readings) == list(other.readings)
+            and np.array_equal(self.time_us, other.time_us)
+            and all(np.array_equal(r, other.readings[s]) for s, r in self.readings.items())
+        )
+
+
+def read(path, sensors: list[str]) -> Signals:
+    """The signals of one run.
+
+    Args:
+        path: of the CSV file.
+        sensors: ids of the record's gauges; the header must name each once, in any order.
+
+    Raises:
+        InputError: naming the file, the line, the column and the cure.
+    """
+    lines = read_text(path).removeprefix("\ufeff").splitlines()
+    columns = _columns(path, lines, sensors)
+    rows = [(number, line) for number, line in enumerate(lines[1:], start=2) if line.strip()]
+    values = _values(path, rows, columns)
+    _check_time(path, values[:, columns.index(TIME)], rows, columns.index(TIME))
+    parts = {c: np.ascontiguousarray(values[:, k]) for k, c in enumerate(columns)}
+    return Signals(parts.pop(TIME), parts)
+
+
+def write(signals: Signals, path) -> None:
+    """Write a CSV file that `read` returns bit for bit."""
+    columns = [signals.time_us, *signals.readings.values()]
+    rows = zip(*(np.asarray(c, dtype=float).tolist() for c in columns), strict=True)
+    with replacing(path) as stream:
+        stream.write(",".join((TIME, *signals.readings)) + "\n")
+        stream.writelines(",".join(map(_text, row)) + "\n" for row in rows)
+
+
+def _text(number):
+    """Shortest text that reads back as the same number, without a trailing .0."""
+    text = repr(number)
+    return text.removesuffix(".0") if number else text
+
+
+def _columns(path, lines, sensors):
+    if not lines or not any(line.strip() for line in lines):
+        raise InputError(f"{path}: the file is empty; write the header {_header(sensors)} and the samples")
+    head = lines[0]
+    for mark, name in ((";", "semicolons"), ("\t", "tabs")):
+        if mark in head:
+            raise InputError(
+                f"{path}, line 1: columns are separated by {name}; separate them by commas and "
+                "write numbers with a decimal point"
+            )
+    columns = [c.strip().strip('"') for c in head.split(",")]
+    if _NUMBER.fullmatch(columns[0]):
+        raise InputError(f"{path}, line 1: the header is missing; write {_header(sensors)} above the samples")
+    for c in columns:
+        if columns.count(c) > 1:
+            raise InputError(f"{path}, line 1: column {c!r} stands here twice; remove one")
+    _check_names(path, columns, sensors)
+    return columns
+
+
+def _check_names(path, columns, sensors):
+    if TIME not in columns:
+        near = next((c for c in columns if c.lower().startswith("time") or c.lower() == "t"), None)
+        found = f"; {near!r} is there: convert it to microseconds and call it {TIME}" if near else ""
+        raise InputError(f"{path}, line 1: column {TIME} is missing{found}; expected {_header(sensors)}")
+    for c in columns:
+        if c != TIME and c not in sensors:
+            raise InputError(
+                f"{path}, line 1: column {c!r} is no sensor of this record; expected {_header(sensors)}"
+            )
+    for s in sensors:
+        if s not in columns:
+            raise InputError(
+                f"{path}, line 1: column {s!r} is missing; add it, or remove the sensor from record.yaml"
+            )
+
+
+def _header(sensors):
+    return ",".join((TIME, *sensors))
+
+
+def _values(path, rows, columns):
+    """(S, columns) numbers of the numbered lines below the header."""
+    try:
+        text = io.StringIO("\n".join(line for _, line in rows))
+        values = np.loadtxt(text, delimiter=",", ndmin=2, comments=None) if rows else np.zeros((0, 0))
+    except ValueError:
+        values = None
+    if values is None or values.shape != (len(rows), len(columns)) or not np.isfinite(values).all():
+        for number, line in rows:
+            _check_row(path, number, line, columns)
+        values = np.zeros((0, 0))
+    if len(values) < FEWEST:
+        raise InputError(
+            f"{path}: has {len(rows)} samples; at least {FEWEST} are needed: is the file complete?"
+        )
+    return values
+
+
+def _check_row(path, number, line, columns):
+    cells = line.split(",")
+    if len(cells) < len(columns):
+        raise InputError(
+            f"{path}, line {number}: has {len(cells)} of {len(columns)} columns, so the row is cut short; "
+            "complete or remove it"
+        )
+    if len(cells) > len(columns):
+        raise InputError(
+            f"{path}, line {number}: has {len(cells)} cells, the header {len(columns)}; "
+            "write numbers with a decimal point, not a comma, and no further columns"
+        )
+    for name, cell in zip(columns, cells, strict=True):
+        if not (_NUMBER.fullmatch(cell.strip()) and math.isfinite(float(cell))):
+            raise InputError(f"{path}, line {number}, column {name}: {_fault(cell)}")
+
+
+def _fault(cell):
+    cell = cell.strip()
+    if not cell:
+        return "the cell is empty; give a number, or remove the row if it is at an end of the record"
+    if not re.fullmatch(r"[-+]?(nan|inf|infinity|[\d.]+e[-+]?\d+)", cell.lower()):
+        return f"is {cell[:40]!r}, not a number; write a plain number without unit"
+    return f"is {cell}; every sample must be a finite number: cut the record where the reading is lost"
+
+
+def _check_time(path, time, rows, column):
+    steps = np.diff(time)
+    usual = float(np.median(steps))
+    if not np.all(steps > 0.0):
+        k = int(np.argmin(steps > 0.0))
+        raise InputError(
+            f"{path}, line {rows[k + 1][0]}, column {TIME}: is {time[k + 1]:g} after {time[k]:g}; times must "
+            "increase: sort the rows, remove repeated ones, and give times enough digits"
+        )
+    interval = (time[-1] - time[0]) / (len(time) - 1)
+    off = np.abs(time - (time[0] + interval * np.arange(len(time))))
+    allowed = max(EVEN * interval, min(_rounding(rows, column), ROUNDED * interval))
+    if off.max() > allowed:
+        # The first odd step, where the reader should look.
+        k = int(np.argmax(np.abs(steps - usual) > min(2.0 * allowed, np.abs(steps - usual).max() * 0.999)))
+        raise InputError(
+            f"{path}, line {rows[k + 1][0]}, column {TIME}: the step to {time[k + 1]:g} us is {steps[k]:g} "
+            f"us, the usual one {usual:g} us; times must be equidistant within {allowed / interval:.0%} of the "
+            "step: interpolate to equal steps, restore missing rows, or print more digits"
+        )
+
+
+def _rounding(rows, column):
+    """Half a unit of the last digit printed, in us; 0 for times written with an exponent."""
+    cells = [line.split(",")[column].strip().lower() for _, line in rows]
+    if any("e" in c for c in cells):
+        return 0.0
+    return 0.5000001 * 10.0 ** -max(len(c.partition(".")[2]) for c in cells)

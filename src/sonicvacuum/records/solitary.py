@@ -1,0 +1,81 @@
+"""The speed of a wave of given amplitude at a gauge, whatever struck the chain: striker speeds are swept."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from sonicvacuum.observe.quantities import measure
+from sonicvacuum.observe.run import Geometry
+from sonicvacuum.observe.sensor import Sensor, contacts_needed, reading
+from sonicvacuum.observe.sweep import speed_at_amplitude as interpolated
+from sonicvacuum.observe.trace import Measured, missing
+from sonicvacuum.physics.chain import Chain
+from sonicvacuum.physics.run import simulate
+from sonicvacuum.records.assemble import passage_of, sampling_of
+from sonicvacuum.records.ranges import impact_scales
+from sonicvacuum.records.record import Record
+
+# Striker speeds tried, over the one expected to give the amplitude.
+LADDER = np.geomspace(0.5, 2.0, 8)
+TRIES = 6
+# The speed is taken over this many beads on either side of the gauge, where the chain has them.
+REACH = 2
+# Amplitudes grow about as striker speed to the power 6/5.
+_POWER = 5.0 / 6.0
+
+
+def speed_at_amplitude(
+    record: Record, chain: Chain, sensor: Sensor, amplitude: float, refine: float = 1.0
+) -> Measured:
+    """Speed in m/s of the wave that peaks at `amplitude` N at a gauge.
+
+    Args:
+        record: the record.
+        chain: one lane, with its effects; its striker's speed is the first guess.
+        sensor: the gauge, with its electronics and gain.
+        amplitude: reading in N.
+        refine: divides the step of the simulation.
+
+    Returns:
+        Peak-to-peak speed between gauges 2 beads before and behind (at the wall: over the last beads that are
+        clear of the reflection), interpolated between striker speeds; NaN with a reason where there is none.
+    """
+    pair = _pair(sensor, record.beads)
+    if pair is None:
+        return missing("short: the chain has too few beads for a speed at this gauge")
+    centre = float(chain.speed[0]) * (amplitude / impact_scales(chain)[0]) ** _POWER
+    found = missing("outside: no striker speed gives this amplitude")
+    for _ in range(TRIES):
+        amplitudes, speeds = _sweep(record, chain, sensor, pair, centre * LADDER, refine)
+        known = amplitudes[np.isfinite(amplitudes)]
+        if not len(known):
+            return missing(f"absent: no pulse at {sensor.id}")
+        found = interpolated(amplitude, amplitudes, speeds)
+        if found.known:
+            return found
+        centre *= (amplitude / np.exp(np.log(known).mean())) ** _POWER
+    return found
+
+
+def _pair(sensor, beads):
+    """The virtual gauges between which the speed is taken."""
+    middle = beads - 2 * REACH if sensor.kind == "wall" else sensor.bead
+    first, last = max(1, middle - REACH), min(beads, middle + REACH)
+    if first >= last:
+        return None
+    return Sensor("(before)", "embedded", first), Sensor("(behind)", "embedded", last)
+
+
+def _sweep(record, chain, sensor, pair, speeds, refine):
+    """(n,) amplitudes at the gauge and speeds across the pair, for n striker speeds."""
+    lanes = replace(chain.take(np.zeros(len(speeds), dtype=int)), speed=speeds)
+    gauges = (replace(sensor, id="(gauge)"), *pair, Sensor("(end)", "wall", None))
+    contacts = contacts_needed(gauges, record.beads)
+    interval = sampling_of(lanes)
+    history = simulate(lanes, contacts, passage_of(lanes), interval, refine=refine)
+    forces = {c: history.of(c) for c in contacts}
+    readings = {s.id: reading(s, forces, interval, record.beads) for s in gauges}
+    geometry = Geometry(record.beads, record.diameter_m, gauges)
+    heights = measure("amplitude", readings, history.time, geometry, sensor="(gauge)")
+    fast = measure("speed", readings, history.time, geometry, from_=pair[0].id, to=pair[1].id)
+    return np.array([m.value for m in heights]), np.array([m.value for m in fast])

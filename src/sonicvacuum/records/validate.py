@@ -1,0 +1,190 @@
+"""What a record's keys must satisfy beyond their types: names that exist, ranges, what goes with what."""
+
+from collections.abc import Iterable
+
+from sonicvacuum.card import material
+from sonicvacuum.records import ranges
+from sonicvacuum.records.assemble import assemble
+from sonicvacuum.records.blocks import BALL_QUANTITIES, RecordBlock
+from sonicvacuum.records.ranges import SuspectError
+from sonicvacuum.records.record import Record
+from sonicvacuum.records.signals import TIME
+
+_RANGE_OF = {
+    "speed": ranges.WAVE_SPEED,
+    "speed_at_amplitude": ranges.WAVE_SPEED,
+    "width": ranges.WIDTH,
+    "pulse_count": ranges.COUNT,
+    "decay": ranges.RATIO,
+    "restitution": ranges.RESTITUTION,
+}
+
+
+def validate(block: RecordBlock) -> None:
+    """Check a converted block.
+
+    Raises:
+        SuspectError, CardError: both name the key, its value and the cure.
+    """
+    _check_chain(block)
+    _check_materials(block)
+    _check_sensors(block)
+    ranges.TRIGGER.check("trigger_sigma_us", block.trigger_sigma_us)
+    _check_unique("runs", [r.id for r in block.runs])
+    for k, run in enumerate(block.runs):
+        _check_run(block, run, f"runs[{k}]")
+    _check_scalars(Record(block))
+
+
+def _check_chain(block):
+    chain, bead = block.chain, block.chain.bead
+    ranges.DIAMETER.check("chain.bead.diameter_mm", bead.diameter_mm)
+    ranges.check_mass("chain.bead", bead.mass_g, bead.diameter_mm)
+    ranges.STATIC_FORCE.check("chain.static_force_N", chain.static_force_N)
+    if (bead.coating_um is None) != (bead.core is None):
+        given, lacking = ("core", "coating_um") if bead.coating_um is None else ("coating_um", "core")
+        raise SuspectError(
+            "chain.bead", f"{given} is given without {lacking}; give both, or neither for a solid bead"
+        )
+    if bead.coating_um is not None:
+        ranges.COATING.check("chain.bead.coating_um", bead.coating_um)
+        if bead.coating_um >= 500.0 * bead.diameter_mm:
+            raise SuspectError(
+                "chain.bead.coating_um",
+                f"is {bead.coating_um:g} um on a bead of {bead.diameter_mm:g} mm; it must be below half",
+            )
+
+
+def _check_materials(block):
+    chain = block.chain
+    used = {"chain.bead.material": chain.bead.material, "chain.wall.material": chain.wall.material}
+    if chain.bead.core is not None:
+        used["chain.bead.core"] = chain.bead.core
+    used |= {f"runs[{k}].striker.material": r.striker.material for k, r in enumerate(block.runs)}
+    for key, name in used.items():
+        material(name, block.materials, key)
+    for name, given in block.materials.items():
+        if given.modulus_GPa is not None:
+            ranges.check_modulus(f"materials.{name}", name, given.modulus_GPa)
+        ranges.RELATIVE.check(f"materials.{name}.modulus_rel_sigma", given.modulus_rel_sigma)
+
+
+def _check_sensors(block):
+    beads = block.chain.beads
+    if beads == 0 and block.sensors:
+        raise SuspectError("sensors", "one ball on a wall (beads: 0) has no gauges; write sensors: []")
+    _check_unique("sensors", [s.id for s in block.sensors])
+    for k, s in enumerate(block.sensors):
+        key = f"sensors[{k}]"
+        if s.id == TIME:
+            raise SuspectError(f"{key}.id", f"is {TIME!r}, which is the column of the times; choose another")
+        if s.kind == "embedded" and s.bead is None:
+            raise SuspectError(f"{key}.bead", "missing; an embedded sensor needs the number of its bead")
+        if s.kind == "wall" and s.bead is not None:
+            raise SuspectError(f"{key}.bead", f"is {s.bead}; the wall sensor sits in no bead: remove the key")
+        if s.bead is not None and s.bead > beads:
+            raise SuspectError(
+                f"{key}.bead", f"is {s.bead}; the chain has {beads} beads, counted from the struck one"
+            )
+        ranges.RELATIVE.check(f"{key}.gain_rel_sigma", s.gain_rel_sigma)
+
+
+def _check_unique(key, ids: Iterable[str]):
+    ids = list(ids)
+    for k, name in enumerate(ids):
+        if name in ids[:k]:
+            raise SuspectError(
+                f"{key}[{k}].id", f"is {name!r}, as {key}[{ids.index(name)}].id is; names must differ"
+            )
+
+
+def _check_run(block, run, key):
+    if run.signals is None and not run.observables:
+        raise SuspectError(
+            key, f"run {run.id!r} has neither signals nor observables; give one or remove the run"
+        )
+    _check_striker(block, run.striker, f"{key}.striker")
+    if run.signals is not None:
+        _check_traced(block, run, key)
+    for j, observable in enumerate(run.observables):
+        _check_observable(block, observable, f"{key}.observables[{j}]")
+
+
+def _check_striker(block, striker, key):
+    if striker.shape == "sphere" and striker.diameter_mm is None:
+        raise SuspectError(f"{key}.diameter_mm", "missing; a sphere needs its diameter")
+    if block.chain.beads == 0 and striker.shape != "sphere":
+        raise SuspectError(
+            f"{key}.shape", f"is {striker.shape!r}; with beads: 0 the striker is the ball: sphere"
+        )
+    if striker.diameter_mm is not None:
+        ranges.DIAMETER.check(f"{key}.diameter_mm", striker.diameter_mm)
+    if striker.shape == "sphere":
+        ranges.check_mass(key, striker.mass_g, striker.diameter_mm)
+    else:
+        ranges.check_striker_mass(key, striker.mass_g, block.chain.bead.mass_g)
+    ranges.SPEED.check(f"{key}.speed_m_s", striker.speed_m_s)
+    ranges.RELATIVE.check(f"{key}.speed_rel_sigma", striker.speed_rel_sigma)
+
+
+def _check_traced(block, run, key):
+    if not block.sensors:
+        raise SuspectError(f"{key}.signals", "is given, but the record has no sensors; describe them")
+    for k, s in enumerate(block.sensors):
+        if s.sigma_N == 0.0:
+            raise SuspectError(
+                f"sensors[{k}].sigma_N",
+                f"is 0 or missing, while run {run.id!r} has signals; give the standard deviation of one "
+                "sample's noise (of a quantised signal at least its step over √12)",
+            )
+
+
+def _check_observable(block, observable, key):
+    quantity = observable.__struct_config__.tag
+    if block.chain.beads == 0 and quantity not in BALL_QUANTITIES:
+        raise SuspectError(
+            f"{key}.quantity",
+            f"is {quantity!r}; one ball on a wall (beads: 0) gives {' or '.join(BALL_QUANTITIES)}",
+        )
+    if quantity == "contact_duration" and block.chain.beads > 0:
+        raise SuspectError(f"{key}.quantity", "is 'contact_duration'; it is defined for beads: 0 only")
+    ids = [s.id for s in block.sensors]
+    for name in ("from_", "to", "sensor"):
+        sensor = getattr(observable, name, None)
+        if sensor is not None and sensor not in ids:
+            raise SuspectError(
+                f"{key}.{name.strip('_')}", f"is {sensor!r}; the sensors are {', '.join(ids) or 'none'}"
+            )
+    _check_pair(block, observable, key)
+    if observable.sigma == 0.0 and quantity != "pulse_count":
+        raise SuspectError(f"{key}.sigma", "is 0; give the standard error of the value")
+
+
+def _check_pair(block, observable, key):
+    if not hasattr(observable, "to"):
+        return
+    place = {s.id: s.bead or block.chain.beads + 1 for s in block.sensors}
+    if place[observable.from_] == place[observable.to]:
+        raise SuspectError(
+            f"{key}.to", f"is {observable.to!r}, at the same place as {observable.from_!r}; name two places"
+        )
+
+
+def _check_scalars(record):
+    """Values of observables: fixed ranges, and for forces and times the scales of the run's impact."""
+    for batch in assemble(record):
+        for lane, k in enumerate(batch.runs):
+            force, contact = ranges.impact_scales(batch.chain.take([lane]))
+            for j, entry in enumerate(record.block.runs[k].observables):
+                _range(entry, force, contact).check(f"runs[{k}].observables[{j}].value", entry.value)
+
+
+def _range(entry, force, contact):
+    quantity = entry.__struct_config__.tag
+    if quantity == "amplitude":
+        low, high = ranges.FORCE
+        return ranges.Range("N", low * force, high * force, {"mN": 1e3, "kN": 1e-3})
+    if quantity in ("duration", "contact_duration"):
+        low, high = (f * contact * 1e6 for f in ranges.DURATION)
+        return ranges.Range("us", low, high, {"s": 1e-6, "ms": 1e-3, "ns": 1e3})
+    return _RANGE_OF[quantity]

@@ -1,0 +1,43 @@
+"""Writing a record: `record.yaml` and a CSV file for each run with traces, which `read` returns unchanged."""
+
+from pathlib import Path
+
+import msgspec
+
+from sonicvacuum.files import InputError, replacing
+from sonicvacuum.records import signals
+from sonicvacuum.records.reader import FILE, parse
+from sonicvacuum.records.record import Record
+
+
+def write(record: Record, path) -> None:
+    """Write a record into a folder, made if need be; each file takes its name once it is complete.
+
+    Raises:
+        InputError: for a record that `read` would refuse; nothing is written then.
+    """
+    folder = Path(path)
+    content = dump(record)
+    parse(content, folder / FILE)
+    files = {run.id: run.signals for run in record.block.runs if run.signals}
+    if set(files) != set(record.signals) or len(set(files.values())) != len(files):
+        raise InputError(
+            f"{folder}: runs {sorted(files)} name signals and {sorted(record.signals)} have traces; "
+            "each run with traces needs its own file name"
+        )
+    for run, name in files.items():
+        signals.write(record.signals[run], folder / name)
+    with replacing(folder / FILE) as stream:
+        stream.write(text(content))
+
+
+def dump(record: Record) -> dict:
+    """`record.yaml` as a plain mapping, keys in the order of the contract, without keys at their defaults."""
+    return msgspec.to_builtins(record.block)
+
+
+def text(content: dict) -> str:
+    """YAML of that mapping."""
+    import yaml
+
+    return yaml.safe_dump(content, sort_keys=False, allow_unicode=True, default_flow_style=None, width=110)
