@@ -134,10 +134,12 @@ def smooth_sign(velocity):
 
 def rest(p: Plain):
     """Compression of every contact at rest."""
-    weight = np.concatenate([[0.0], np.cumsum(p.masses()[1:] * p.gravity)])
-    load = weight + np.concatenate([[0.0], np.full(p.beads, p.preload)])
-    for contact in p.gap:
-        load[contact] = 0.0
+    load, borne = np.zeros(p.beads + 1), p.preload
+    for c in range(1, p.beads + 1):
+        borne += p.masses()[c] * p.gravity
+        if c in p.gap:
+            borne = 0.0
+        load[c] = borne
     delta = np.zeros(p.beads + 1)
     for c in np.flatnonzero(load):
         excess = lambda x, c=c: loading(p, np.full(p.beads + 1, x))[c] - load[c]  # noqa: E731
@@ -151,9 +153,9 @@ def solve(p: Plain, times):
     """(samples, contacts) forces beyond the static ones at the given times."""
     n, mass, start = p.beads + 1, p.masses(), rest(p)
     push = mass * p.gravity
-    if p.beads:
-        push[1] += p.preload
     before = contact_forces(p, start, np.zeros(n), start if p.residual else np.zeros(n))
+    # The holder keeps what rests on nothing: a constant push that balances every bead at rest.
+    push[1:] = before[1:] - before[:-1]
 
     def kinematics(y):
         u, v = y[:n], y[n : 2 * n]

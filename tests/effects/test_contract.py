@@ -144,6 +144,24 @@ def test_lanes_of_a_shared_law_set_are_single_runs(all_at_once):
         np.testing.assert_allclose(lanes[..., k], single[..., 0], rtol=0, atol=1e-9 * lanes.max())
 
 
+# What is not a term of the force law, in a chain that bears its weight and a preload.
+WITHOUT_TERMS = [
+    i for i, n in SWITCHES if i not in WITH_TERMS and not i.startswith("sensor") and n != "mass_ratio"
+]
+
+
+@pytest.mark.parametrize("id", [*WITHOUT_TERMS, "mass-defect"])
+def test_effects_without_terms_act_in_a_loaded_chain_too(id):
+    base = reference.Plain(gravity=9.81, preload=0.05)
+    setup, place = nominal(base), place_of(id)
+    given = values(id, effect(id).parameters[0].name, [1.0, 0.5, 0.25], setup)
+    readings = run(effect(id).apply(setup, **given, **place))[1]
+    p = plain(id, given, place, 0, base)
+    expected = reference.read(p, TIMES, reference.solve(p, TIMES), SENSORS)
+    error = np.abs(readings[..., 0] - expected).max(axis=0) / np.abs(expected).max(axis=0)
+    assert error.max() < 1e-5  # as above
+
+
 REMEMBERS = ("plastic-contact", "relaxing-contact")
 
 

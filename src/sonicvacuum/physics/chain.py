@@ -197,11 +197,17 @@ class Chain:
         return self._scaled(stiffness, "stiffness")
 
     def static_forces(self, bodies: int) -> np.ndarray:
-        """(bodies, lanes) force in N that each contact bears at rest; the striker does not press yet."""
+        """(bodies, lanes) force in N that each contact bears at rest; the striker does not press yet.
+
+        An open contact bears none: the holder keeps what lies above it, now and during the run, and the
+        contacts below bear the beads below the gap only.
+        """
         weight = np.cumsum(self.masses(bodies)[1:] * self.gravity, axis=0)
         rest = np.zeros((bodies, self.lanes))
         rest[1:] = self.static_force + weight
-        rest[self.gaps(bodies) > 0.0] = 0.0
+        is_open = self.gaps(bodies) > 0.0
+        for contact in np.flatnonzero(is_open.any(axis=1)):
+            rest[contact:] -= np.where(is_open[contact], rest[contact], 0.0)
         return rest
 
     def gaps(self, bodies: int) -> np.ndarray:
