@@ -11,6 +11,7 @@ from effect_cases import PLACES, SWITCHES, nominal, place_of, run, values
 from sonicvacuum.effects import CATALOGUE, IDS, effect
 from sonicvacuum.effects.base import PLACES as KINDS_OF_PLACE
 from sonicvacuum.effects.base import PRIORS
+from sonicvacuum.observe.sensor import Sensor
 
 CANONICAL = [
     "dynamic-modulus",
@@ -141,6 +142,15 @@ def test_a_sensor_may_be_named_by_its_id():
     by_id = effect("sensor-gain").apply(nominal(), gain_ratio=1.2, sensor="wall")
     assert by_id == effect("sensor-gain").apply(nominal(), gain_ratio=1.2, sensor=1)
     assert [s.gain for s in by_id.sensors] == [1.0, 1.2]
+
+
+@pytest.mark.parametrize("one", [e for e in CATALOGUE if e.id.startswith("sensor")], ids=lambda e: e.id)
+def test_sensor_effects_change_the_sensors_of_observe(one):
+    (p,) = one.parameters
+    real = dataclasses.replace(nominal(), sensors=(Sensor("g3", "embedded", 3), Sensor("wall", "wall", None)))
+    given = {p.name: p.at(1.0, real), **place_of(one.id)}
+    assert one.apply(real, **given).sensors != real.sensors
+    np.testing.assert_array_equal(run(one.apply(real, **given))[1], run(one.apply(nominal(), **given))[1])
 
 
 def test_gravity_is_off_at_what_the_record_says():

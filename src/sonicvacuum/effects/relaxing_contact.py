@@ -49,7 +49,7 @@ EFFECT = Effect(
             "1",
             0.0,
             1e-3,
-            30.0,
+            10.0,
             "log-uniform",
             0.2,
             "g, instantaneous over relaxed stiffness less 1",
