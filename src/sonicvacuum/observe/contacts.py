@@ -1,0 +1,99 @@
+"""What one Hertz contact bears: compression, radius and pressure of the touching area, rate of strain.
+
+The force is the whole one, static part included. Daraio & Nesterenko, PRE 73, 026612 (2006) take the bead's
+core as rigid, so that the compression of a contact is that of its coatings.
+"""
+
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from sonicvacuum.observe.trace import Measured, Trace, missing
+
+
+def max_compression(force_peak: ArrayLike, stiffness: ArrayLike) -> np.ndarray:
+    """Compression in m at the force peak (N): (F/K)^{2/3}, K in N/m^{3/2} (Johnson 1985, Eq. 4.23)."""
+    return np.cbrt(np.square(np.maximum(force_peak, 0.0) / np.asarray(stiffness)))
+
+
+def contact_radius(compression: ArrayLike, reduced_radius: float) -> np.ndarray:
+    """Radius in m of the touching area: √(R* δ) (Johnson, Contact Mechanics, 1985, Eq. 4.22 and 4.23)."""
+    return np.sqrt(reduced_radius * np.maximum(compression, 0.0))
+
+
+def mean_pressure(force: ArrayLike, radius: ArrayLike) -> np.ndarray:
+    """Mean pressure in Pa on the touching area: F/(π a²)."""
+    return np.asarray(force) / (math.pi * np.square(radius))
+
+
+def peak_pressure(force: ArrayLike, radius: ArrayLike) -> np.ndarray:
+    """Hertz pressure in Pa at the centre of the touching area: 3/2 of the mean (Johnson 1985, Eq. 4.24)."""
+    return 1.5 * mean_pressure(force, radius)
+
+
+def strain_rate(compression_rate: ArrayLike, coating: float, coatings: int = 2) -> np.ndarray:
+    """Nominal strain rate in 1/s of the coatings of a contact.
+
+    The paper gives an interval (10²–10³ 1/s) and no definition. Here: the cores are rigid, so the compression
+    δ is shared equally by the `coatings` layers (2 between beads, 1 on a bare wall) of thickness h =
+    `coating` (m). Between beads the strain of each is δ/(2h) and its rate |dδ/dt|/(2h): a mean through the
+    thickness, not the local rate.
+    """
+    return np.abs(compression_rate) / (coatings * coating)
+
+
+def max_compression_rate(time: np.ndarray, force: np.ndarray, stiffness: float) -> float:
+    """Largest |dδ/dt| in m/s of a Hertz contact, δ = (F/K)^{2/3}, from its force in N at times in s, (S,).
+
+    Differences of fourth order while the contact is closed, of second order where it opens or closes within
+    the five samples used. Where the relative velocity of the bodies is at hand, use that.
+
+    Raises:
+        ValueError: as `Trace.of`.
+    """
+    trace = Trace.of(time, force)
+    depth = max_compression(trace.force, stiffness)
+    rate = np.gradient(depth, trace.interval)
+    fine = (8.0 * (depth[3:-1] - depth[1:-3]) - (depth[4:] - depth[:-4])) / (12.0 * trace.interval)
+    closed = np.lib.stride_tricks.sliding_window_view(depth > 0.0, 5).all(axis=1)
+    rate[2:-2] = np.where(closed, fine, rate[2:-2])
+    return float(np.abs(rate).max())
+
+
+def contact_duration(time: np.ndarray, force: np.ndarray) -> Measured:
+    """Time in s for which a contact first bears force, from its force in N (S,) at equidistant times (S,).
+
+    Between samples the ends follow from F^{2/3}, linear in time where a Hertz contact closes or opens at a
+    finite speed; other laws are located to within one interval.
+
+    Raises:
+        ValueError: as `Trace.of`.
+    """
+    trace = Trace.of(time, force)
+    borne = trace.force > 0.0
+    if not borne.any():
+        return missing("absent: the contact never bears force")
+    first = int(borne.argmax())
+    last = first + int((~borne[first:]).argmax()) - 1
+    if last < first:
+        return missing("truncated: the record ends before the contact opens")
+    depth = max_compression(trace.force, 1.0)
+    opened = last + _overhang(depth, last, -1)
+    closed = first - _overhang(depth, first, 1) if first > 0 else 0.0
+    return Measured(trace.interval * (opened - closed))
+
+
+def restitution(impact_speed: float, rebound_speed: float) -> Measured:
+    """Rebound speed over impact speed of the striker, both positive; NaN where it does not come back."""
+    if not impact_speed > 0.0:
+        raise ValueError(f"impact_speed is {impact_speed}; it must be positive")
+    if rebound_speed < 0.0:
+        return missing("absent: the striker does not rebound")
+    return Measured(rebound_speed / impact_speed)
+
+
+def _overhang(depth, edge, inward):
+    """Samples (at most 1) from `edge` outward to the zero of the line through it and its inner neighbour."""
+    step = depth[edge + inward] - depth[edge] if 0 <= edge + inward < len(depth) else 0.0
+    return float(min(1.0, depth[edge] / step)) if step > 0.0 else 1.0

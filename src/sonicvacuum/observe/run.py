@@ -1,0 +1,197 @@
+"""The readings of one run together with where its gauges sit: pulses found once, shared by all quantities.
+
+A gauge near the wall sees the incident pulse and its reflection. Two rules keep the reflection out:
+
+* A gauge whose peak does not lead the wall's by more than its own rise (from half height to the peak) shows
+  the reflection on top of the incident pulse: it is *overlapped*, and gives no main pulse. So does, without a
+  wall gauge, the last bead. In simulated chains every gauge 1.5 diameters from the wall or further is clear
+  of it, unless damping or preload draws the pulse out.
+* Pulses are counted until `SAFETY` of the time that the main pulse needs to the wall and back.
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from sonicvacuum.observe.pulse import Pulse, main_pulse
+from sonicvacuum.observe.sensor import Sensor, position
+from sonicvacuum.observe.shape import onset
+from sonicvacuum.observe.trace import Measured, Trace, grid, missing
+
+# The reflection's front comes before its peak; 8.5 diameters from the wall, 0.9 leaves it 1.7 diameters.
+SAFETY = 0.9
+
+
+@dataclass(frozen=True)
+class Geometry:
+    """Where the gauges of a chain sit.
+
+    Attributes:
+        beads: number of beads.
+        diameter_m: outer diameter of a bead in m.
+        sensors: the gauges.
+
+    Raises:
+        ValueError: for two gauges of one name, a gauge outside the chain, or a diameter that is not positive.
+    """
+
+    beads: int
+    diameter_m: float
+    sensors: tuple[Sensor, ...]
+
+    def __post_init__(self):
+        if not self.diameter_m > 0.0:
+            raise ValueError(f"diameter_m is {self.diameter_m}; it must be positive")
+        ids = [s.id for s in self.sensors]
+        for sensor in self.sensors:
+            position(sensor, self.beads, self.diameter_m)
+            if ids.count(sensor.id) > 1:
+                raise ValueError(
+                    f"sensor {sensor.id} is given {ids.count(sensor.id)} times; names must differ"
+                )
+
+    def sensor(self, id: str) -> Sensor:
+        """The gauge of this name; ValueError when there is none."""
+        for sensor in self.sensors:
+            if sensor.id == id:
+                return sensor
+        raise ValueError(f"sensor {id!r} is not one of {', '.join(s.id for s in self.sensors) or 'none'}")
+
+    def position(self, id: str) -> float:
+        """Distance of a gauge from the wall in m."""
+        return position(self.sensor(id), self.beads, self.diameter_m)
+
+    @property
+    def wall(self) -> str | None:
+        """Name of the first gauge at the wall, None where there is none."""
+        return next((s.id for s in self.sensors if s.kind == "wall"), None)
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """One run.
+
+    Attributes:
+        readings: for each gauge, (S,) readings in N.
+        time: (S,) equidistant times in s.
+        geometry: where the gauges sit.
+        noise: standard deviation of one sample in N, one number or one for each gauge.
+        floor: force in N that a main pulse must exceed.
+        accept_overlap: take the first peak of an overlapped gauge as it is.
+        safety: fraction of the way to the wall and back after which pulses no longer count.
+
+    Raises:
+        ValueError: for times that are not equidistant; for a malformed reading, when it is used.
+    """
+
+    readings: Mapping[str, np.ndarray]
+    time: np.ndarray
+    geometry: Geometry
+    noise: float | Mapping[str, float] = 0.0
+    floor: float = 0.0
+    accept_overlap: bool = False
+    safety: float = SAFETY
+    _grid: tuple[float, float] = field(init=False, repr=False)
+    _known: dict = field(init=False, repr=False, default_factory=dict)
+
+    def __post_init__(self):
+        time = np.asarray(self.time, dtype=float)
+        if time.ndim != 1:
+            raise ValueError(f"time has shape {time.shape}; it must be (S,)")
+        object.__setattr__(self, "time", time)
+        object.__setattr__(self, "_grid", grid(time))
+
+    def trace(self, sensor: str) -> Trace:
+        """The checked signal of a gauge."""
+        return self._once("trace", sensor, self._trace)
+
+    def first(self, sensor: str) -> Pulse:
+        """The main pulse of a gauge, whether or not the reflection overlaps it."""
+        return self._once("first", sensor, lambda s: main_pulse(self.trace(s), self.floor))
+
+    def main(self, sensor: str) -> Pulse:
+        """The main pulse of a gauge; none where the reflection overlaps it (unless that is accepted)."""
+        return self._once("main", sensor, self._main)
+
+    def reflection_time(self, sensor: str) -> Measured:
+        """Time in s at which the reflection of the main pulse peaks at a gauge.
+
+        From the main pulse's arrivals at the gauge (t) and at the wall (t_w), at one speed both ways:
+        t_w + (t_w − t). Without the wall's arrival, t_w − t is the distance over the speed from another
+        gauge. At the wall itself the pulse comes back from the top: twice the chain's length over that speed.
+        """
+        return self._once("reflection", sensor, self._reflection)
+
+    def free_until(self, sensor: str) -> float:
+        """Time in s until which pulses count: `safety` of the way to the reflection, or no end if unknown."""
+        back = self.reflection_time(sensor)
+        start = self.main(sensor).time
+        return start + self.safety * (back.value - start) if back.known else math.inf
+
+    def _once(self, what, sensor, find):
+        key = (what, sensor)
+        if key not in self._known:
+            self._known[key] = find(sensor)
+        return self._known[key]
+
+    def _trace(self, sensor):
+        self.geometry.sensor(sensor)
+        if sensor not in self.readings:
+            raise ValueError(
+                f"sensor {sensor} has no reading; there are {', '.join(self.readings) or 'none'}"
+            )
+        force = np.asarray(self.readings[sensor], dtype=float)
+        if force.shape != self.time.shape:
+            raise ValueError(f"sensor {sensor}: reading has shape {force.shape}, time {self.time.shape}")
+        noise = self.noise.get(sensor, 0.0) if isinstance(self.noise, Mapping) else self.noise
+        try:
+            return Trace(*self._grid, force, noise).checked()
+        except ValueError as error:
+            raise ValueError(f"sensor {sensor}: {error}") from None
+
+    def _main(self, sensor):
+        first = self.first(sensor)
+        if self.accept_overlap or not first.found or self.geometry.sensor(sensor).kind == "wall":
+            return first
+        if self._overlapped(sensor, first):
+            return Pulse(math.nan, math.nan, reason="overlapped: the wall's reflection lies on the pulse")
+        return first
+
+    def _overlapped(self, sensor, first):
+        wall = self._wall_arrival()
+        if wall is None:
+            return self.geometry.position(sensor) < self.geometry.diameter_m
+        rise = onset(self.trace(sensor), first, 0.5)
+        return rise.known and wall - first.time <= first.time - rise.value
+
+    def _wall_arrival(self):
+        wall = self.geometry.wall
+        if wall is None or wall not in self.readings:
+            return None
+        first = self.first(wall)
+        return first.time if first.found else None
+
+    def _reflection(self, sensor):
+        main = self.main(sensor)
+        if not main.found:
+            return missing(main.reason)
+        way = self._way_to_the_wall(sensor, main)
+        if way is None:
+            return missing("unknown: no second gauge tells the speed")
+        return Measured(main.time + 2.0 * way)
+
+    def _way_to_the_wall(self, sensor, main):
+        """Travel time in s from a gauge to the wall, from the wall to the top for a gauge at the wall."""
+        geometry, wall = self.geometry, self._wall_arrival()
+        if geometry.sensor(sensor).kind == "embedded" and wall is not None:
+            return wall - main.time
+        here = geometry.position(sensor)
+        apart = {s.id: geometry.position(s.id) - here for s in geometry.sensors if s.id in self.readings}
+        apart = {s: x for s, x in apart.items() if x != 0.0 and self.main(s).found}
+        if not apart:
+            return None
+        far = max(apart, key=lambda s: abs(apart[s]))
+        slowness = (main.time - self.main(far).time) / apart[far]
+        return (here or geometry.beads * geometry.diameter_m) * slowness if slowness > 0.0 else None

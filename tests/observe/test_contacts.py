@@ -1,0 +1,107 @@
+"""One contact: Hertz's relations among force, compression, radius and pressure; rates and durations."""
+
+import math
+
+import numpy as np
+import pytest
+
+from sonicvacuum.observe.contacts import (
+    contact_duration,
+    contact_radius,
+    max_compression,
+    max_compression_rate,
+    mean_pressure,
+    peak_pressure,
+    restitution,
+    strain_rate,
+)
+
+# Two coated beads of 4.86 mm at the 15 GPa that match the speeds of Daraio & Nesterenko (2006).
+RADIUS = 4.86e-3 / 4
+MODULUS = 15e9 / (2 * (1 - 0.388**2))
+STIFFNESS = 4 / 3 * MODULUS * math.sqrt(RADIUS)
+
+
+def test_hertz_relations():
+    force = np.array([0.25, 4.8, 12.9])
+    depth = max_compression(force, STIFFNESS)
+    radius = contact_radius(depth, RADIUS)
+    # Johnson, Contact Mechanics (1985), Eqs. (4.22), (4.24): a³ = 3 F R/(4 E*), p₀ = (6 F E*²/(π³ R²))^(1/3).
+    np.testing.assert_allclose(radius**3, 3 * force * RADIUS / (4 * MODULUS), rtol=1e-13)  # rounding
+    peak = (6 * force * MODULUS**2 / (math.pi**3 * RADIUS**2)) ** (1 / 3)
+    np.testing.assert_allclose(peak_pressure(force, radius), peak, rtol=1e-13)  # rounding
+    np.testing.assert_allclose(mean_pressure(force, radius), peak / 1.5, rtol=1e-13)  # rounding
+
+
+def test_contact_of_the_paper_is_deeper_wider_and_more_strained_than_its_coating_allows():
+    depth = max_compression(4.8, STIFFNESS)
+    radius = contact_radius(depth, RADIUS)
+    assert depth == pytest.approx(5.2e-6, rel=0.02)  # two digits, worked out by hand
+    assert radius == pytest.approx(79e-6, rel=0.01)  # above the coating's 50 µm
+    assert mean_pressure(4.8, radius) == pytest.approx(245e6, rel=0.02)  # above its yield strength of 59 MPa
+
+
+def test_open_contact_is_not_compressed():
+    assert max_compression(-1.0, STIFFNESS) == 0.0
+    assert contact_radius(-1e-6, RADIUS) == 0.0
+
+
+def test_strain_rate_shares_the_compression_among_the_coatings():
+    assert strain_rate(-0.05, 50e-6) == pytest.approx(500.0, rel=1e-14)  # rounding
+    assert strain_rate(0.05, 50e-6, coatings=1) == pytest.approx(1000.0, rel=1e-14)  # rounding
+
+
+@pytest.mark.parametrize(("interval", "bound"), [(4e-6, 5e-4), (2e-6, 4e-5), (1e-6, 3e-6)])
+def test_compression_rate_of_a_smooth_impact(interval, bound):
+    # δ = δ₀ sin²(π t/T): fastest, π δ₀/T, at a quarter of T = 130 µs; fourth order in the interval, plus the
+    # distance of the nearest sample from the fastest moment.
+    depth, period = 5e-6, 130e-6
+    time = np.arange(0.0, period, interval)
+    force = STIFFNESS * (depth * np.sin(math.pi * time / period) ** 2) ** 1.5
+    exact = math.pi * depth / period
+    nearest = np.abs(time - period / 4).min()
+    bound += (2 * math.pi * nearest / period) ** 2 / 2
+    assert max_compression_rate(time, force, STIFFNESS) == pytest.approx(exact, rel=bound)
+
+
+def test_compression_rate_is_not_overestimated_where_the_contact_closes():
+    # Constant approach from the third sample and a half: no difference of any order may exceed the speed.
+    time = np.arange(20.0)
+    force = np.maximum(time - 3.5, 0.0) ** 1.5
+    assert max_compression_rate(time, force, 1.0) == pytest.approx(1.0, rel=1e-13)  # rounding
+
+
+@pytest.mark.parametrize("start", [0.0, 3.3, 7.9])
+def test_contact_duration_between_samples(start):
+    # F = sin^(3/2), a Hertz contact at constant frequency; its compression is nearly straight at the ends.
+    period = 61.7
+    time = np.arange(100.0)
+    inside = (time > start) & (time < start + period)
+    force = np.where(inside, np.abs(np.sin(math.pi * (time - start) / period)), 0.0) ** 1.5
+    # Extrapolated over up to one sample from chords within two samples of the end: sin x = x − x³/6.
+    bound = 4 * (math.pi * 2 / period) ** 2
+    assert contact_duration(time, force).value == pytest.approx(period, abs=bound)
+
+
+def test_first_contact_of_several_counts():
+    time = np.arange(60.0)
+    force = np.interp(time, [0, 5, 10, 15, 30, 45, 50], [0, 0, 1, 0, 0, 5, 0]) ** 1.5
+    assert contact_duration(time, force).value == pytest.approx(
+        10.0, abs=1e-9
+    )  # a straight compression: exact
+
+
+def test_contact_that_never_closes_or_does_not_open():
+    time = np.arange(10.0)
+    assert contact_duration(time, np.zeros(10)).reason.startswith("absent")
+    assert contact_duration(time, time).reason.startswith("truncated")
+    with pytest.raises(ValueError, match="shape"):
+        contact_duration(time, np.zeros(9))
+
+
+def test_restitution():
+    assert restitution(0.5, 0.4).value == pytest.approx(0.8, rel=1e-15)  # rounding
+    assert restitution(0.5, 0.0).value == 0.0
+    assert restitution(0.5, -0.1).reason.startswith("absent")
+    with pytest.raises(ValueError, match="impact_speed"):
+        restitution(0.0, 0.1)
