@@ -1,0 +1,114 @@
+"""One run of a simulated card, as the gauges of the paper see it and as virtual ones would.
+
+A virtual gauge may sit in any bead; it has neither mass nor electronics. The paper counts beads from the
+bottom: g<k> is the gauge in the k-th bead above the wall.
+"""
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+
+from sonicvacuum.observe import quantities
+from sonicvacuum.observe.run import Geometry, Run
+from sonicvacuum.observe.sensor import Sensor, contacts_of
+from sonicvacuum.observe.trace import Measured, Trace
+from sonicvacuum.study import Study, sensors
+
+# Gauges of the paper, counted from the bottom; virtual ones take their place in chains without.
+UPPER, LOWER = 9, 5
+
+
+@dataclass(frozen=True, eq=False)
+class OneRun:
+    """One lane of a study, with the chosen step or half of it."""
+
+    study: Study
+    lane: int = 0
+    refined: bool = False
+    _contacts: dict = field(default_factory=dict, repr=False)
+
+    @property
+    def card(self):
+        """The simulated card."""
+        return self.study.card
+
+    @property
+    def diameter(self) -> float:
+        """Outer diameter of the beads in m."""
+        return self.card.bead.diameter_m
+
+    @cached_property
+    def gauges(self) -> tuple[Sensor, ...]:
+        """The gauges reported on, from the striker to the wall: the card's own, with g9 and g5 if too few."""
+        found = list(sensors(self.card))
+        if not any(s.kind == "wall" for s in found):
+            found.append(Sensor(id="wall", kind="wall", bead=None))
+        if sum(s.kind == "embedded" for s in found) < 2 and self.card.beads >= UPPER:
+            names = {s.id for s in found}
+            extra = [replace(self._virtual(self.card.beads + 1 - k), id=f"g{k}") for k in (UPPER, LOWER)]
+            found += [s for s in extra if s.id not in names]
+        return tuple(sorted(found, key=lambda s: (s.kind == "wall", s.bead or 0)))
+
+    @cached_property
+    def embedded(self) -> tuple[Sensor, ...]:
+        """Those of the gauges that sit in beads."""
+        return tuple(s for s in self.gauges if s.kind == "embedded")
+
+    @cached_property
+    def wall(self) -> Sensor:
+        """The gauge at the wall."""
+        return next(s for s in self.gauges if s.kind == "wall")
+
+    @property
+    def span(self) -> tuple[Sensor, Sensor] | None:
+        """First and last embedded gauge, which bound speeds and contacts; None in a short chain."""
+        return (self.embedded[0], self.embedded[-1]) if len(self.embedded) >= 2 else None
+
+    def bead(self, bead: int) -> str | None:
+        """Id of the virtual gauge in a bead; None where there is none or its contacts were not kept."""
+        return f"bead {bead}" if f"bead {bead}" in self.view.readings else None
+
+    @cached_property
+    def view(self) -> Run:
+        """Readings of all gauges, reported and virtual, in which pulses are found once."""
+        beads = self.card.beads
+        inner = [self._virtual(b) for b in range(1, beads + 1)]
+        kept = [s for s in inner if set(contacts_of(s, beads)) <= set(self.study.contacts)]
+        placed = (*self.gauges, *kept)
+        readings = {s.id: self.study.read(s, self.refined)[:, self.lane] for s in placed}
+        return Run(readings, self.study.time, Geometry(beads, self.diameter, placed))
+
+    def speed(self) -> Measured:
+        """Speed in m/s between the first and the last embedded gauge."""
+        if self.span is None:
+            return Measured(float("nan"), "absent: the chain has fewer than two embedded gauges")
+        return quantities.speed(self.view, *(s.id for s in self.span))
+
+    def contact(self, contact: int) -> Trace:
+        """Force of one contact without the static part."""
+        if contact not in self._contacts:
+            force = self.study.force_of(contact, self.refined)[:, self.lane]
+            self._contacts[contact] = Trace(0.0, self.study.interval, np.ascontiguousarray(force))
+        return self._contacts[contact]
+
+    def static_force(self, contact: int) -> float:
+        """Force in N at rest."""
+        return float(self.study.chain.static_forces(self.card.beads + 1)[contact, self.lane])
+
+    def stiffness(self, contact: int) -> float:
+        """Hertz constant in N/m^(3/2)."""
+        return float(self.study.chain.stiffnesses(self.card.beads + 1)[contact, self.lane])
+
+    def reduced_radius(self, contact: int) -> float:
+        """Effective radius in m."""
+        return float(self.study.chain.reduced_radii(self.card.beads + 1)[contact, 0])
+
+    def contacts_between_gauges(self) -> range:
+        """Contacts between the first and the last embedded gauge."""
+        upper, lower = self.span
+        return range(upper.bead, lower.bead)
+
+    @staticmethod
+    def _virtual(bead):
+        return Sensor(id=f"bead {bead}", kind="embedded", bead=bead)
