@@ -1,9 +1,11 @@
 """What the command line does with records: start one from a template, check some and say what is in them."""
 
+import json
 from importlib.resources import files
 from pathlib import Path
 
 from sonicvacuum.files import InputError, replacing
+from sonicvacuum.records.blocks import schema
 from sonicvacuum.records.checks import warnings
 from sonicvacuum.records.reader import FILE, read
 from sonicvacuum.records.record import Record, Run
@@ -12,6 +14,11 @@ from sonicvacuum.records.record import Record, Run
 def template() -> str:
     """A commented `record.yaml`, valid as it is."""
     return files("sonicvacuum.records").joinpath("template.yaml").read_text(encoding="utf-8")
+
+
+def schema_text() -> str:
+    """JSON schema of `record.yaml` as a file: what an editor needs to complete and check keys."""
+    return json.dumps(schema(), indent=1, sort_keys=True) + "\n"
 
 
 def new(folder) -> Path:

@@ -1,8 +1,8 @@
 """What a model makes of a record: readings at the record's own instants, and the scalars it reports.
 
 The model is the record's nominal chain, with or without effects, under given nuisances (striker speed,
-trigger, gains). Recorded time = true time + the run's trigger shift. Scalars are found on noise-free readings by the
-functions that measure a simulated case (`observe.quantities`).
+trigger, gains). Recorded time = true time + the run's trigger shift. Scalars are found on noise-free readings
+by the functions that measure a simulated case (`observe.quantities`).
 """
 
 from collections.abc import Callable, Mapping

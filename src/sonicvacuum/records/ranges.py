@@ -140,7 +140,8 @@ def impact_scales(chain: Chain) -> tuple[float, float]:
     """Force in N and contact time in s of the chain's impact, the largest and the longest of its lanes.
 
     Force: K (5 m v²/(4 K))^{3/5} of a Hertz impact, m the striker's mass, or v √(k m) where a static force
-    makes the contacts stiff springs; time: 3.21 (m²/(K² v))^{1/5} (Johnson, Contact Mechanics, 1985, Sec. 11.4).
+    makes the contacts stiff springs; time: 3.21 (m²/(K² v))^{1/5}
+    (Johnson, Contact Mechanics, 1985, Sec. 11.4).
     """
     stiffness = chain.stiffness if chain.beads else chain.striker_stiffness
     mass = chain.bead_mass if chain.beads else chain.striker_mass

@@ -20,7 +20,7 @@ FEWEST = 16
 # Times may be off the equidistant ones by this fraction of the interval, or by the rounding of the digits
 # printed while that is below the second fraction (a missing row puts times off by half an interval or more).
 EVEN = 0.01
-ROUNDED = 0.25
+ROUNDED = 0.4
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 
 
@@ -42,14 +42,18 @@ class Signals:
         return len(self.time_us)
 
     @cached_property
-    def start_s(self) -> float:
-        """Recorded time of the first sample in s."""
-        return float(self.time_us[0]) / 1e6
+    def _line(self):
+        return grid(self.time_us)
 
-    @cached_property
+    @property
+    def start_s(self) -> float:
+        """Recorded time of the first sample in s, free of the rounding of printed times."""
+        return self._line[0] / 1e6
+
+    @property
     def interval_s(self) -> float:
         """Time between samples in s."""
-        return float(self.time_us[-1] - self.time_us[0]) / (len(self.time_us) - 1) / 1e6
+        return self._line[1] / 1e6
 
     @cached_property
     def time_s(self) -> np.ndarray:
@@ -67,6 +71,13 @@ class Signals:
             and np.array_equal(self.time_us, other.time_us)
             and all(np.array_equal(r, other.readings[s]) for s, r in self.readings.items())
         )
+
+
+def grid(time: np.ndarray) -> tuple[float, float]:
+    """Start and interval of the equidistant times nearest to (S,) times, by least squares; in their unit."""
+    place = np.arange(len(time)) - 0.5 * (len(time) - 1)
+    interval = float(place @ (time - time.mean()) / (place @ place))
+    return float(time.mean()) + interval * float(place[0]), interval
 
 
 def read(path, sensors: list[str]) -> Signals:
@@ -197,22 +208,22 @@ def _check_time(path, time, rows, column):
             f"{path}, line {rows[k + 1][0]}, column {TIME}: is {time[k + 1]:g} after {time[k]:g}; times must "
             "increase: sort the rows, remove repeated ones, and give times enough digits"
         )
-    interval = (time[-1] - time[0]) / (len(time) - 1)
-    off = np.abs(time - (time[0] + interval * np.arange(len(time))))
+    start, interval = grid(time)
+    off = np.abs(time - (start + interval * np.arange(len(time))))
     allowed = max(EVEN * interval, min(_rounding(rows, column), ROUNDED * interval))
     if off.max() > allowed:
         # The first odd step, where the reader should look.
         k = int(np.argmax(np.abs(steps - usual) > min(2.0 * allowed, np.abs(steps - usual).max() * 0.999)))
         raise InputError(
             f"{path}, line {rows[k + 1][0]}, column {TIME}: the step to {time[k + 1]:g} us is {steps[k]:g} "
-            f"us, the usual one {usual:g} us; times must be equidistant within {allowed / interval:.0%} of the "
-            "step: interpolate to equal steps, restore missing rows, or print more digits"
+            f"us, the usual one {usual:g} us; times must be equidistant within {allowed / interval:.0%} of "
+            "the step: interpolate to equal steps, restore missing rows, or print more digits"
         )
 
 
 def _rounding(rows, column):
-    """Half a unit of the last digit printed, in us; 0 for times written with an exponent."""
+    """A unit of the last digit printed, in us: half of it, and as much for the line; 0 with exponents."""
     cells = [line.split(",")[column].strip().lower() for _, line in rows]
     if any("e" in c for c in cells):
         return 0.0
-    return 0.5000001 * 10.0 ** -max(len(c.partition(".")[2]) for c in cells)
+    return 10.0 ** -max(len(c.partition(".")[2]) for c in cells)

@@ -9,6 +9,11 @@ from sonicvacuum.records import signals
 from sonicvacuum.records.reader import FILE, parse
 from sonicvacuum.records.record import Record
 
+_FIRST_OF_CHAIN = ("beads", "orientation", "bead", "wall", "static_force_N")
+_FIRST_OF_OBSERVABLE = (
+    "quantity", "amplitude_N", "from", "to", "sensor", "level", "threshold", "value", "sigma", "unit"
+)  # fmt: skip
+
 
 def write(record: Record, path) -> None:
     """Write a record into a folder, made if need be; each file takes its name once it is complete.
@@ -33,7 +38,18 @@ def write(record: Record, path) -> None:
 
 def dump(record: Record) -> dict:
     """`record.yaml` as a plain mapping, keys in the order of the contract, without keys at their defaults."""
-    return msgspec.to_builtins(record.block)
+    content = msgspec.to_builtins(record.block)
+    content["chain"] = _ordered(content["chain"], _FIRST_OF_CHAIN)
+    for run in content["runs"]:
+        if "observables" in run:
+            run["observables"] = [_ordered(o, _FIRST_OF_OBSERVABLE) for o in run["observables"]]
+    return content
+
+
+def _ordered(mapping, first):
+    """The mapping with these keys first, then the others."""
+    head = {k: mapping[k] for k in first if k in mapping}
+    return head | mapping
 
 
 def text(content: dict) -> str:
