@@ -1,605 +1,361 @@
-"""The compiled steppers: one pass over the bodies advances positions, forces and velocities.
+"""The compiled stepper: one pass over the bodies advances positions, forces and velocities.
 
-Bodies are numbered from the striker (0) to the last bead; contact c joins body c and body c + 1, the
-last contact is the wall. Only bodies that the wave has reached are stepped: the first body beyond
-them is at rest, and so is the wall, hence both are the same boundary, zero displacement.
+Bodies are numbered from the striker (0) to the last bead; contact c joins body c and body c + 1, and
+behind the last bead stands the wall, a body that never moves. Only bodies that the wave has reached
+are stepped: the first one beyond them is still at rest, so that it serves as their wall.
 
-Two explicit steppers share the force laws:
+Two explicit steppers share the force laws (`compose`), which decide between them. Coefficients: `methods`.
 
-* `advance_splitting`: symplectic splitting into drifts (positions) and kicks (velocities), for laws
-  that depend on positions alone. Coefficients: `Method`.
-* `advance_runge_kutta`: low-storage Runge–Kutta in five stages, order four (Carpenter & Kennedy,
-  NASA TM 109112, 1994), for laws with rates or memory.
+* splitting: symplectic drifts (positions) and kicks (velocities), for laws that depend on positions
+  alone;
+* Runge–Kutta in low storage, for laws with rates or memory.
 
+Every chain has its own step: a result does not depend on the chains that are computed along with it.
 Samples fall between steps: the compression of each recorded contact is interpolated by the cubic
 Hermite polynomial of its values and rates at both ends of the step, and the law gives the force.
 """
-
-from dataclasses import dataclass
 
 import numpy as np
 from numba import njit
 from numba.extending import overload
 
-from sonicvacuum.physics.lanes import FASTMATH, absolute, get, get2, largest, put, put2
-from sonicvacuum.physics.laws import (
+from sonicvacuum.physics.compose import (
     advance_memory,
+    blend_memory,
     body_acceleration,
-    contact_energy,
-    contact_force,
-    dynamic,
-    compression,
-    static_work,
+    keep_memory,
+    push,
+    set_rest_force,
+    stored_energy,
+)
+from sonicvacuum.physics.lanes import absolute, select
+from sonicvacuum.physics.table import (
+    INLINED,
+    INVERSE_MASS,
+    OPTIONS,
+    U,
+    V,
+    first_blend,
+    first_increment,
+    first_memory,
+    get,
+    is_any_positive,
+    load,
+    put,
+    store,
+    zero,
 )
 
 # Bodies that are switched on together, ahead of the wave.
 MARGIN = 4
+# Rows of a group's clock: what each chain needs besides its bodies.
+FINE_STEP, STEP, FINE_UNTIL, LAST, WEIGHT, THRESHOLD, TOLERANCE, DUE = range(8)
+CLOCK_ROWS = 8
+# Entries of a group's status: bodies stepped, entries of the balance, whether the wave ran out of the table.
+STEPPED, BALANCED, RAN_OUT = range(3)
 
 
-@dataclass(frozen=True)
-class Method:
-    """A symmetric splitting method: drifts and kicks in units of the step.
-
-    Attributes:
-        name: identifies the method.
-        order: order of convergence for smooth forces.
-        drift: (stages + 1,) coefficients of the position updates; the last merges with the next step's first.
-        kick: (stages,) coefficients of the velocity updates.
-    """
-
-    name: str
-    order: int
-    drift: tuple[float, ...]
-    kick: tuple[float, ...]
-
-
-def _symmetric(values, stages):
-    return tuple(values) + tuple(reversed(values[: stages - len(values)]))
-
-
-def _blanes_moan():
-    """The method S6 of Blanes & Moan, J. Comput. Appl. Math. 142 (2002) 313, Table 2: six stages, order four."""
-    a = [0.0792036964311957, 0.353172906049774, -0.0420650803577195]
-    b = [0.209515106613362, -0.143851773179818]
-    drift = [*a, 1.0 - 2.0 * sum(a)]
-    kick = [*b, 0.5 - sum(b)]
-    return Method("blanes-moan", 4, _symmetric(drift, 7), _symmetric(kick, 6))
-
-
-VERLET = Method("verlet", 2, (0.5, 0.5), (1.0,))
-BLANES_MOAN = _blanes_moan()
-METHODS = {m.name: m for m in (VERLET, BLANES_MOAN)}
-
-# Carpenter & Kennedy 1994, solution 3 of the five-stage, fourth-order, two-register schemes.
-_RK_KEEP = np.array(
-    [
-        0.0,
-        -567301805773 / 1357537059087,
-        -2404267990393 / 2016746695238,
-        -3550918686646 / 2091501179385,
-        -1275806237668 / 842570457699,
-    ]
-)
-_RK_GAIN = np.array(
-    [
-        1432997174477 / 9575080441755,
-        5161836677717 / 13612068292357,
-        1720146321549 / 2090206949498,
-        3134564353537 / 4481467310338,
-        2277821191437 / 14882151754819,
-    ]
-)
-RUNGE_KUTTA_STAGES = len(_RK_KEEP)
-
-_compile = njit(cache=True, fastmath=FASTMATH, error_model="numpy", nogil=True)
-_inlined = njit(fastmath=FASTMATH, error_model="numpy", nogil=True)
+_inlined = njit(**INLINED)
 
 
 @_inlined
-def _pass_splitting(
-    laws, u, v, inverse_mass, coefficients, memory, rest, rest_force, weight, drift, kick, active
-):
-    """Drift all bodies, then kick them; returns the dynamic force on the boundary behind the last one."""
-    last = active - 1
-    pull = weight
-    x = get(u, 0) + drift * get(v, 0)
-    for i in range(last):
-        speed = get(v, i)
-        ahead = get(u, i + 1) + drift * get(v, i + 1)
-        delta = compression(laws, rest, i, x - ahead)
-        push = dynamic(laws, rest_force, i, contact_force(laws, coefficients, memory, i, delta, speed))
-        put(u, i, x)
-        put(v, i, speed + kick * get(inverse_mass, i) * (pull - push))
-        pull = push
-        x = ahead
-    speed = get(v, last)
-    delta = compression(laws, rest, last, x)
-    push = dynamic(laws, rest_force, last, contact_force(laws, coefficients, memory, last, delta, speed))
-    put(u, last, x)
-    put(v, last, speed + kick * get(inverse_mass, last) * (pull - push))
-    return push
-
-
-@_inlined
-def _pass_runge_kutta(
-    laws,
-    u,
-    v,
-    increments,
-    inverse_mass,
-    coefficients,
-    memory,
-    memory_increments,
-    rest,
-    rest_force,
-    weight,
-    keep,
-    gain,
-    step,
-    active,
-):
-    """One low-storage stage of all bodies; returns the dynamic force on the boundary."""
-    last = active - 1
-    pull = weight
-    x = get(u, 0)
-    speed = get(v, 0)
-    push = weight
-    for i in range(active):
-        # The body ahead of the last one is at rest: subtracting x and speed from themselves keeps the type.
-        ahead = get(u, i + 1) if i < last else x - x
-        speed_ahead = get(v, i + 1) if i < last else x - x
-        delta = compression(laws, rest, i, x - ahead)
-        force = contact_force(laws, coefficients, memory, i, delta, speed - speed_ahead)
-        advance_memory(laws, coefficients, memory, memory_increments, i, delta, keep, gain, step)
-        push = dynamic(laws, rest_force, i, force)
-        acceleration = get(inverse_mass, i) * (pull - push)
-        if i > 0:
-            acceleration = acceleration + body_acceleration(laws, coefficients, i, speed)
-        moved = keep * get2(increments, i, 0) + step * speed
-        sped = keep * get2(increments, i, 1) + step * acceleration
-        put2(increments, i, 0, moved)
-        put2(increments, i, 1, sped)
-        put(u, i, x + gain * moved)
-        put(v, i, speed + gain * sped)
-        pull = push
+def _pass_splitting(c, table, first, beyond, pull, drift, kick):
+    """Drift all bodies, then kick them; returns the force on the body beyond."""
+    speed = get(c, table, first, V)
+    x = get(c, table, first, U) + drift * speed
+    for body in range(first, beyond):
+        speed_ahead = get(c, table, body + 1, V)
+        ahead = get(c, table, body + 1, U) + drift * speed_ahead
+        force = push(c, table, body, x - ahead, speed, 0)
+        put(c, table, body, U, x)
+        put(c, table, body, V, speed + kick * get(c, table, body, INVERSE_MASS) * (pull - force))
+        pull = force
         x = ahead
         speed = speed_ahead
-    return push
+    return pull
 
 
-def _step(
-    laws,
-    drift,
-    kick,
-    pending,
-    u,
-    v,
-    increments,
-    inverse_mass,
-    coefficients,
-    memory,
-    memory_increments,
-    old,
-    contacts,
-    rest,
-    rest_force,
-    weight,
-    step,
-    active,
-):
-    """One step by the stepper that suits the laws; returns the impulse on the boundary (compiled code only)."""
-    raise TypeError("_step exists in compiled code only")
-
-
-def _step_splitting(
-    laws,
-    drift,
-    kick,
-    pending,
-    u,
-    v,
-    increments,
-    inverse_mass,
-    coefficients,
-    memory,
-    memory_increments,
-    old,
-    contacts,
-    rest,
-    rest_force,
-    weight,
-    step,
-    active,
-):
-    impulse = weight - weight
-    late = pending
-    for j in range(len(kick)):
-        a = drift[j] * step + late
-        late = 0.0
-        b = kick[j] * step
-        push = _pass_splitting(
-            laws, u, v, inverse_mass, coefficients, memory, rest, rest_force, weight, a, b, active
-        )
-        impulse = impulse + b * push
+@_inlined
+def _step_splitting(c, table, first, beyond, weight, method, step, pending):
+    """One step; returns the impulse on the body beyond. Positions then lack the last drift."""
+    drifts, kicks = method
+    impulse = zero(c)
+    for stage in range(len(kicks)):
+        kick = kicks[stage] * step
+        force = _pass_splitting(c, table, first, beyond, weight, drifts[stage] * step + pending, kick)
+        impulse = impulse + kick * force
+        pending = zero(c)
     return impulse
 
 
-def _step_runge_kutta(
-    laws,
-    drift,
-    kick,
-    pending,
-    u,
-    v,
-    increments,
-    inverse_mass,
-    coefficients,
-    memory,
-    memory_increments,
-    old,
-    contacts,
-    rest,
-    rest_force,
-    weight,
-    step,
-    active,
-):
-    _keep_memory(memory, contacts, old)
-    impulse = weight - weight
-    increment = weight - weight
-    for j in range(len(_RK_KEEP)):
-        push = _pass_runge_kutta(
-            laws,
-            u,
-            v,
-            increments,
-            inverse_mass,
-            coefficients,
-            memory,
-            memory_increments,
-            rest,
-            rest_force,
-            weight,
-            _RK_KEEP[j],
-            _RK_GAIN[j],
-            step,
-            active,
+@_inlined
+def _pass_runge_kutta(c, table, first, beyond, pull, keep, gain, step, moved_column):
+    """One low-storage stage of all bodies; returns the force on the body beyond."""
+    sped_column = moved_column + 1
+    x = get(c, table, first, U)
+    speed = get(c, table, first, V)
+    for body in range(first, beyond):
+        ahead = get(c, table, body + 1, U)
+        speed_ahead = get(c, table, body + 1, V)
+        force = push(c, table, body, x - ahead, speed - speed_ahead, first_memory(c))
+        advance_memory(c, table, body, x - ahead, keep, gain, step)
+        acceleration = get(c, table, body, INVERSE_MASS) * (pull - force)
+        if body > first:
+            acceleration = acceleration + body_acceleration(c, table, body, speed)
+        moved = keep * get(c, table, body, moved_column) + step * speed
+        sped = keep * get(c, table, body, sped_column) + step * acceleration
+        put(c, table, body, moved_column, moved)
+        put(c, table, body, sped_column, sped)
+        put(c, table, body, U, x + gain * moved)
+        put(c, table, body, V, speed + gain * sped)
+        pull = force
+        x = ahead
+        speed = speed_ahead
+    return pull
+
+
+@_inlined
+def _step_runge_kutta(c, table, first, beyond, weight, method, step, pending):
+    keeps, gains = method
+    impulse = zero(c)
+    increment = zero(c)
+    for stage in range(len(gains)):
+        force = _pass_runge_kutta(
+            c, table, first, beyond, weight, keeps[stage], gains[stage], step, first_increment(c)
         )
-        increment = _RK_KEEP[j] * increment + step * push
-        impulse = impulse + _RK_GAIN[j] * increment
+        increment = keeps[stage] * increment + step * force
+        impulse = impulse + gains[stage] * increment
     return impulse
 
 
-@overload(_step)
-def _choose_step(
-    laws,
-    drift,
-    kick,
-    pending,
-    u,
-    v,
-    increments,
-    inverse_mass,
-    coefficients,
-    memory,
-    memory_increments,
-    old,
-    contacts,
-    rest,
-    rest_force,
-    weight,
-    step,
-    active,
+def _step(c, table, first, beyond, weight, method, step, pending):
+    """One step by the stepper that suits the laws; returns the impulse on the body beyond."""
+    raise NotImplementedError("compiled code only")
+
+
+@overload(_step, jit_options=INLINED)
+def _choose_step(c, table, first, beyond, weight, method, step, pending):
+    stepper = _step_splitting if c.composition.laws.splits else _step_runge_kutta
+    return stepper.py_func
+
+
+@_inlined
+def _note(c, table, first, contacts, pending, ends):
+    """Keep approach and rate of the recorded contacts, positions being `pending` seconds of drift behind."""
+    for r in range(len(contacts)):
+        body = first + contacts[r]
+        speed = get(c, table, body, V)
+        ahead = get(c, table, body + 1, V)
+        rate = speed - ahead
+        store(c, ends, 2 * r, get(c, table, body, U) - get(c, table, body + 1, U) + pending * rate)
+        store(c, ends, 2 * r + 1, rate)
+
+
+@_inlined
+def _sample(c, table, body, start, end, r, step, fraction):
+    """Force of a recorded contact at a fraction of the step; its approach by cubic Hermite interpolation."""
+    x = load(c, start, 2 * r)
+    v = step * load(c, start, 2 * r + 1)
+    w = step * load(c, end, 2 * r + 1)
+    gap = load(c, end, 2 * r) - x
+    square = 3.0 * gap - 2.0 * v - w
+    cube = v + w - 2.0 * gap
+    approach = x + fraction * (v + fraction * (square + fraction * cube))
+    rate = (v + fraction * (2.0 * square + 3.0 * fraction * cube)) / step
+    blend_memory(c, table, body, fraction)
+    return push(c, table, body, approach, rate, first_blend(c))
+
+
+@_inlined
+def _emit(
+    c, table, first, contacts, start, end, before, time, step, interval, clock, cursor, chains, scratch, out
 ):
-    return _step_splitting if laws.laws.splits else _step_runge_kutta
+    """Write the samples that fall between `before` and `time`, chain by chain at its own moments."""
+    samples = out.shape[2]
+    store(c, scratch, 0, time)
+    while is_any_positive(time - load(c, clock, DUE)):
+        fraction = (load(c, clock, DUE) + load(c, clock, TOLERANCE) - before) / step
+        for r in range(len(contacts)):
+            store(c, scratch, 1, _sample(c, table, first + contacts[r], start, end, r, step, fraction))
+            for k in range(len(cursor)):
+                if clock[DUE, k] < scratch[0, k]:
+                    out[chains[k], r, cursor[k]] = scratch[1, k]
+        for k in range(len(cursor)):
+            if clock[DUE, k] < scratch[0, k]:
+                cursor[k] += 1
+                clock[DUE, k] = cursor[k] * interval - clock[TOLERANCE, k] if cursor[k] < samples else np.inf
 
 
-@_inlined
-def _note(laws, u, v, rest, contacts, pending, active, ends):
-    """Write compression and rate of the recorded contacts, positions being `pending` seconds of drift behind."""
-    for r in range(len(contacts)):
-        c = contacts[r]
-        rate = get(v, c)
-        x = get(u, c) + pending * rate
-        if c + 1 < active:
-            ahead = get(v, c + 1)
-            x = x - (get(u, c + 1) + pending * ahead)
-            rate = rate - ahead
-        put2(ends, r, 0, compression(laws, rest, c, x))
-        put2(ends, r, 1, rate)
+def _audit(c, table, first, beyond, weight, impulse, pending, time, balance, status):
+    """Keep total energy, and total momentum less all impulses received: both must stay constant."""
+    raise NotImplementedError("compiled code only")
 
 
-@_inlined
-def _keep_memory(memory, contacts, old):
-    for r in range(len(contacts)):
-        for k in range(memory.shape[1]):
-            put2(old, contacts[r], k, get2(memory, contacts[r], k))
+@overload(_audit, jit_options=INLINED)
+def _choose_audit(c, table, first, beyond, weight, impulse, pending, time, balance, status):
+    if not c.composition.audited:
+        return lambda c, table, first, beyond, weight, impulse, pending, time, balance, status: None
+    return _keep_balance
 
 
-@_inlined
-def _emit(laws, coefficients, memory, old, blend, rest_force, contacts, start, end, step, fraction, out):
-    """Dynamic force of the recorded contacts at a fraction of the step, by cubic Hermite compression."""
-    f = fraction
-    for r in range(len(contacts)):
-        c = contacts[r]
-        x0 = get2(start, r, 0)
-        v0 = get2(start, r, 1)
-        v1 = get2(end, r, 1)
-        gap = get2(end, r, 0) - x0
-        square = 3.0 * gap - step * (2.0 * v0 + v1)
-        cube = step * (v0 + v1) - 2.0 * gap
-        delta = x0 + f * (step * v0 + f * (square + f * cube))
-        rate = v0 + (f * (2.0 * square + 3.0 * f * cube)) / step
-        for k in range(memory.shape[1]):
-            put2(blend, c, k, get2(old, c, k) * (1.0 - f) + get2(memory, c, k) * f)
-        force = contact_force(laws, coefficients, blend, c, delta, rate)
-        put(out, r, dynamic(laws, rest_force, c, force))
-
-
-@_inlined
-def _balance(
-    laws, u, v, inverse_mass, coefficients, rest, rest_force, weight, impulse, pending, time, active, out
-):
-    """Total energy, total momentum less all impulses received since the start: both must stay constant."""
-    energy = -weight * (get(u, 0) + pending * get(v, 0))
+def _keep_balance(c, table, first, beyond, weight, impulse, pending, time, balance, status):
+    energy = -weight * (get(c, table, first, U) + pending * get(c, table, first, V))
     momentum = impulse - weight * time
-    for i in range(active):
-        speed = get(v, i)
-        x = get(u, i) + pending * speed
-        if i + 1 < active:
-            x = x - (get(u, i + 1) + pending * get(v, i + 1))
-        energy = energy + 0.5 * speed * speed / get(inverse_mass, i)
-        energy = energy + contact_energy(laws, coefficients, i, compression(laws, rest, i, x))
-        energy = energy - contact_energy(laws, coefficients, i, compression(laws, rest, i, x - x))
-        energy = energy - static_work(laws, rest_force, i, x)
-        momentum = momentum + speed / get(inverse_mass, i)
-    put(out, 0, energy)
-    put(out, 1, momentum)
-
-
-def _set_rest(laws, coefficients, memory, rest, rest_force):
-    """Static force of every contact by the compiled law itself, so that a chain at rest stays so to the bit."""
-    raise TypeError("_set_rest exists in compiled code only")
-
-
-@overload(_set_rest)
-def _choose_rest(laws, coefficients, memory, rest, rest_force):
-    if not laws.laws.preloaded:
-        return lambda laws, coefficients, memory, rest, rest_force: None
-
-    def set_rest(laws, coefficients, memory, rest, rest_force):
-        for c in range(len(rest)):
-            delta = get(rest, c)
-            put(rest_force, c, contact_force(laws, coefficients, memory, c, delta, delta - delta))
-
-    return set_rest
-
-
-@_inlined
-def _reached(v, active, threshold):
-    """Whether the last stepped body has begun to move."""
-    return largest(absolute(get(v, active - 1))) > threshold
-
-
-@_compile
-def advance(
-    laws,
-    drift,
-    kick,
-    step_early,
-    step_late,
-    early,
-    interval,
-    contacts,
-    u,
-    v,
-    memory,
-    inverse_mass,
-    coefficients,
-    rest,
-    rest_force,
-    weight,
-    threshold,
-    extendable,
-    balance_every,
-    scratch,
-    out,
-    balance,
-    status,
-    first,
-    beyond,
-):
-    """Integrate the groups `first` … `beyond` − 1, each a chain or eight chains, in place.
-
-    Arrays have the group as first axis; those marked L have the lane as last axis, absent for single chains.
-
-    Args:
-        laws: LawSet of all chains.
-        drift, kick: coefficients of a splitting method, used where the laws split; else drift is (0,), kick empty.
-        step_early, step_late: (groups,) steps in s before and after the time `early` (groups,) in s.
-        interval: time between samples in s; sample k is at (k) interval.
-        contacts: (R,) contacts whose force is recorded.
-        u, v: (groups, bodies, L) displacements from rest in m and velocities in m/s; final state on return.
-        memory: (groups, bodies, memories, L).
-        inverse_mass: (groups, bodies, L) in 1/kg.
-        coefficients: (groups, bodies, n, L) of the law set, per contact.
-        rest: (groups, bodies, L) compression of each contact at rest in m, negative for a gap; unused unless preloaded.
-        rest_force: (groups, bodies, L) their static forces, set here from the law.
-        weight: (groups, L) force on the striker in N.
-        threshold: (groups,) speed in m/s above which a body counts as moving.
-        extendable: whether further bodies exist beyond the arrays; then a group stops as the wave gets there.
-        balance_every: steps between entries of the energy and momentum balance (0: none).
-        scratch: (rows, columns, L) work space, shared by the groups of one call: see `scratch_rows`.
-        out: (groups, samples, R, L) dynamic forces in N.
-        balance: (groups, entries, 2, L) total energy in J and momentum less received impulses in N s.
-        status: (groups, 3) on return: bodies stepped, entries of the balance, 1 if the wave ran out of the arrays.
-        first, beyond: range of groups.
-    """
-    for g in range(first, beyond):
-        _advance_group(
-            laws,
-            drift,
-            kick,
-            step_early[g],
-            step_late[g],
-            early[g],
-            interval,
-            contacts,
-            u[g],
-            v[g],
-            memory[g],
-            inverse_mass[g],
-            coefficients[g],
-            rest[g],
-            rest_force[g],
-            get(weight, g),
-            threshold[g],
-            extendable,
-            balance_every,
-            scratch,
-            out[g],
-            balance[g],
-            status[g],
-        )
+    for body in range(first, beyond):
+        speed = get(c, table, body, V)
+        rate = speed - get(c, table, body + 1, V)
+        approach = get(c, table, body, U) - get(c, table, body + 1, U) + pending * rate
+        mass = 1.0 / get(c, table, body, INVERSE_MASS)
+        energy = energy + 0.5 * mass * speed * speed + stored_energy(c, table, body, approach)
+        momentum = momentum + mass * speed
+    entry = status[BALANCED]
+    if entry < len(balance):
+        store(c, balance, 2 * entry, energy)
+        store(c, balance, 2 * entry + 1, momentum)
+        status[BALANCED] = entry + 1
 
 
 @_inlined
 def _advance_group(
-    laws,
-    drift,
-    kick,
-    step_early,
-    step_late,
-    early,
+    c,
+    method,
     interval,
     contacts,
-    u,
-    v,
-    memory,
-    inverse_mass,
-    coefficients,
-    rest,
-    rest_force,
-    weight,
-    threshold,
+    table,
+    first,
+    bodies,
     extendable,
-    balance_every,
+    clock,
+    cursor,
+    chains,
     scratch,
+    start,
+    end,
     out,
+    every,
     balance,
     status,
 ):
-    bodies = len(u)
-    recorded = len(contacts)
-    samples = len(out)
-    stages = len(kick)
-    start = scratch[:recorded]
-    end = scratch[recorded : 2 * recorded]
-    increments = scratch[2 * recorded : 2 * recorded + bodies]
-    old = scratch[2 * recorded + bodies : 2 * recorded + 2 * bodies]
-    blend = scratch[2 * recorded + 2 * bodies : 2 * recorded + 3 * bodies]
-    memory_increments = scratch[2 * recorded + 3 * bodies : 2 * recorded + 4 * bodies]
-    scratch[:] = 0.0
-    _set_rest(laws, coefficients, memory, rest, rest_force)
-    impulse = weight - weight
-    active = min(MARGIN, bodies)
-    sample = 0
-    entry = 0
+    weight = load(c, clock, WEIGHT)
+    threshold = load(c, clock, THRESHOLD)
+    pending_part = method[0][len(method[1]) :].sum()
+    beyond = first + min(MARGIN, bodies)
+    time = zero(c)
+    pending = zero(c)
+    impulse = zero(c)
     count = 0
-    time = 0.0
-    pending = 0.0
-    last_time = (samples - 1) * interval
-    status[2] = 0
-    _note(laws, u, v, rest, contacts, 0.0, active, start)
-    for r in range(recorded):
-        put(out[0], r, weight - weight)
-    sample = 1
-    if balance_every > 0:
-        _balance(
-            laws,
-            u,
-            v,
-            inverse_mass,
-            coefficients,
-            rest,
-            rest_force,
-            weight,
-            impulse,
-            0.0,
-            0.0,
-            active,
-            balance[0],
-        )
-        entry = 1
-    while sample < samples:
-        step = step_early if time < early else step_late
-        impulse = impulse + _step(
-            laws,
-            drift,
-            kick,
-            pending,
-            u,
-            v,
-            increments,
-            inverse_mass,
-            coefficients,
-            memory,
-            memory_increments,
-            old,
-            contacts,
-            rest,
-            rest_force,
-            weight,
-            step,
-            active,
-        )
-        pending = drift[stages] * step
+    noted = False
+    for body in range(first, first + bodies):
+        set_rest_force(c, table, body)
+    _audit(c, table, first, beyond, weight, impulse, pending, time, balance, status)
+    while True:
+        step = select(load(c, clock, FINE_UNTIL) - time, load(c, clock, FINE_STEP), load(c, clock, STEP))
+        # A chain that is done rests while the others of its group go on.
+        step = select(load(c, clock, LAST) - time, step, zero(c))
+        if not is_any_positive(step):
+            break
         before = time
         time = time + step
-        count += 1
-        while active < bodies and _reached(v, active, threshold):
-            active = min(active + MARGIN, bodies)
-        if extendable and active == bodies:
-            status[2] = 1
+        sampled = is_any_positive(time - load(c, clock, DUE))
+        if sampled:
+            for r in range(len(contacts)):
+                keep_memory(c, table, first + contacts[r])
+        if sampled and not noted:
+            _note(c, table, first, contacts, pending, start)
+        impulse = impulse + _step(c, table, first, beyond, weight, method, step, pending)
+        pending = pending_part * step
+        while beyond < first + bodies and is_any_positive(absolute(get(c, table, beyond - 1, V)) - threshold):
+            beyond = min(beyond + MARGIN, first + bodies)
+        if extendable and beyond == first + bodies:
+            status[RAN_OUT] = 1
             break
-        _note(laws, u, v, rest, contacts, pending, active, end)
-        # A sample that coincides with the step's end belongs to it in spite of rounding.
-        while sample < samples and sample * interval <= time + 1e-9 * step:
-            fraction = (sample * interval - before) / step
+        if sampled:
+            _note(c, table, first, contacts, pending, end)
             _emit(
-                laws,
-                coefficients,
-                memory,
-                old,
-                blend,
-                rest_force,
+                c,
+                table,
+                first,
                 contacts,
                 start,
                 end,
-                step,
-                fraction,
-                out[sample],
-            )
-            sample += 1
-        start, end = end, start
-        if balance_every > 0 and count % balance_every == 0 and entry < len(balance):
-            _balance(
-                laws,
-                u,
-                v,
-                inverse_mass,
-                coefficients,
-                rest,
-                rest_force,
-                weight,
-                impulse,
-                pending,
+                before,
                 time,
-                active,
-                balance[entry],
+                step,
+                interval,
+                clock,
+                cursor,
+                chains,
+                scratch,
+                out,
             )
-            entry += 1
-    for i in range(active):
-        put(u, i, get(u, i) + pending * get(v, i))
-    status[0] = active
-    status[1] = entry
+            start, end = end, start
+        noted = sampled
+        count += 1
+        if every > 0 and count % every == 0:
+            _audit(c, table, first, beyond, weight, impulse, pending, time, balance, status)
+    status[STEPPED] = beyond - first
+
+
+@njit(**OPTIONS)
+def advance(
+    c,
+    first,
+    second,
+    interval,
+    contacts,
+    table,
+    extendable,
+    clock,
+    cursor,
+    chains,
+    work,
+    out,
+    every,
+    balance,
+    status,
+    begin,
+    end,
+):
+    """Integrate the groups `begin` … `end` − 1, each one chain or eight, in place.
+
+    Args:
+        c: Composition; its width is the last axis L of the arrays marked so.
+        first, second: coefficients of the `Method`.
+        interval: time between samples in s.
+        contacts: (R,) contacts whose force is recorded.
+        table: (groups, bodies + 1, columns, L) bodies, see `compose`; final state on return.
+        extendable: whether further bodies exist beyond the table; then a group stops as the wave gets there.
+        clock: (groups, CLOCK_ROWS, L) steps in s before and after the time FINE_UNTIL, moment of the last
+            sample less TOLERANCE, weight of the striker in N, speed above which a body counts as moving,
+            TOLERANCE of a sample's moment, moment of the next sample less TOLERANCE.
+        cursor: (groups, L) next sample.
+        chains: (groups, L) position of each chain in `out`.
+        work: (3, 2 R + 2, L) work space.
+        out: (chains, R, samples) forces in N beyond the static ones.
+        every: steps between entries of the balance.
+        balance: (groups, entries, 2, L) total energy in J and momentum less received impulses in N s.
+        status: (groups, 3) see STEPPED, BALANCED and RAN_OUT.
+        begin, end: range of groups.
+    """
+    bodies = table.shape[1] - 1
+    for g in range(begin, end):
+        _advance_group(
+            c,
+            (first, second),
+            interval,
+            contacts,
+            table,
+            g * (bodies + 1),
+            bodies,
+            extendable,
+            clock[g],
+            cursor[g],
+            chains[g],
+            work[0],
+            work[1],
+            work[2],
+            out,
+            every,
+            balance[g],
+            status[g],
+        )

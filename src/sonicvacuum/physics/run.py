@@ -1,7 +1,7 @@
-"""From a batch of chains to contact forces in time: the one way into the compiled steppers.
+"""From a batch of chains to contact forces in time: the one way into the compiled stepper.
 
-Chooses the step from the chains' own time scales, deals chains into groups of lanes, steps only as
-many beads as the wave reaches, and keeps the audit (energy and momentum balance).
+Chooses each chain's step, deals chains into groups of lanes, steps only as many beads as the wave
+reaches, and keeps the audit (energy and momentum balance).
 """
 
 import os
@@ -10,21 +10,24 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sonicvacuum.physics import kernel
 from sonicvacuum.physics.chain import Chain
-from sonicvacuum.physics.contact import compression_at, contact_time
-from sonicvacuum.physics.kernel import BLANES_MOAN, METHODS, advance
+from sonicvacuum.physics.compiled import cached, prepare
 from sonicvacuum.physics.lanes import LANES
 from sonicvacuum.physics.laws import memory_at_rest, rest_compression
+from sonicvacuum.physics.methods import CARPENTER_KENNEDY, METHODS
+from sonicvacuum.physics.steps import choose_steps, reachable_bodies
+from sonicvacuum.physics.table import INVERSE_MASS, REST, Composition, V
 
-# Step in units of the contact time (m²/(K²v))^{1/5}: relative errors of peak forces below 1e-6 and of
-# arrivals below 1 ns for the splitting method; see the cost-accuracy study in the benchmarks.
-STEP = {"splitting": 0.1, "runge-kutta": 0.05}
-# The striker's contact opens abruptly; steps are this much finer until it is surely over.
-EARLY_REFINEMENT = 8
-EARLY_CONTACT_TIMES = 4.5
 # A body moves once it is faster than this fraction of the impact speed.
 FRONT = 1e-12
-FIRST_BODIES = 64
+# A sample within this fraction of a step after the step's end belongs to it: they coincide but for rounding.
+COINCIDENCE = 1e-9
+AUDIT_ENTRIES = 400
+# Shares of the work per thread, so that threads end together though groups differ in cost.
+SHARES = 8
+
+advance = cached(kernel.advance)
 
 
 @dataclass(frozen=True)
@@ -35,7 +38,7 @@ class History:
         time: (samples,) s, from the moment of impact.
         contacts: recorded contacts.
         force: (samples, contacts, lanes) N, without the static part.
-        energy: (entries, lanes) total energy in J at equidistant moments, empty without audit or where the
+        energy: (entries, lanes) total energy in J every so many steps, empty without audit or where the
             law stores no simple energy.
         momentum: (entries, lanes) total momentum less all impulses received (wall, weight), N s.
         striker_speed: (lanes,) speed of the striker at the end in m/s.
@@ -55,26 +58,6 @@ class History:
         return self.force[:, self.contacts.index(contact)]
 
 
-def time_scale(chain: Chain) -> np.ndarray:
-    """(lanes,) shortest time scale in s: of the impact, or of the beads' vibration under static force."""
-    bodies = min(chain.beads + 1, 3)
-    stiffness = np.maximum(chain.stiffnesses(bodies).max(axis=0), chain.wall_stiffness)
-    mass = chain.masses(bodies).min(axis=0)
-    impact = contact_time(mass, stiffness, chain.speed)
-    weight = chain.beads * chain.bead_mass * chain.gravity
-    rest = compression_at(chain.static_force + weight, chain.stiffness)
-    # Highest frequency of the linear chain: 2 √(k/m), k = (3/2) K √delta0; inf time where nothing is borne.
-    with np.errstate(divide="ignore"):
-        vibration = 1.0 / np.sqrt(1.5 * chain.stiffness * np.sqrt(rest) / chain.bead_mass)
-    return np.minimum(impact, vibration)
-
-
-def _early(chain):
-    """(lanes,) s for which the striker's contact may open for the first time."""
-    heavy = np.maximum(1.0, chain.striker_mass / chain.bead_mass)
-    return EARLY_CONTACT_TIMES * heavy * contact_time(chain.bead_mass, chain.striker_stiffness, chain.speed)
-
-
 def simulate(
     chain: Chain,
     contacts,
@@ -90,22 +73,42 @@ def simulate(
 ) -> History:
     """Integrate a batch of chains from the moment of impact.
 
+    The result for a chain depends neither on `threads` nor on the other chains of the batch: alone, a
+    chain is computed without lanes, which changes rounding errors only.
+
     Args:
         chain: what is integrated, `chain.lanes` chains.
-        contacts: contacts whose force is recorded; contact c joins body c and c + 1, the striker being body 0.
+        contacts: those whose force is recorded; contact c joins body c and c + 1, the striker being body 0.
         duration: s.
         interval: time between samples in s; independent of the step.
-        step: step in s; None: `STEP` times the shortest time scale of each group of lanes.
+        step: step in s for all chains and times; None: chosen for each chain, see `steps`.
         refine: divides the chosen step; 2 gives the halved step of an error estimate.
         method: "blanes-moan" (order 4) or "verlet" (order 2), for laws that depend on positions alone.
         symplectic: False takes the Runge–Kutta stepper of dissipative laws for any law.
         audit: keep the energy and momentum balance.
-        threads: groups run on so many threads; results do not depend on it.
+        threads: groups run on so many threads.
 
     Raises:
-        ValueError: for a contact that does not exist, or a duration or interval that is not positive.
+        ValueError: for a contact or method that does not exist, a duration, interval, step or refinement
+            that is not positive, or no thread.
+        FloatingPointError: when the motion ceases to be finite.
     """
     contacts = tuple(int(c) for c in contacts)
+    _check_request(chain, contacts, duration, interval, step, refine, method, threads)
+    laws = chain.laws(symplectic)
+    scheme = METHODS[method] if laws.splits else CARPENTER_KENNEDY
+    samples = int(np.floor(duration / interval * (1.0 + 1e-12))) + 1
+    bodies = chain.beads + 1
+    reachable = min(bodies, reachable_bodies(chain, duration))
+    while True:
+        batch = _Batch(chain, laws, reachable, contacts, samples, interval, step, refine, audit)
+        batch.run(scheme, threads)
+        if not batch.status[:, kernel.RAN_OUT].any():
+            return batch.history()
+        reachable = min(bodies, 2 * reachable)
+
+
+def _check_request(chain, contacts, duration, interval, step, refine, method, threads):
     for c in contacts:
         if not 0 <= c <= chain.beads:
             raise ValueError(
@@ -113,149 +116,173 @@ def simulate(
             )
     if not (duration > 0.0 and interval > 0.0):
         raise ValueError(f"duration {duration} s and interval {interval} s must be positive")
-    samples = int(np.floor(duration / interval * (1.0 + 1e-12))) + 1
-    laws = chain.laws(symplectic)
-    order = np.argsort(time_scale(chain), kind="stable")
-    dealt = _deal(order)
-    bodies = min(chain.beads + 1, FIRST_BODIES)
-    while True:
-        batch = _Batch(chain, laws, dealt, bodies, contacts, samples, interval, audit)
-        batch.run(step, refine, method, threads)
-        if not np.any(batch.status[:, 2]):
-            return batch.history(dealt, order)
-        bodies = min(chain.beads + 1, 2 * bodies)
+    if not (refine > 0.0 and (step is None or step > 0.0)):
+        raise ValueError(f"step {step} s and refine {refine} must be positive")
+    if method not in METHODS:
+        raise ValueError(f"method is {method!r}; use one of {', '.join(METHODS)}")
+    if threads < 1:
+        raise ValueError(f"threads is {threads}; it must be 1 or more")
 
 
-def _deal(order):
-    """(groups, width) chains of each group, neighbours in time scale together; the last group repeats its last."""
+def _zeros(*shape):
+    """Zeros aligned to the 64 bytes of a cache line and a register."""
+    size = int(np.prod(shape))
+    buffer = np.zeros(size + 8)
+    start = -(buffer.ctypes.data // 8) % 8
+    return buffer[start : start + size].reshape(shape)
+
+
+def _deal(cost):
+    """(groups, width) chains of each group, like costs together, dearest first; the last chain fills up."""
+    order = np.argsort(-cost, kind="stable")
     width = 1 if len(order) <= 2 else LANES
     groups = -(-len(order) // width)
-    return np.pad(order, (0, groups * width - len(order)), mode="edge").reshape(groups, width)
+    dealt = np.empty(groups * width, dtype=np.int64)
+    dealt[: len(order)] = order
+    dealt[len(order) :] = order[-1]
+    return dealt.reshape(groups, width)
 
 
 class _Batch:
-    """The arrays of one call of the stepper: group first, lane last (no lane axis for single chains)."""
+    """The arrays of one call of the stepper: group first, lane last."""
 
-    def __init__(self, chain, laws, dealt, bodies, contacts, samples, interval, audit):
-        self.chain, self.laws, self.dealt, self.interval, self.audit = chain, laws, dealt, interval, audit
-        self.contacts = np.array([c for c in contacts if c < bodies], dtype=np.int64)
-        self.wanted = contacts
-        table = chain.coefficients(laws, bodies)
-        mass = chain.masses(bodies)
-        self.inverse_mass = self._arrange(1.0 / mass)
-        self.coefficients = self._arrange(table)
-        self.u = np.zeros_like(self.inverse_mass)
-        self.v = np.zeros_like(self.inverse_mass)
-        self.v[:, 0] = self._arrange(chain.speed)
-        self.weight = self._arrange(chain.striker_mass * chain.gravity)
-        self.extendable = bodies <= chain.beads
-        self._set_rest(chain, laws, bodies, table)
-        lanes = self.u.shape[2:]
-        groups = len(dealt)
-        self.out = np.zeros((groups, samples, len(self.contacts), *lanes))
+    def __init__(self, chain, laws, bodies, contacts, samples, interval, step, refine, audit):
+        self.chain, self.laws, self.bodies = chain, laws, bodies
+        self.wanted, self.samples, self.interval = contacts, samples, interval
+        self.recorded = [c for c in contacts if c < bodies]
+        coefficients, mass = chain.coefficients(laws, bodies), chain.masses(bodies)
+        self._choose_steps(coefficients, mass, step, refine)
+        self.dealt = _deal(self.steps)
+        self.composition = Composition(laws, self.dealt.shape[1], audit)
+        self._fill_table(coefficients, mass)
+        self._set_clock()
+        self._make_room(audit)
+
+    def _choose_steps(self, coefficients, mass, step, refine):
+        lanes, end = self.chain.lanes, (self.samples - 1) * self.interval
+        if step is None:
+            fine, late, until = choose_steps(self.chain, self.laws, coefficients, mass)
+        else:
+            fine, late, until = np.full(lanes, step), np.full(lanes, step), np.zeros(lanes)
+        self.fine, self.late, self.until = fine / refine, late / refine, until
+        self.steps = np.minimum(until, end) / self.fine + np.maximum(end - until, 0.0) / self.late
+
+    def _spread(self, values):
+        """(…, lanes) → (groups, …, width)."""
+        spread = values[..., self.dealt]
+        return spread.transpose(spread.ndim - 2, *range(spread.ndim - 2), spread.ndim - 1)
+
+    def _fill_table(self, coefficients, mass):
+        c, bodies = self.composition, self.bodies
+        self.table = _zeros(len(self.dealt), bodies + 1, c.columns, c.width)
+        self.table[:, 0, V] = self.chain.speed[self.dealt]
+        # The wall has no mass to divide by; the stepper leaves it alone.
+        body = self.table[:, :bodies]
+        body[:, :, INVERSE_MASS] = self._spread(1.0 / mass)
+        body[:, :, c.first_coefficient : c.first_memory] = self._spread(coefficients)
+        if not (self.laws.preloaded or c.memories):
+            return
+        load = self.chain.static_forces(bodies)
+        delta = rest_compression(self.laws, coefficients, load)
+        memory = memory_at_rest(self.laws, coefficients, delta)
+        body[:, :, c.first_memory : c.first_increment] = self._spread(memory)
+        if self.laws.preloaded:
+            body[:, :, REST] = self._spread(delta - self.chain.gaps(bodies))
+
+    def _set_clock(self):
+        tolerance = COINCIDENCE * self.late
+        clock = self.clock = _zeros(len(self.dealt), kernel.CLOCK_ROWS, self.dealt.shape[1])
+        for row, values in (
+            (kernel.FINE_STEP, self.fine),
+            (kernel.STEP, self.late),
+            (kernel.FINE_UNTIL, self.until),
+            (kernel.LAST, (self.samples - 1) * self.interval - tolerance),
+            (kernel.WEIGHT, self.chain.striker_mass * self.chain.gravity),
+            (kernel.THRESHOLD, FRONT * self.chain.speed),
+            (kernel.TOLERANCE, tolerance),
+            (kernel.DUE, self.interval - tolerance),
+        ):
+            clock[:, row] = values[self.dealt]
+
+    def _make_room(self, audit):
+        groups, width = self.dealt.shape
+        self.cursor = np.ones((groups, width), dtype=np.int64)
+        self.out = np.empty((self.chain.lanes, len(self.recorded), self.samples))
+        self.out[:, :, 0] = 0.0
         self.status = np.zeros((groups, 3), dtype=np.int64)
-        self.samples = samples
+        count = int(self.steps.max()) + 2
+        self.every = max(1, count // AUDIT_ENTRIES) if audit else 0
+        entries = count // self.every + 2 if audit else 0
+        self.balance = np.zeros((groups, entries, 2, width))
 
-    def _arrange(self, values):
-        """(…, lanes) → (groups, …[, LANES]), contiguous."""
-        dealt = np.moveaxis(np.asarray(values)[..., self.dealt], -2, 0)
-        return np.ascontiguousarray(dealt if self.dealt.shape[1] > 1 else dealt[..., 0])
+    def run(self, scheme, threads):
+        """Integrate all groups, each thread a share at a time."""
+        groups, width = self.dealt.shape
+        contacts = np.array(self.recorded, dtype=np.int64)
+        extendable = self.bodies <= self.chain.beads
 
-    def _set_rest(self, chain, laws, bodies, table):
-        load = chain.static_forces(bodies) if laws.preloaded else np.zeros((bodies, chain.lanes))
-        delta = rest_compression(laws, table, load) if laws.preloaded else load
-        self.memory = self._arrange(memory_at_rest(laws, table, delta))
-        delta = delta - chain.gaps(bodies)
-        kept = bodies if laws.preloaded else 1
-        self.rest = self._arrange(delta[:kept])
-        self.rest_force = np.zeros_like(self.rest)
-
-    def steps(self, step, refine):
-        """(groups,) late and early steps and the duration of the early phase."""
-        chain, stepper = self.chain, "splitting" if self.laws.splits else "runge-kutta"
-        scale = time_scale(chain)[self.dealt].min(axis=1)
-        late = (np.full(len(scale), step) if step else STEP[stepper] * scale) / refine
-        if step:
-            return late, late, np.zeros(len(late))
-        return late, late / EARLY_REFINEMENT, _early(chain)[self.dealt].max(axis=1)
-
-    def run(self, step, refine, method, threads):
-        """Integrate all groups, each thread its share."""
-        late, early, until = self.steps(step, refine)
-        scheme = METHODS[method] if self.laws.splits else None
-        drift = np.array(scheme.drift if scheme else (0.0,))
-        kick = np.array(scheme.kick if scheme else ())
-        groups, bodies = self.u.shape[:2]
-        count = int(np.ceil(((self.samples - 1) * self.interval / late).max() + (until / early).max())) + 2
-        every = max(1, count // 400) if self.audit else 0
-        entries = count // every + 2 if self.audit else 0
-        self.step = late
-        self.balance = np.zeros((groups, entries, 2, *self.u.shape[2:]))
-        rows = 2 * len(self.contacts) + 4 * bodies
-        bounds = np.linspace(0, groups, min(threads, groups) + 1).astype(int)
-        threshold = FRONT * self.chain.speed[self.dealt].max(axis=1)
-
-        def share(first, beyond):
-            scratch = np.zeros((rows, max(2, self.memory.shape[2]), *self.u.shape[2:]))
-            advance(
-                self.laws,
-                drift,
-                kick,
-                early,
-                late,
-                until,
+        def share(begin, end):
+            work = _zeros(3, 2 * len(contacts) + 2, width)
+            return (
+                self.composition,
+                scheme.first,
+                scheme.second,
                 self.interval,
-                self.contacts,
-                self.u,
-                self.v,
-                self.memory,
-                self.inverse_mass,
-                self.coefficients,
-                self.rest,
-                self.rest_force,
-                self.weight,
-                threshold,
-                self.extendable,
-                every,
-                scratch,
+                contacts,
+                self.table,
+                extendable,
+                self.clock,
+                self.cursor,
+                self.dealt,
+                work,
                 self.out,
+                self.every,
                 self.balance,
                 self.status,
-                first,
-                beyond,
+                begin,
+                end,
             )
 
-        if len(bounds) == 2:
-            share(0, groups)
+        prepare(advance, self.composition.name, share(0, groups))
+        if threads == 1 or groups == 1:
+            advance(*share(0, groups))
         else:
-            with ThreadPoolExecutor(len(bounds) - 1) as pool:
-                list(pool.map(share, bounds[:-1], bounds[1:]))
+            bounds = np.linspace(0, groups, min(SHARES * threads, groups) + 1).astype(int).tolist()
+            with ThreadPoolExecutor(threads) as pool:
+                list(pool.map(lambda b, e: advance(*share(b, e)), bounds[:-1], bounds[1:]))
+        self._check_finite()
 
-    def history(self, dealt, order):
+    def _check_finite(self):
+        sane = np.isfinite(self.table[:, :, V]).all(axis=1)
+        if not sane.all():
+            chain = int(self.dealt[~sane][0])
+            raise FloatingPointError(
+                f"chain {chain}: the motion is no longer finite at a step of {self.late[chain]:.3g} s; "
+                "check its parameters, or set a smaller step or a larger refine"
+            )
+
+    def _collect(self, values):
+        """(groups, …, width) → (…, lanes)."""
+        collected = np.empty((*values.shape[1:-1], self.chain.lanes))
+        collected[..., self.dealt] = values.transpose(*range(1, values.ndim - 1), 0, values.ndim - 1)
+        return collected
+
+    def history(self):
         """The results in the chains' own order, contacts that the wave never reached at zero."""
-        place = np.empty(len(order), dtype=int)
-        place[order] = np.arange(len(order))
-        spare = dealt.size - len(order)
-
-        def collect(values):
-            values = values if dealt.shape[1] > 1 else values[..., None]
-            flat = np.moveaxis(values, 0, -2).reshape(*values.shape[1:-1], place.size + spare)
-            return np.ascontiguousarray(flat[..., place])
-
-        force = np.zeros((self.samples, len(self.wanted), len(order)))
-        for r, c in enumerate(self.contacts):
-            force[:, self.wanted.index(c)] = collect(self.out[:, :, r])
-        entries = int(self.status[:, 1].min()) if self.audit else 0
-        balance = collect(self.balance)[:entries]
-        width = dealt.shape[1]
+        force = self.out
+        if len(self.recorded) < len(self.wanted):
+            force = np.zeros((self.chain.lanes, len(self.wanted), self.samples))
+            force[:, [c < self.bodies for c in self.wanted]] = self.out
+        entries = int(self.status[:, kernel.BALANCED].min())
+        balance = self._collect(self.balance[:, :entries])
         return History(
             time=np.arange(self.samples) * self.interval,
             contacts=self.wanted,
-            force=force,
-            energy=balance[:, 0] if entries else np.zeros((0, len(order))),
-            momentum=balance[:, 1] if entries else np.zeros((0, len(order))),
-            striker_speed=collect(self.v[:, 0]),
-            step=np.repeat(self.step, width)[place],
+            force=force.transpose(2, 1, 0),
+            energy=balance[:, 0] if self.laws.stores_energy else balance[:0, 0],
+            momentum=balance[:, 1],
+            striker_speed=self._collect(self.table[:, 0, V]),
+            step=self.late,
         )
 
 

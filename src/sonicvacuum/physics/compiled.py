@@ -1,0 +1,158 @@
+"""A cache of compiled code that is never stale and that many processes may use at once.
+
+Numba's own cache looks at the file of one function only: an edit of any function that it calls goes
+unseen, and processes that write together may mix their files up. Here each compiled signature is one
+file, named by a digest of the signature and the processor, in a folder named by a digest of the whole
+package's source and of the versions of all that takes part. Nothing is ever overwritten with something else.
+
+The folder lies in the user's cache folder, or in $SONICVACUUM_CACHE_DIR. Where it cannot be written,
+code is compiled afresh by each process.
+"""
+
+import contextlib
+import hashlib
+import os
+import pickle
+import shutil
+import sys
+import tempfile
+from functools import lru_cache
+from pathlib import Path
+
+import llvmlite
+import numba
+import numpy as np
+from numba.core.caching import CompileResultCacheImpl, _Cache
+from numba.core.serialize import dumps
+
+_PACKAGE = Path(__file__).resolve().parents[1]
+_KEPT_FOLDERS = 8
+# Longer than any compilation: a process that still holds the lock then is taken for dead.
+_PATIENCE = 60.0
+
+
+def source_digest(package: Path = _PACKAGE) -> str:
+    """Digest of all Python files of a package and of the versions of what compiles them."""
+    digest = hashlib.sha256()
+    versions = (sys.version, numba.__version__, llvmlite.__version__, np.__version__)
+    digest.update(repr(versions).encode())
+    for path in sorted(package.rglob("*.py")):
+        digest.update(str(path.relative_to(package)).encode())
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:20]
+
+
+@lru_cache(maxsize=1)
+def cache_folder() -> Path | None:
+    """This version's folder, made if need be; None where it cannot be written."""
+    try:
+        base = os.environ.get("SONICVACUUM_CACHE_DIR") or _user_folder()
+        folder = Path(base) / f"compiled-{source_digest()}"
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+        os.utime(folder)
+    except OSError:
+        return None
+    with contextlib.suppress(OSError):
+        _prune(folder)
+    return folder
+
+
+def _user_folder():
+    from platformdirs import user_cache_dir
+
+    return user_cache_dir("sonicvacuum", appauthor=False)
+
+
+def _prune(folder):
+    """Remove all but the folders used last."""
+    others = [f for f in folder.parent.glob("compiled-*") if f != folder]
+    for old in sorted(others, key=lambda f: f.stat().st_mtime)[: -_KEPT_FOLDERS + 1]:
+        shutil.rmtree(old, ignore_errors=True)
+
+
+class _SignatureCache(_Cache):
+    """Numba's interface to a cache: one file per signature."""
+
+    def __init__(self, function):
+        self._function = function
+
+    @property
+    def cache_path(self):
+        return str(cache_folder())
+
+    def enable(self):
+        pass
+
+    def disable(self):
+        pass
+
+    def flush(self):
+        pass
+
+    def path(self, signature, target):
+        key = (self._function.__qualname__, str(signature), target.codegen().magic_tuple())
+        return cache_folder() / f"{hashlib.sha256(repr(key).encode()).hexdigest()[:32]}.bin"
+
+    def load_overload(self, sig, target_context):
+        if cache_folder() is None:
+            return None
+        # Whatever is wrong with the file, compiling afresh is the cure.
+        with contextlib.suppress(Exception):
+            payload = pickle.loads(self.path(sig, target_context).read_bytes())
+            target_context.refresh()
+            return CompileResultCacheImpl.rebuild(None, target_context, payload)
+        return None
+
+    def save_overload(self, sig, data):
+        if cache_folder() is None:
+            return
+        with contextlib.suppress(OSError):
+            payload = dumps(data._reduce())
+            path = self.path(sig, data.target_context)
+            with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as file:
+                file.write(payload)
+            os.replace(file.name, path)
+
+
+def cached(dispatcher):
+    """Give a Numba function this cache instead of Numba's own."""
+    dispatcher._cache = _SignatureCache(dispatcher.py_func)
+    return dispatcher
+
+
+_prepared = set()
+
+
+def prepare(dispatcher, name: str, arguments: tuple) -> None:
+    """Load or compile a function for the types of `arguments`, whose signature goes by `name`.
+
+    Of several processes that lack it one compiles, the others wait and load.
+    """
+    if name not in _prepared:
+        _load_or_compile(dispatcher, tuple(numba.typeof(a) for a in arguments))
+        _prepared.add(name)
+
+
+def _load_or_compile(dispatcher, signature):
+    folder = cache_folder()
+    path = dispatcher._cache.path(signature, dispatcher.targetctx) if folder else None
+    if path is None or path.exists():
+        dispatcher.compile(signature)
+        return
+    with _lock(path.with_suffix(".lock")):
+        dispatcher.compile(signature)
+
+
+@contextlib.contextmanager
+def _lock(path):
+    from filelock import FileLock, Timeout
+
+    lock = FileLock(path)
+    with contextlib.suppress(Timeout, OSError):
+        lock.acquire(timeout=_PATIENCE)
+    try:
+        yield
+    finally:
+        lock.release()

@@ -1,0 +1,204 @@
+"""From a law set to machine code: the formulas of a composition, chained into one function each.
+
+The functions without a body here exist in compiled code only: `@overload` gives Numba, for each
+`Composition`, a source text that calls the formulas of its terms and nothing else.
+"""
+
+from numba import njit
+from numba.extending import overload
+
+from sonicvacuum.physics import lanes
+from sonicvacuum.physics.table import INLINED, REST, REST_FORCE, first_memory, get, put, zero
+
+
+def _compiled(function):
+    return njit(**INLINED)(function)
+
+
+class _Source:
+    """Source text of one function that evaluates formulas of a law set at a row of the table."""
+
+    def __init__(self, composition, signature):
+        self.composition, self.laws = composition, composition.laws
+        self.lines = [f"def composed({signature}):"]
+        self.namespace = {name: getattr(lanes, name) for name in ("select", "positive", "without_fusing")}
+        self.namespace |= {"get": get, "put": put}
+
+    def call(self, term, what, *arguments):
+        """The call of one formula of a term, its coefficients read from the table."""
+        key = f"{what}_{len(self.namespace)}"
+        self.namespace[key] = _compiled(getattr(term, what))
+        start = self.composition.first_coefficient + self.laws.first_coefficient[term.name]
+        read = [f"get(c, table, body, {start + k})" for k in range(term.coefficients)]
+        return f"{key}({', '.join([*arguments, *read])})"
+
+    def add(self, *lines):
+        self.lines += [f"    {line}" for line in lines]
+
+    def add_elastic(self, first_memory):
+        """Leave the elastic force before and after path dependence in `loading` and `elastic`."""
+        (base,) = self.laws.in_slot("elastic")
+        self.add(f"loading = {self.call(base, 'formula', 'delta')}")
+        for term in self.laws.in_slot("factor"):
+            self.add(f"loading = loading * {self.call(term, 'formula', 'delta')}")
+        self.add("elastic = loading")
+        for term in self.laws.in_slot("path"):
+            largest = f"get(c, table, body, {first_memory} + {self.laws.memory_of[term.name]})"
+            self.add(f"elastic = {self.call(term, 'formula', 'delta', 'loading', largest)}")
+
+    def function(self):
+        """The finished Python function."""
+        exec("\n".join(self.lines), self.namespace)
+        return self.namespace["composed"]
+
+
+def push(c, table, body, approach, rate, first_memory):
+    """Force in N, beyond the static one, between a body and the next.
+
+    `approach` of the two since rest in m, its `rate` in m/s; `first_memory`: column of the memory to use.
+    """
+    raise NotImplementedError("compiled code only")
+
+
+@overload(push, jit_options=INLINED)
+def _push(c, table, body, approach, rate, first_memory):
+    laws = c.composition.laws
+    source = _Source(c.composition, "c, table, body, approach, rate, first_memory")
+    source.add(_delta(laws))
+    source.add_elastic("first_memory")
+    source.add("force = elastic")
+    for term in laws.in_slot("force"):
+        source.add(f"force = force + {source.call(term, 'formula', 'delta', 'rate', 'elastic')}")
+    for term in laws.in_slot("memory"):
+        state = f"get(c, table, body, first_memory + {laws.memory_of[term.name]})"
+        source.add(f"force = force + {source.call(term, 'formula', 'elastic', state)}")
+    if not laws.is_positional:
+        # A lone elastic force is already zero out of contact and never negative.
+        source.add("force = select(delta, positive(force), 0.0)")
+    if laws.preloaded:
+        source.add(f"force = without_fusing(force, get(c, table, body, {REST_FORCE}))")
+    source.add("return force")
+    return source.function()
+
+
+def set_rest_force(c, table, body):
+    """Keep the static force of a contact.
+
+    By the law itself: what is at rest then stays so to the bit.
+    """
+    raise NotImplementedError("compiled code only")
+
+
+@overload(set_rest_force, jit_options=INLINED)
+def _set_rest_force(c, table, body):
+    if not c.composition.laws.preloaded:
+        return lambda c, table, body: None
+
+    def set_rest_force(c, table, body):
+        put(c, table, body, REST_FORCE, zero(c))
+        put(c, table, body, REST_FORCE, push(c, table, body, zero(c), zero(c), first_memory(c)))
+
+    return set_rest_force
+
+
+def _delta(laws):
+    rest = f" + get(c, table, body, {REST})" if laws.preloaded else ""
+    return f"delta = approach{rest}"
+
+
+def advance_memory(c, table, body, approach, keep, gain, step):
+    """One low-storage Runge–Kutta stage of the memory of the contact behind a body."""
+    raise NotImplementedError("compiled code only")
+
+
+@overload(advance_memory, jit_options=INLINED)
+def _advance_memory(c, table, body, approach, keep, gain, step):
+    composition, laws = c.composition, c.composition.laws
+    source = _Source(composition, "c, table, body, approach, keep, gain, step")
+    if composition.memories:
+        source.add(_delta(laws))
+        source.add_elastic(composition.first_memory)
+    for term in laws.in_slot("path"):
+        column = composition.first_memory + laws.memory_of[term.name]
+        source.add(f"largest = get(c, table, body, {column})")
+        source.add(f"put(c, table, body, {column}, select(delta - largest, delta, largest))")
+    for term in laws.in_slot("memory"):
+        k = laws.memory_of[term.name]
+        column, increment = composition.first_memory + k, composition.first_increment + 2 + k
+        growth = source.call(term, "growth", "elastic", "state")
+        source.add(
+            f"state = get(c, table, body, {column})",
+            f"change = keep * get(c, table, body, {increment}) + step * {growth}",
+            f"put(c, table, body, {increment}, select(delta, change, 0.0))",
+            f"put(c, table, body, {column}, select(delta, state + gain * change, 0.0))",
+        )
+    source.add("return None")
+    return source.function()
+
+
+def body_acceleration(c, table, body, velocity):
+    """Acceleration in m/s² of a bead by drag and friction."""
+    raise NotImplementedError("compiled code only")
+
+
+@overload(body_acceleration, jit_options=INLINED)
+def _body_acceleration(c, table, body, velocity):
+    source = _Source(c.composition, "c, table, body, velocity")
+    calls = [source.call(t, "formula", "velocity") for t in c.composition.laws.in_slot("body")]
+    source.add(f"return {' + '.join(calls) if calls else '0.0 * velocity'}")
+    return source.function()
+
+
+def stored_energy(c, table, body, approach):
+    """Elastic energy in J of a contact beyond that at rest, less the work of its static force."""
+    raise NotImplementedError("compiled code only")
+
+
+@overload(stored_energy, jit_options=INLINED)
+def _stored_energy(c, table, body, approach):
+    laws = c.composition.laws
+    source = _Source(c.composition, "c, table, body, approach")
+    if not laws.stores_energy:
+        source.add("return 0.0 * approach")
+        return source.function()
+    (base,) = laws.in_slot("elastic")
+    source.add(_delta(laws), f"energy = {source.call(base, 'energy', 'delta')}")
+    if laws.preloaded:
+        source.add(f"rest = get(c, table, body, {REST})", f"force = get(c, table, body, {REST_FORCE})")
+        source.add(f"energy = energy - {source.call(base, 'energy', 'rest')} - force * approach")
+    source.add("return energy")
+    return source.function()
+
+
+def keep_memory(c, table, body):
+    """Copy the memory of a contact to the columns `old`."""
+    raise NotImplementedError("compiled code only")
+
+
+@overload(keep_memory, jit_options=INLINED)
+def _keep_memory(c, table, body):
+    composition = c.composition
+    source = _Source(composition, "c, table, body")
+    for k in range(composition.memories):
+        memory = f"get(c, table, body, {composition.first_memory + k})"
+        source.add(f"put(c, table, body, {composition.first_old + k}, {memory})")
+    source.add("return None")
+    return source.function()
+
+
+def blend_memory(c, table, body, fraction):
+    """Leave the memory at a fraction of the step in the columns `blend`."""
+    raise NotImplementedError("compiled code only")
+
+
+@overload(blend_memory, jit_options=INLINED)
+def _blend_memory(c, table, body, fraction):
+    composition = c.composition
+    source = _Source(composition, "c, table, body, fraction")
+    for k in range(composition.memories):
+        old = f"get(c, table, body, {composition.first_old + k})"
+        new = f"get(c, table, body, {composition.first_memory + k})"
+        blend = f"{old} * (1.0 - fraction) + {new} * fraction"
+        source.add(f"put(c, table, body, {composition.first_blend + k}, {blend})")
+    source.add("return None")
+    return source.function()
