@@ -54,7 +54,8 @@ def test_the_ids_are_the_canonical_ones_in_order():
 
 @every_effect
 def test_the_header_is_complete_and_closed(one):
-    texts = ("id", "title", "missing", "equation", "reference", "signature", "when_to_use", "when_not")
+    texts = ("id", "title", "missing", "equation", "energy", "reference")
+    texts += ("signature", "when_to_use", "when_not")
     for name in texts:
         assert getattr(one, name).strip() == getattr(one, name) != "", name
     assert "\n" not in one.missing

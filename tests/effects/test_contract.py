@@ -62,6 +62,15 @@ def test_agrees_with_a_second_implementation(id, name):
 
 
 @every_switch
+def test_contacts_never_pull(id, name):
+    force = batch(id, name).history.force
+    # Loads at rest are not in the recorded force; they are a fraction of a newton in any of the batches.
+    at_rest = batch(id, name).setup.chain.static_forces(force.shape[1])
+    assert np.all(force + at_rest >= -1e-12 * force.max())  # rounding of the load at rest
+    assert force.max() > 0.5
+
+
+@every_switch
 def test_a_lane_in_which_it_is_off_is_nominal(id, name):
     b = batch(id, name)
     symplectic = b.setup.chain.laws().splits
@@ -106,6 +115,21 @@ def test_lanes_are_single_runs(id):
     for k in range(len(strengths)):
         alone = one.apply(setup, **{n: float(v[k]) for n, v in parameters.items()}, **place)
         _, single = run(alone, **step)
+        # Lanes take square roots to 2e-13 each; thousands of steps sum them up.
+        np.testing.assert_allclose(lanes[..., k], single[..., 0], rtol=0, atol=1e-9 * lanes.max())
+
+
+@pytest.mark.parametrize(
+    ("id", "places"), [("mass-defect", (1, 3, 6)), ("contact-gap", (2, 3, 6)), ("sensor-gain", (0, 1, 0))]
+)
+def test_each_lane_may_have_its_own_place(id, places):
+    one, setup, step = effect(id), nominal(), {"step": 5e-7, "refine": 1}
+    p = one.parameters[0]
+    given = np.array([p.at(s, setup) for s in (1.0, 0.5, 0.25)])
+    together = one.apply(setup, **{p.name: given, one.places: np.array(places)})
+    _, lanes = run(in_lanes(together, 3), **step)
+    for k, place in enumerate(places):
+        _, single = run(one.apply(setup, **{p.name: given[k], one.places: place}), **step)
         # Lanes take square roots to 2e-13 each; thousands of steps sum them up.
         np.testing.assert_allclose(lanes[..., k], single[..., 0], rtol=0, atol=1e-9 * lanes.max())
 

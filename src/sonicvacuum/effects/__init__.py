@@ -2,9 +2,9 @@
 
 The nominal model is a chain of Hertz contacts with the record's constants, under gravity and preload as
 recorded, read by ideal gauges. An effect is one file here with one header (`effects.base.Effect`): what is
-missing, the equation, the reference, parameters with unit, off value, bounds, prior and scale, what it moves
-in the readings and which way, when to use it and when not. At its off value an effect returns the setup
-untouched, so that off and absent are the same to the bit.
+missing, the equation, its energy, the reference, parameters with unit, off value, bounds, prior and scale,
+what it moves in the readings and which way, when to use it and when not. At its off value an effect returns
+the setup untouched, so that off and absent are the same to the bit.
 
     from sonicvacuum.effects import Setup, effect
 

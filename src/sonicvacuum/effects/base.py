@@ -104,6 +104,7 @@ class Effect:
         title: a few words.
         missing: what the nominal model lacks, one line.
         equation: what is added or replaced, plain text.
+        energy: what it stores or takes, per contact or body; v is the rate of delta, u' a body's velocity.
         reference: where the form comes from; says so where a form was chosen.
         parameters: continuous parameters; at least one has an off value.
         places: "bead", "contact" or "sensor" where the effect sits at one of them, else None; that word is
@@ -121,6 +122,7 @@ class Effect:
     title: str
     missing: str
     equation: str
+    energy: str
     reference: str
     parameters: tuple[Parameter, ...]
     signature: str

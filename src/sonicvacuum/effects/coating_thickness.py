@@ -77,6 +77,7 @@ EFFECT = Effect(
     "stiffens with load",
     equation="F = F_Hertz g(chi), chi = sqrt(R* delta)/h, g = 1 + c1 chi + c2 chi^2 + c3 chi^3 + c4 "
     "chi^4 up to its inflection, then its tangent; c1..c4 from the layer's nu",
+    energy="stores the integral of F over delta per contact",
     reference="Dimitriadis et al., Biophys. J. 82, 2798 (2002), Eqs. 12-13; limits: Johnson, Contact "
     "Mechanics (1985), Sec. 5.8; Perriot & Barthel, J. Mater. Res. 19, 600 (2004). Chosen "
     "here: the tangent beyond the inflection",

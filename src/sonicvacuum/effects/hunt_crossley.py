@@ -27,6 +27,7 @@ EFFECT = Effect(
     title="Damping in proportion to the force",
     missing="contact damping in proportion to the elastic force",
     equation="F = K delta^{3/2} (1 + (3/2) c v) in contact, cut at zero",
+    energy="takes (3/2) c K delta^{3/2} v^2 per time and contact",
     reference="Hunt & Crossley, J. Appl. Mech. 42, 440 (1975)",
     parameters=(
         Parameter("damping_s_per_m", "s/m", 0.0, 1e-4, 10.0, "log-uniform", 0.1, "c, restitution 1 - c v"),

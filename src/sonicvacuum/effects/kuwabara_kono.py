@@ -30,6 +30,7 @@ EFFECT = Effect(
     title="Viscoelastic Hertz contact",
     missing="the beads' material is viscous as well as elastic",
     equation="F = K delta^{3/2} + (3/2) A K delta^{1/2} v in contact, cut at zero",
+    energy="takes (3/2) A K delta^{1/2} v^2 per time and contact",
     reference="Kuwabara & Kono, Jpn. J. Appl. Phys. 26, 1230 (1987); Brilliantov, Spahn, Hertzsch & "
     "Pöschel, Phys. Rev. E 53, 5382 (1996), Eq. 21",
     parameters=(Parameter("time_us", "us", 0.0, 1e-3, 100.0, "log-uniform", 1.0, "dissipative time A"),),

@@ -27,6 +27,7 @@ EFFECT = Effect(
     title="Linear dashpot",
     missing="Kelvin-Voigt contact damping",
     equation="F = K delta^{3/2} + c v in contact, cut at zero",
+    energy="takes c v^2 per time and contact",
     reference="Herbold & Nesterenko, Phys. Rev. E 75, 021304 (2007)",
     parameters=(
         Parameter(

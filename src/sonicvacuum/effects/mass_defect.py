@@ -13,6 +13,7 @@ EFFECT = Effect(
     title="Mass defect",
     missing="one bead (a sensor's) is heavier or lighter",
     equation="m_j -> r m_j",
+    energy="(r - 1) m u'^2/2 of kinetic energy",
     reference="Sen, Hong, Bang, Avalos & Doney, Phys. Rep. 462, 21 (2008), Sec. 4",
     parameters=(
         Parameter("mass_ratio", "1", 1.0, 0.2, 5.0, "log-uniform", 0.1, "mass over that of the others", 1e-3),

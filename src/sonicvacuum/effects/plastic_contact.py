@@ -36,6 +36,8 @@ EFFECT = Effect(
     equation="delta_res = e delta_max; unloading and reloading F = F_max ((delta - "
     "delta_res)/(delta_max - delta_res))^{3/2} up to delta_max, loading F = K delta^{3/2} "
     "beyond",
+    energy="takes the fraction e of the loading work (2/5) K delta_max^{5/2}; nothing while reloading "
+    "below delta_max",
     reference="Walton & Braun, J. Rheol. 30, 949 (1986); Thornton, J. Appl. Mech. 64, 383 (1997). "
     "Chosen here: Hertzian shape of both branches and a residual in proportion to the "
     "largest compression",

@@ -40,6 +40,8 @@ EFFECT = Effect(
     missing="standard-linear-solid contact: rate stiffening with one relaxation time",
     equation="F = K delta^{3/2} + q in contact, cut at zero; dq/dt + q/tau = g d(K delta^{3/2})/dt; q "
     "= 0 out of contact and at rest",
+    energy="q v per time and contact is stored while loading and given back in part; never more than "
+    "was taken since rest",
     reference="Flügge, Viscoelasticity (Springer, 1975), ch. 1 (Zener's three-parameter solid); chosen "
     "here: the Maxwell branch relaxes the elastic contact force, as in the linear theory of "
     "equal histories",

@@ -24,6 +24,7 @@ EFFECT = Effect(
     title="Sensor droop",
     missing="piezo discharge: readings sag and undershoot",
     equation="dy/dt + y/tau = dx/dt, all sensors",
+    energy="none: the chain is not touched",
     reference="first-order RC circuit; Daraio & Nesterenko, Phys. Rev. E 73, 026612 (2006), Sec. II: "
     "RC about 10^3 us",
     parameters=(

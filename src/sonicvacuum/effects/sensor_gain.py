@@ -26,6 +26,7 @@ EFFECT = Effect(
     title="Sensor gain",
     missing="one sensor is miscalibrated beyond its stated error",
     equation="y -> r y, one sensor",
+    energy="none: the chain is not touched",
     reference="calibration; no particular source",
     parameters=(
         Parameter("gain_ratio", "1", 1.0, 0.2, 5.0, "log-uniform", 0.1, "gain over the stated one", 1e-6),

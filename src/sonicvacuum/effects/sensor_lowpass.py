@@ -22,6 +22,7 @@ EFFECT = Effect(
     title="Sensor bandwidth",
     missing="finite bandwidth of gauges or electronics",
     equation="tau dy/dt + y = x, all sensors",
+    energy="none: the chain is not touched",
     reference="first-order RC circuit; no particular source",
     parameters=(Parameter("tau_us", "us", 0.0, 0.05, 300.0, "log-uniform", 2.0, "time constant", 0.0),),
     signature="readings later by tau, lower and longer, narrow pulses most; area and decay along the "

@@ -29,6 +29,7 @@ EFFECT = Effect(
     title="Gauge off centre",
     missing="the gauge is not in the middle of its bead",
     equation="y = (1/2 + e) F_before + (1/2 - e) F_after",
+    energy="none: the chain is not touched",
     reference="Daraio & Nesterenko, Phys. Rev. E 73, 026612 (2006), Sec. II: gauges placed to 1 mm",
     parameters=(
         Parameter(

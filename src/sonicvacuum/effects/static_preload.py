@@ -16,6 +16,7 @@ EFFECT = Effect(
     title="Static preload",
     missing="an axial preload that nobody wrote down",
     equation="F0 -> F0 + f, a constant force on bead 1 borne by all contacts down to the wall",
+    energy="the constant force does the work f u on bead 1",
     reference="Daraio, Nesterenko, Herbold & Jin, Phys. Rev. E 73, 026610 (2006)",
     parameters=(
         Parameter(

@@ -18,6 +18,7 @@ EFFECT = Effect(
     missing="the striker is faster, slower, heavier or lighter than recorded, in all runs, beyond the "
     "stated error",
     equation="v -> r_v v, m_striker -> r_m m_striker (and its weight)",
+    energy="the impact energy goes as r_m r_v^2",
     reference="conservation of momentum; no particular source",
     parameters=(
         Parameter(

@@ -31,6 +31,7 @@ EFFECT = Effect(
     missing="contact damping with a restitution that does not depend on speed",
     equation="F = K delta^{3/2} + alpha sqrt(m_eff K) delta^{1/4} v in contact, cut at zero; 1/m_eff = "
     "1/m_i + 1/m_{i+1}",
+    energy="takes alpha sqrt(m_eff K) delta^{1/4} v^2 per time and contact",
     reference="Tsuji, Tanaka & Ishida, Powder Technol. 71, 239 (1992), Eq. 14; exact restitution: "
     "Antypov & Elliott, EPL 94, 50004 (2011)",
     parameters=(Parameter("alpha", "1", 0.0, 1e-4, 2.0, "log-uniform", 0.05, "damping number"),),

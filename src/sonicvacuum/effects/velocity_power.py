@@ -28,6 +28,7 @@ EFFECT = Effect(
     title="Damping by a power of velocity",
     missing="dissipation as a power of relative velocity",
     equation="F = K delta^{3/2} + gamma sgn(v) |v|^alpha in contact, cut at zero",
+    energy="takes gamma |v|^{alpha+1} per time and contact",
     reference="Carretero-González, Khatri, Porter, Kevrekidis & Daraio, Phys. Rev. Lett. 102, 024102 "
     "(2009), alpha = 1.75; chosen here: velocities in m/s",
     parameters=(

@@ -13,6 +13,7 @@ EFFECT = Effect(
     title="Wall compliance",
     missing="the wall contact is softer or stiffer than its material",
     equation="K_wall -> r K_wall",
+    energy="stores (2/5) r K_wall delta^{5/2} in the wall contact",
     reference="Job, Melo, Sokolow & Sen, Phys. Rev. Lett. 94, 178002 (2005)",
     parameters=(
         Parameter(
