@@ -17,9 +17,9 @@ WEAK = 10.0
 # Estimated over stated noise outside of these is worth a word, given enough samples at rest.
 NOISE = (0.5, 2.0)
 REST_SAMPLES = 20
-# Forces count as rest until they first exceed this many standard deviations, and for so much of that time.
+# A trace rests until it exceeds so many standard deviations and 5 % of its peak; the last part is left out.
 ONSET = 6.0
-QUIET = 0.8
+QUIET = 0.7
 # Equal samples in a row at the top of a trace: the recorder's range was exceeded.
 CLIPPED = 5
 HEAVY = 300.0
@@ -44,7 +44,7 @@ def warnings(record: Record) -> list[str]:
 def noise_at_rest(run: Run, gauge: Gauge) -> tuple[float, float, int]:
     """Mean and standard deviation in N of a trace before the pulse arrives, and the number of samples."""
     force = run.signals.readings[gauge.id]
-    above = np.abs(force) > max(ONSET * gauge.sigma, 0.02 * float(np.abs(force).max()))
+    above = np.abs(force) > max(ONSET * gauge.sigma, 0.05 * float(np.abs(force).max()))
     quiet = force[: int(QUIET * (above.argmax() if above.any() else len(force)))]
     if len(quiet) < 2:
         return 0.0, 0.0, len(quiet)
