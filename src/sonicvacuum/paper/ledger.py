@@ -155,8 +155,7 @@ def _reason(metrics, claim, target, rows, column, outcome):
 
 def told(rows: Mapping[str, Row], column: str) -> str:
     """What gave the number: the column, where columns differ."""
-    known = [r for r in rows.values() if r.known]
-    one = all(r.key == known[0].key for r in known)
+    one = len({r.key for r in rows.values()}) == 1
     return "all columns:" if one else f"{column}:"
 
 

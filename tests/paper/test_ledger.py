@@ -1,0 +1,163 @@
+"""The ledger made from a few metrics: which column decides, what the reason says, how rows are ranked."""
+
+import csv
+import math
+
+import pytest
+
+from sonicvacuum.files import InputError
+from sonicvacuum.paper import assumptions, ledger
+from sonicvacuum.paper.assumptions import Assumption
+from sonicvacuum.paper.columns import Metrics
+from sonicvacuum.paper.ledger import Claim
+from sonicvacuum.paper.rows import Row, absent
+
+COLUMNS = {"handbook": ["handbook", "nominal"], "matched": ["matched", "nominal"]}
+
+
+def claim(test="equals", value="197", sigma="19.7", metric="fig3a/speed/g9-g5", unit="m/s", name="speed"):
+    return Claim(name, "Fig. 3a", "", "speed", unit, value, sigma, "", test, metric, "A note.")
+
+
+def assumption(test="at_most", limit="0.1", metric="fig3a/depth/"):
+    return Assumption("depth", "stated", "Shallow.", "ratio", "1", limit, test, metric, "A note.")
+
+
+def speeds(handbook, matched, error=0.0):
+    return [
+        Row("fig3a.handbook", "speed", "g9-g5", handbook, "m/s", error),
+        Row("fig3a.matched", "speed", "g9-g5", matched, "m/s", error),
+    ]
+
+
+def one(rows, a_claim, columns=None):
+    return ledger.build(Metrics(rows, columns or COLUMNS), [a_claim])[0]
+
+
+def test_matched_decides_and_the_other_is_told_where_it_differs():
+    row = one(speeds(113.1, 219.7), claim())
+    assert (row.handbook, row.matched) == (113.1, 219.7)
+    assert row.verdict == "reproduced"
+    assert row.difference_sigma == pytest.approx(22.7 / 19.7, rel=1e-12)
+    assert row.reason == (
+        "matched: 219.7 against 197 ± 19.7 m/s (+1.2 σ); handbook: 113.1 (-4.3 σ), disagrees."
+    )
+
+
+def test_one_value_for_all_columns_says_so():
+    row = one(
+        [Row("fig3b.nominal", "speed", "g9-g5", 570.0, "m/s")], claim(metric="fig3b/speed/g9-g5", value="578")
+    )
+    assert row.handbook == row.matched == 570.0
+    assert row.reason.startswith("all columns: 570 against 578")
+
+
+def test_named_column_is_filled_once_there_is_one():
+    rows = [*speeds(113.1, 260.0), Row("fig3a.named", "speed", "g9-g5", 200.0, "m/s")]
+    without = one(rows, claim())
+    assert math.isnan(without.named) and without.verdict == "disagrees"
+    with_named = one(rows, claim(), {**COLUMNS, "named": ["named"]})
+    assert with_named.named == 200.0
+    assert with_named.verdict == "disagrees"
+    assert "named: 200 (+0.15 σ), would be reproduced" in with_named.reason
+
+
+def test_named_decides_what_nothing_else_tells():
+    rows = [
+        absent("compare.matched", "losses", "g9", "1", "no loss effect has been named"),
+        Row("compare.named", "losses", "g9", 1.0, "1"),
+    ]
+    row = one(rows, claim("order", "1", "", "compare/losses/g9", "1"), {**COLUMNS, "named": ["named"]})
+    assert (row.verdict, row.reason) == ("reproduced", "named: the order holds.")
+
+
+def test_absent_metric_is_not_testable_and_quotes_its_companion():
+    rows = [
+        absent("fig3a.matched", "duration", "g9", "us", "merged: the tail"),
+        Row("fig3a.matched", "duration_05", "g9", 88.2, "us"),
+    ]
+    row = one(rows, claim(metric="fig3a/duration/g9", unit="us"))
+    assert row.verdict == "not testable"
+    assert row.reason == "Not testable: merged: the tail; duration_05 is 88.2 us."
+
+
+def test_metric_that_no_run_made_is_not_testable():
+    row = one([], claim())
+    assert row.verdict == "not testable" and "fig3a/speed/g9-g5 has not been found" in row.reason
+
+
+def test_numerical_error_keeps_a_difference_from_counting():
+    assert one(speeds(1.0, 300.0), claim()).verdict == "disagrees"
+    assert one(speeds(1.0, 300.0, error=110.0), claim()).verdict == "reproduced"
+
+
+def test_disagreements_by_size_those_without_sigma_last():
+    rows = speeds(0.0, 300.0)
+    claims = [
+        claim("at_most", "100", "", name="strict"),
+        claim(name="five"),
+        claim(name="larger", sigma="1"),
+        claim(name="fine", sigma="100"),
+    ]
+    ranked = ledger.disagreements(ledger.build(Metrics(rows, COLUMNS), claims))
+    assert [r.claim for r in ranked] == ["larger", "five", "strict"]
+
+
+def test_written_ledger_has_the_promised_columns(tmp_path):
+    ledger.write([one(speeds(113.1, 219.7), claim())], tmp_path / "ledger.csv")
+    with open(tmp_path / "ledger.csv", newline="") as stream:
+        header, row = csv.reader(stream)
+    assert ",".join(header) == (
+        "claim,section,quantity,unit,measured,sigma,handbook,matched,named,numerical_error,difference_sigma,verdict,reason"
+    )
+    assert row[4:10] == ["197", "19.7", "113.1", "219.7", "", "0"]
+
+
+def test_malformed_metric_and_table_are_refused(tmp_path):
+    with pytest.raises(
+        InputError, match=r"claims\.csv: speed: metric is 'fig3a'; write case/quantity/sensor"
+    ):
+        one([], claim(metric="fig3a"))
+    path = tmp_path / "claims.csv"
+    path.write_text("claim,value\n")
+    with pytest.raises(InputError, match="the first line must read claim,section,statement"):
+        ledger.read_table(path, Claim)
+    names = "claim,section,statement,quantity,unit,value,sigma,sigma_source,test,metric,note"
+    path.write_text(f"{names}\n" + "a,,,,,1,1,,equals,x/y/z,\n" * 2)
+    with pytest.raises(InputError, match="a stands here 2 times"):
+        ledger.read_table(path, Claim)
+
+
+@pytest.mark.parametrize(
+    ("handbook", "matched", "verdict"),
+    [
+        (0.05, 0.05, "holds"),
+        (0.2, 0.3, "fails"),
+        (0.2, 0.05, "holds at matched only"),
+        (0.05, 0.2, "holds at handbook only"),
+    ],
+)
+def test_assumption_verdicts(handbook, matched, verdict):
+    rows = [Row(f"fig3a.{c}", "depth", "", v, "1") for c, v in (("handbook", handbook), ("matched", matched))]
+    row = assumptions.build(Metrics(rows, COLUMNS), [assumption()])[0]
+    assert row.verdict == verdict
+    assert row.reason == f"handbook {handbook:g}, matched {matched:g} against at most 0.1."
+
+
+def test_assumption_without_metric_or_value():
+    untested = assumptions.build(Metrics([], COLUMNS), [assumption("not-testable", "", "")])[0]
+    assert (untested.verdict, untested.reason) == ("not testable", "A note.")
+    gone = Metrics([absent("fig3a.matched", "depth", "", "1", "no pulse")], COLUMNS)
+    assert assumptions.build(gone, [assumption()])[0].verdict == "not testable"
+
+
+def test_assumption_within_numerical_error_holds():
+    rows = [Row("fig3a.matched", "depth", "", 0.101, "1", 0.002)]
+    assert assumptions.build(Metrics(rows, COLUMNS), [assumption()])[0].verdict == "holds"
+
+
+def test_written_audit_has_the_promised_columns(tmp_path):
+    rows = assumptions.build(Metrics([], COLUMNS), [assumption()])
+    assumptions.write(rows, tmp_path / "a.csv")
+    header = (tmp_path / "a.csv").read_text().splitlines()[0]
+    assert header == "assumption,section,statement,quantity,unit,limit,handbook,matched,verdict,reason"
