@@ -1,0 +1,119 @@
+"""One look for all figures, and bytes that depend on the numbers only.
+
+Sizes in millimetres of the printed page. Colours are those of Okabe and Ito, told apart in every kind of
+colour vision; line styles and widths say the same, for print in grey.
+"""
+
+from dataclasses import dataclass
+from io import BytesIO
+
+import matplotlib
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from sonicvacuum.files import replacing
+
+SINGLE, DOUBLE = 85.0, 175.0  # widths of a journal column and of a page, mm
+DOTS_PER_INCH = 300
+GREY, BAND = "#595959", "#d9d9d9"
+
+_SETTINGS = {
+    "font.family": "DejaVu Sans",  # comes with matplotlib, so it is the same everywhere
+    "font.size": 8.0,
+    "axes.labelsize": 8.0,
+    "xtick.labelsize": 7.5,
+    "ytick.labelsize": 7.5,
+    "legend.fontsize": 7.5,
+    "legend.frameon": False,
+    "mathtext.fontset": "dejavusans",
+    "axes.linewidth": 0.6,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+    "xtick.minor.width": 0.4,
+    "ytick.minor.width": 0.4,
+    "lines.solid_capstyle": "round",
+    "svg.hashsalt": "sonicvacuum",
+    "svg.fonttype": "path",
+}
+
+
+@dataclass(frozen=True)
+class Look:
+    """How one modulus is drawn."""
+
+    color: str
+    width: float
+    dashes: object
+    marker: str
+    name: str
+
+    @property
+    def line(self) -> dict:
+        """Keywords of a line."""
+        return {"color": self.color, "lw": self.width, "ls": self.dashes}
+
+    @property
+    def pale(self) -> dict:
+        """Keywords of what is drawn for completeness."""
+        return {**self.line, "lw": 0.7 * self.width, "alpha": 0.45}
+
+    def label(self, modulus_GPa: float) -> str:
+        """Text of a legend."""
+        return f"{modulus_GPa:g} GPa ({self.name})" if self.name else f"{modulus_GPa:g} GPa"
+
+
+_LOOKS = {
+    15.0: Look("#0072B2", 1.3, "-", "o", "matched by the paper"),
+    4.75: Look("#009E73", 0.9, (0, (5, 1.2, 1, 1.2)), "^", "membrane test"),
+    2.76: Look("#D55E00", 0.9, (0, (3.5, 1.2)), "s", "handbook"),
+    193.0: Look("#000000", 1.1, "-", "o", "steel"),
+}
+_OTHER = Look("#CC79A7", 1.0, (0, (1, 1)), "D", "")
+
+
+def look(modulus_GPa: float) -> Look:
+    """The look of a modulus; those that the paper does not mention share one."""
+    return _LOOKS.get(round(float(modulus_GPa), 6), _OTHER)
+
+
+def context():
+    """The settings under which figures are made and written."""
+    return matplotlib.rc_context({**matplotlib.rcParamsDefault, **_SETTINGS})
+
+
+def canvas(width_mm: float, height_mm: float) -> Figure:
+    """An empty figure of this size."""
+    figure = Figure(figsize=(width_mm / 25.4, height_mm / 25.4), dpi=DOTS_PER_INCH)
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def panel(figure: Figure, box_mm: tuple[float, float, float, float]) -> Axes:
+    """Axes whose frame is at (left, bottom, width, height) in mm."""
+    width, height = (25.4 * size for size in figure.get_size_inches())
+    left, bottom, wide, high = box_mm
+    return figure.add_axes((left / width, bottom / height, wide / width, high / height))
+
+
+def paragraph(text: str) -> str:
+    """A caption written over several lines, as one."""
+    return " ".join(text.split())
+
+
+def title(figure: Figure, left_mm: float, text: str) -> None:
+    """Title of a panel, "(a) …", at the top of the figure."""
+    width, height = (25.4 * size for size in figure.get_size_inches())
+    figure.text(left_mm / width, 1.0 - 3.0 / height, text, fontweight="bold", va="center")
+
+
+def save(figure: Figure, svg, png) -> None:
+    """Write a figure as SVG and PNG; no date, no version, fixed ids."""
+    with context():
+        for path, metadata in ((svg, {"Date": None, "Creator": None}), (png, {"Software": None})):
+            content = BytesIO()
+            figure.savefig(content, format=str(path).rsplit(".", 1)[-1], dpi=DOTS_PER_INCH, metadata=metadata)
+            with replacing(path, "wb") as stream:
+                stream.write(content.getvalue())
