@@ -83,6 +83,12 @@ def test_contact_duration_between_samples(start):
     assert contact_duration(time, force).value == pytest.approx(period, abs=bound)
 
 
+def test_ends_of_a_contact_lie_within_one_sample():
+    # A force that jumps, as with a dashpot: the line through 1.0 and 1.01 meets zero a hundred samples off.
+    force = np.array([0, 0, 1.0, 1.01, 1.02, 1.01, 1.0, 0, 0])
+    assert contact_duration(np.arange(9.0), force).value == 6.0
+
+
 def test_first_contact_of_several_counts():
     time = np.arange(60.0)
     force = np.interp(time, [0, 5, 10, 15, 30, 45, 50], [0, 0, 1, 0, 0, 5, 0]) ** 1.5

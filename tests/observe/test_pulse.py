@@ -89,6 +89,11 @@ def test_pulses_count_above_the_threshold_and_before_the_end():
     assert len(found(trace, until=-5.0)) == 1  # the main pulse always counts
 
 
+def test_end_of_the_search_lies_between_samples():
+    trace = train((0.0, 1.0), (4.0, 0.5))
+    assert (len(found(trace, until=4.0001)), len(found(trace, until=3.9999))) == (2, 1)
+
+
 def test_a_shallow_valley_does_not_separate_and_a_deeper_one_does():
     # Flat-topped hump with a dip of 4 % and of 6 %: the rule is 5 % of the main peak.
     for dip, count in ((0.04, 1), (0.06, 2)):
@@ -115,6 +120,20 @@ def test_merged_pulses_have_no_duration_below_the_valley():
     second = pulses(trace, main)[1]
     assert onset(trace, second, 0.01).reason.startswith("merged")
     assert ending(trace, second, 0.01).known
+
+
+def test_a_pulse_too_low_to_count_belongs_to_the_one_before():
+    trace = train((0.0, 1.0), (2.2, 0.14))
+    rise, fall = -math.acos(0.02**0.25), 2.2 + math.acos((0.02 / 0.14) ** 0.25)
+    lasting = duration(trace, main_pulse(trace), 0.02)
+    assert lasting.value == pytest.approx(fall - rise, abs=1e-5)  # fit of the crossings
+
+
+def test_level_between_the_peak_and_its_highest_sample_is_not_resolved():
+    trace = train((0.0, 1.0))
+    main = main_pulse(trace)
+    assert trace.force.max() < 0.99995 < main.force
+    assert duration(trace, main, 0.99995).reason.startswith("unresolved")
 
 
 def test_absent_pulse():

@@ -136,6 +136,8 @@ def test_peaks_in_the_wrong_order_are_no_passage():
     swapped = {"b13": readings["b17"], "b17": readings["b13"], "wall": readings["wall"]}
     back = measure("speed", swapped, time, PAPER, from_="b13", to="b17")
     assert math.isnan(back.value) and back.reason.startswith("no passage")
+    without = Run(swapped, time, Geometry(21, DIAMETER, PAPER.sensors[:2]))
+    assert without.reflection_time("b13").reason.startswith("unknown")
 
 
 @pytest.mark.parametrize("name", ON_RUN)

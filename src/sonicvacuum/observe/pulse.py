@@ -94,7 +94,7 @@ def pulses(
     """
     if not main.found:
         return ()
-    end = len(trace.force) if until == math.inf else 1 + int((until - trace.start) / trace.interval)
+    end = len(trace.force) if until == math.inf else 2 + int((until - trace.start) / trace.interval)
     found = [main, *_later(trace, main, end, prominence)]
     return tuple(p for p in found if p.force >= threshold * main.force and (p.time < until or p is main))
 
