@@ -1,14 +1,20 @@
 """What all rules share: the checked configuration, the names of cards and figures, the sources of each layer."""
 
+import sys
 from pathlib import Path
 
 import msgspec
 from snakemake.exceptions import WorkflowError
 
 from sonicvacuum import config as configuration
+from sonicvacuum.figures import cards_of
 from sonicvacuum.files import InputError
 
 CONFIG_FILE = "config.yaml"
+# For runs with conda; `make` has put the same packages on the path already.
+ENVIRONMENT = "../envs/locked.yaml"
+# Jobs call the command that stands beside this interpreter, whether or not its environment is activated.
+shell.prefix(f'export PATH="{Path(sys.executable).parent}:$PATH"; ')
 FIGURES = ["fig3", "fig4", "fig5", "fig6"]
 
 try:
@@ -31,7 +37,7 @@ LAYERS = {
     "physics": ["physics", "study.py", "observe/sensor.py", "cli/simulate.py"],
     "observe": ["observe", "paper", "cli/observe.py"],
     "ledger": ["paper", "cli/ledger.py"],
-    "figures": ["figures", "cli/draw.py"],
+    "figures": ["figures", "observe", "paper", "cli/draw.py"],
     "report": ["report", "cli/report.py"],
 }
 LOCKS = ["requirements.lock", "requirements-build.lock"]

@@ -3,10 +3,9 @@
 
 rule draw:
     input:
-        cards=lambda wildcards: expand("results/cards/{card}.json", card=drawn(wildcards.figure)),
-        histories=lambda wildcards: expand("results/histories/{card}.npz", card=drawn(wildcards.figure)),
-        metrics=lambda wildcards: expand("results/metrics/{card}.csv", card=drawn(wildcards.figure)),
-        sources=sources("card", "physics", "observe", "figures"),
+        cards=lambda wildcards: expand("results/cards/{card}.json", card=cards_of(wildcards.figure)),
+        histories=lambda wildcards: expand("results/histories/{card}.npz", card=cards_of(wildcards.figure)),
+        sources=sources("card", "physics", "figures"),
     output:
         table="figures/{figure}.csv",
         svg=report(
@@ -20,6 +19,8 @@ rule draw:
         "results/logs/draw/{figure}.log",
     benchmark:
         "results/benchmarks/draw/{figure}.tsv"
+    conda:
+        ENVIRONMENT
     message:
         "Drawing {wildcards.figure}"
     shell:

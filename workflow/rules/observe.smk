@@ -13,6 +13,8 @@ rule observe:
         "results/logs/observe/{card}.log",
     benchmark:
         "results/benchmarks/observe/{card}.tsv"
+    conda:
+        ENVIRONMENT
     message:
         "Reading the gauges of {wildcards.card}"
     shell:
@@ -25,15 +27,19 @@ rule metrics:
         metrics=expand("results/metrics/{card}.csv", card=CARDS),
         sources=sources("card", "physics", "observe"),
     output:
-        "results/metrics.csv",
+        metrics="results/metrics.csv",
+        absent="results/absent.csv",
     log:
         "results/logs/metrics.log",
     benchmark:
         "results/benchmarks/metrics.tsv"
+    conda:
+        ENVIRONMENT
     params:
+        config=CONFIG_FILE,
         # The columns of the ledger decide which variants are compared.
         ledger=CONFIG.ledger,
     message:
-        "Gathering the metrics of {CARDS}"
+        "Gathering the metrics of all cards"
     shell:
-        "sonicvacuum metrics {input.metrics} --config {CONFIG_FILE} --out {output} 2> {log}"
+        "sonicvacuum metrics {input.metrics} --config {params.config} --out {output.metrics} 2> {log}"

@@ -2,12 +2,12 @@
 
 CLAIMS = "workflow/resources/claims.csv"
 ASSUMPTIONS = "workflow/resources/assumptions.csv"
-REFERENCE = "workflow/resources/reference/ledger.csv"
 
 
 rule ledger:
     input:
         metrics="results/metrics.csv",
+        absent="results/absent.csv",
         claims=CLAIMS,
         sources=sources("card", "ledger"),
     output:
@@ -16,18 +16,22 @@ rule ledger:
         "results/logs/ledger.log",
     benchmark:
         "results/benchmarks/ledger.tsv"
+    conda:
+        ENVIRONMENT
     params:
+        config=CONFIG_FILE,
         columns=CONFIG.ledger,
     message:
         "Holding the claims against the metrics"
     shell:
-        "sonicvacuum ledger {input.metrics} --claims {input.claims} --config {CONFIG_FILE}"
+        "sonicvacuum ledger {input.metrics} --claims {input.claims} --config {params.config}"
         " --out {output} 2> {log}"
 
 
 rule audit:
     input:
         metrics="results/metrics.csv",
+        absent="results/absent.csv",
         assumptions=ASSUMPTIONS,
         sources=sources("card", "ledger"),
     output:
@@ -36,12 +40,15 @@ rule audit:
         "results/logs/audit.log",
     benchmark:
         "results/benchmarks/audit.tsv"
+    conda:
+        ENVIRONMENT
     params:
+        config=CONFIG_FILE,
         columns=CONFIG.ledger,
     message:
         "Holding the assumptions against the metrics"
     shell:
-        "sonicvacuum audit {input.metrics} --assumptions {input.assumptions} --config {CONFIG_FILE}"
+        "sonicvacuum audit {input.metrics} --assumptions {input.assumptions} --config {params.config}"
         " --out {output} 2> {log}"
 
 
@@ -63,6 +70,8 @@ rule page:
         "results/logs/page.log",
     benchmark:
         "results/benchmarks/page.tsv"
+    conda:
+        ENVIRONMENT
     params:
         figures=lambda wildcards, input: [f"--figure {path}" for path in input.figures],
         captions=lambda wildcards, input: [f"--caption {path}" for path in input.captions],
@@ -85,23 +94,41 @@ rule timings:
         "results/benchmarks.csv",
     log:
         "results/logs/timings.log",
+    conda:
+        ENVIRONMENT
     message:
         "Summarising the time that each rule took"
     shell:
         "sonicvacuum timings results/benchmarks --out {output} 2> {log}"
 
 
+# Run on purpose: the ledger of this run becomes the one that later runs are compared with.
 rule publish:
-    """Keep the present ledger in git as the reference and renew the README's table (run on purpose)."""
     input:
         "results/ledger.csv",
+    log:
+        "results/logs/publish.log",
     localrule: True
+    conda:
+        ENVIRONMENT
+    params:
+        readme="README.md",
+        reference="workflow/resources/reference/ledger.csv",
+    message:
+        "Keeping the ledger in git and in the README"
     shell:
-        "sonicvacuum publish --ledger {input} --readme README.md --reference {REFERENCE}"
+        "sonicvacuum publish --ledger {input} --readme {params.readme} --reference {params.reference}"
+        " 2> {log}"
 
 
+# Figure tables and ledger made anew in clean folders, compared with those in git.
 rule reproduce:
-    """Make figures' numbers and ledger anew in clean folders and compare them with those in git."""
+    log:
+        "results/logs/reproduce.log",
     localrule: True
+    conda:
+        ENVIRONMENT
+    message:
+        "Making everything anew in clean folders"
     shell:
-        "python workflow/scripts/reproduce.py"
+        "python workflow/scripts/reproduce.py 2>&1 | tee {log}"

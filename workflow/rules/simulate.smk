@@ -11,6 +11,8 @@ rule simulate:
         "results/logs/simulate/{card}.log",
     benchmark:
         "results/benchmarks/simulate/{card}.tsv"
+    conda:
+        ENVIRONMENT
     message:
         "Simulating {wildcards.card}"
     shell:

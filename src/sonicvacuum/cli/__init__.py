@@ -21,6 +21,7 @@ VERBS = {
     "ledger": "ledger",
     "audit": "ledger",
     "draw": "draw",
+    "captions": "draw",
     "report": "report",
     "publish": "report",
     "timings": "report",

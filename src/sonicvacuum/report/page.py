@@ -4,6 +4,7 @@ import re
 from pathlib import Path
 
 import jinja2
+from markupsafe import Markup, escape
 
 from sonicvacuum.card import Card
 from sonicvacuum.report import provenance, tables
@@ -71,13 +72,18 @@ def _figure(svg, caption):
     text = re.sub(r'\bid="([^"]+)"', rf'id="{name}-\1"', text)
     text = re.sub(r"url\(#([^)]+)\)", rf"url(#{name}-\1)", text)
     text = re.sub(r'href="#([^"]+)"', rf'href="#{name}-\1"', text)
-    caption = " ".join(Path(caption).read_text(encoding="utf-8").split())
     return {
         "name": name,
         "number": name.removeprefix("fig"),
-        "svg": jinja2.filters.Markup(text),
-        "caption": caption,
+        "svg": Markup(text),
+        "caption": _with_subscripts(Path(caption).read_text(encoding="utf-8")),
     }
+
+
+def _with_subscripts(text):
+    """Plain text as HTML, F_m and the like with their index lowered."""
+    plain = str(escape(" ".join(text.split())))
+    return Markup(re.sub(r"\b([A-Za-z])_(\w+)", r"<i>\1</i><sub>\2</sub>", plain))
 
 
 def _headline(metrics):

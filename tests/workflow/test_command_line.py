@@ -1,0 +1,136 @@
+"""The command: every verb explains itself, and bad input ends in one line and exit code 2."""
+
+import json
+import sys
+
+import numpy as np
+import pytest
+
+from sonicvacuum import cli
+from sonicvacuum.cli import VERBS
+
+
+def call(monkeypatch, *arguments):
+    """Exit code of the command as the shell sees it."""
+    monkeypatch.setattr(sys, "argv", ["sonicvacuum", *map(str, arguments)])
+    try:
+        cli.main()
+    except SystemExit as end:
+        return end.code or 0
+    return 0
+
+
+CONFIG = """\
+ledger: {handbook: [nominal]}
+cases:
+  small:
+    title: Three beads
+    chain:
+      beads: 3
+      orientation: vertical
+      bead: {diameter_mm: 5.0, mass_g: 0.5, material: bearing-steel}
+      wall: {material: bearing-steel}
+    striker: {shape: sphere, diameter_mm: 5.0, material: bearing-steel, mass_g: 0.5, speed_m_s: 0.5}
+    sensors: [{id: g2, kind: embedded, bead: 2}, {id: wall, kind: wall}]
+    duration_us: 200
+"""
+
+
+@pytest.fixture
+def config(tmp_path):
+    path = tmp_path / "config.yaml"
+    path.write_text(CONFIG)
+    return path
+
+
+@pytest.fixture
+def card(monkeypatch, config, tmp_path):
+    path = tmp_path / "small.nominal.json"
+    assert call(monkeypatch, "card", "--config", config, "--case", "small", "--out", path) == 0
+    return path
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_every_verb_has_help(monkeypatch, capsys, verb):
+    assert call(monkeypatch, verb, "--help") == 0
+    assert "Usage: " in capsys.readouterr().out
+
+
+def test_the_help_lists_all_verbs(monkeypatch, capsys):
+    assert call(monkeypatch, "--help") == 0
+    shown = capsys.readouterr().out
+    assert all(f"  {verb}" in shown for verb in VERBS)
+
+
+def test_from_card_to_signals(monkeypatch, card, tmp_path):
+    history, signals, metrics = (tmp_path / name for name in ("h.npz", "s.csv", "m.csv"))
+    assert call(monkeypatch, "simulate", card, "--out", history) == 0
+    assert call(monkeypatch, "observe", card, history, "--signals", signals, "--metrics", metrics) == 0
+    assert signals.read_text().splitlines()[0] == "run,speed_m_s,time_us,g2,wall"
+    table = np.loadtxt(signals, delimiter=",", skiprows=1)
+    assert table.shape == (401, 5)
+    assert np.all(table[0, 3:] == 0.0)
+    assert table[:, 3:].max() > 1.0
+    assert metrics.read_text().splitlines()[0] == "case,quantity,sensor,value,unit,numerical_error,reason"
+
+
+def test_the_same_card_gives_the_same_bytes(monkeypatch, card, tmp_path):
+    files = [tmp_path / name for name in ("a.npz", "b.npz")]
+    for file in files:
+        assert call(monkeypatch, "simulate", card, "--out", file) == 0
+    assert files[0].read_bytes() == files[1].read_bytes()
+
+
+def failing(monkeypatch, capsys, *arguments):
+    """The one line on standard error of a call that must fail."""
+    assert call(monkeypatch, *arguments) == 2
+    shown = capsys.readouterr().err
+    assert "Traceback" not in shown
+    return shown
+
+
+def test_an_unknown_verb_is_refused(monkeypatch, capsys):
+    assert "No such command 'guess'" in failing(monkeypatch, capsys, "guess")
+
+
+def test_a_missing_file_is_named(monkeypatch, capsys, tmp_path):
+    shown = failing(monkeypatch, capsys, "simulate", tmp_path / "none.json", "--out", tmp_path / "h.npz")
+    assert "none.json" in shown
+
+
+def test_a_card_with_a_fault_is_named_with_its_field(monkeypatch, capsys, card, tmp_path):
+    content = json.loads(card.read_text())
+    content["bead"]["mass_kg"] = -1.0
+    card.write_text(json.dumps(content))
+    shown = failing(monkeypatch, capsys, "simulate", card, "--out", tmp_path / "h.npz")
+    assert "small.nominal.json: bead.mass_kg: is -1.0" in shown
+    assert not (tmp_path / "h.npz").exists()
+
+
+def test_a_file_that_is_no_card_is_named(monkeypatch, capsys, tmp_path):
+    path = tmp_path / "x.json"
+    path.write_text("{")
+    assert "x.json: not a card" in failing(monkeypatch, capsys, "simulate", path, "--out", tmp_path / "h.npz")
+
+
+def test_a_file_that_is_no_history_is_named(monkeypatch, capsys, card, tmp_path):
+    history = tmp_path / "h.npz"
+    history.write_text("nothing")
+    outputs = ("--signals", tmp_path / "s.csv", "--metrics", tmp_path / "m.csv")
+    shown = failing(monkeypatch, capsys, "observe", card, history, *outputs)
+    assert "h.npz: not a saved simulation" in shown
+    assert not (tmp_path / "s.csv").exists()
+
+
+def test_a_bad_configuration_is_named_with_its_key(monkeypatch, capsys, config):
+    config.write_text(CONFIG.replace("mass_g: 0.5,", "mass_g: 5e-1,"))
+    shown = failing(monkeypatch, capsys, "card", "--config", config)
+    assert "cases.small.chain.bead.mass_g: is '5e-1'" in shown
+    assert "write 5.0e-1" in shown
+
+
+def test_an_unknown_figure_is_refused(monkeypatch, capsys, tmp_path):
+    shown = failing(
+        monkeypatch, capsys, "draw", "fig9", "--cards", tmp_path, "--histories", tmp_path, "--out", tmp_path
+    )
+    assert "'fig9': unknown; use one of fig3" in shown

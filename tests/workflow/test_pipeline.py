@@ -1,0 +1,149 @@
+"""The workflow makes what is missing or touched, and nothing else; bad input stops it with one sentence.
+
+The pipeline is run once on two small cases; what a change would bring is then read off the plan.
+"""
+
+import re
+import shutil
+import subprocess
+import sys
+
+import pytest
+
+CONFIG = """\
+ledger:
+  handbook: [soft, nominal]
+  matched: [hard, nominal]
+cases:
+  coated:
+    title: Five coated beads
+    chain: &chain
+      beads: 5
+      orientation: horizontal
+      bead: {diameter_mm: 4.86, mass_g: 0.44, material: parylene-c, coating_um: 50, core: stainless-steel}
+      wall: {material: stainless-steel}
+    striker: {shape: flat, material: alumina, mass_g: 0.47, speed_m_s: 0.44}
+    sensors: [{id: g2, kind: embedded, bead: 3}, {id: wall, kind: wall}]
+    duration_us: 400
+    variants:
+      soft: {}
+      hard: {materials: {parylene-c: {modulus_GPa: 15.0}}}
+  sweep:
+    title: Two speeds
+    chain: *chain
+    striker: {shape: flat, material: alumina, mass_g: 0.47, speed_m_s: [0.3, 0.6]}
+    sensors: [{id: g2, kind: embedded, bead: 3}, {id: wall, kind: wall}]
+    duration_us: 400
+"""
+TARGET = "results/metrics.csv"
+ALL = {"card": 3, "simulate": 3, "observe": 3, "metrics": 1}
+
+
+def snakemake(folder, *arguments):
+    """The finished process of a snakemake call in a folder."""
+    command = [sys.executable, "-m", "snakemake", "--cores", "2", *arguments]
+    return subprocess.run(command, cwd=folder, capture_output=True, text=True)
+
+
+def planned(folder, target=TARGET):
+    """Rule → number of jobs that a run would start now."""
+    done = snakemake(folder, "--dry-run", target)
+    assert done.returncode == 0, done.stderr
+    rows = re.findall(r"^(\w+)\s+(\d+)$", done.stdout + done.stderr, flags=re.MULTILINE)
+    return {rule: int(count) for rule, count in rows if rule != "total"}
+
+
+@pytest.fixture(scope="session")
+def finished(tmp_path_factory, pytestconfig):
+    """A copy of the project in which the small pipeline has run."""
+    root, folder = pytestconfig.rootpath, tmp_path_factory.mktemp("project")
+    for part in ("workflow", "src"):
+        shutil.copytree(root / part, folder / part, ignore=shutil.ignore_patterns("__pycache__"))
+    for part in ("Snakefile", "requirements.lock", "requirements-build.lock"):
+        shutil.copy2(root / part, folder / part)
+    (folder / "config.yaml").write_text(CONFIG)
+    assert planned(folder) == ALL
+    done = snakemake(folder, TARGET)
+    assert done.returncode == 0, done.stderr
+    return folder
+
+
+@pytest.fixture
+def project(finished, tmp_path):
+    """A copy of the finished project that a test may change."""
+    folder = tmp_path / "project"
+    shutil.copytree(finished, folder)
+    return folder
+
+
+def test_a_second_run_plans_nothing(finished):
+    assert planned(finished) == {}
+
+
+def test_touching_without_changing_plans_nothing(project):
+    for path in (project / "src/sonicvacuum/observe").glob("*.py"):
+        path.touch()
+    assert planned(project) == {}
+
+
+def test_an_edit_above_the_simulation_leaves_the_simulation_alone(project):
+    with open(project / "src/sonicvacuum/observe/pulse.py", "a") as stream:
+        stream.write("# edited\n")
+    assert planned(project) == {"observe": 3, "metrics": 1}
+
+
+def test_an_edit_of_the_stepper_replans_all_that_follows(project):
+    with open(project / "src/sonicvacuum/physics/kernel.py", "a") as stream:
+        stream.write("# edited\n")
+    assert planned(project) == {"simulate": 3, "observe": 3, "metrics": 1}
+
+
+def test_changing_one_variant_reruns_that_card_alone(project):
+    (project / "config.yaml").write_text(CONFIG.replace("15.0", "14.0"))
+    assert planned(project) == {"card": 1, "simulate": 1, "observe": 1, "metrics": 1}
+
+
+def test_adding_a_case_runs_that_case_alone(project):
+    block = "  third:\n" + CONFIG.split("  sweep:\n")[1].replace("*chain", "*chain\n    materials: {}")
+    (project / "config.yaml").write_text(CONFIG + block)
+    assert planned(project) == {"card": 1, "simulate": 1, "observe": 1, "metrics": 1}
+
+
+def test_a_new_lock_replans_everything(project):
+    with open(project / "requirements.lock", "a") as stream:
+        stream.write("# edited\n")
+    assert planned(project) == ALL
+
+
+@pytest.mark.parametrize(
+    ("output", "jobs"),
+    [
+        ("results/cards/coated.soft.json", {"card": 1, "simulate": 1, "observe": 1, "metrics": 1}),
+        ("results/histories/coated.soft.npz", {"simulate": 1, "observe": 1, "metrics": 1}),
+        ("results/metrics/coated.soft.csv", {"observe": 1, "metrics": 1}),
+        ("results/metrics.csv", {"metrics": 1}),
+    ],
+)
+def test_deleting_an_output_rebuilds_it_and_its_descendants(project, output, jobs):
+    (project / output).unlink()
+    wanted = planned(project, target=output)
+    assert sum(wanted.values()) == 1
+    done = snakemake(project, output)
+    assert done.returncode == 0, done.stderr
+    # The rebuilt file is the same to the byte, so nothing that follows from it is made again.
+    assert planned(project) == {}
+    (project / output).unlink()
+    assert planned(project).items() <= jobs.items() | {("metrics", 1)}
+
+
+def test_a_bad_configuration_stops_with_one_sentence(project):
+    (project / "config.yaml").write_text(CONFIG.replace("beads: 5", "beads: five"))
+    done = snakemake(project, "--dry-run", TARGET)
+    assert done.returncode != 0
+    assert "config.yaml: cases.coated.chain.beads: is 'five'" in done.stdout + done.stderr
+    assert "Traceback" not in done.stdout + done.stderr
+
+
+def test_the_workflow_passes_its_lint(pytestconfig):
+    done = snakemake(pytestconfig.rootpath, "--lint")
+    assert done.returncode == 0, done.stdout + done.stderr
