@@ -1,10 +1,11 @@
 """The numbers that are drawn: what they contain, how they hang together, that they are few."""
 
+import msgspec
 import numpy as np
 import pandas
 import pytest
 
-from sonicvacuum import figures
+from sonicvacuum import figures, study
 from sonicvacuum.figures import fig4, printed, traces
 from sonicvacuum.files import InputError
 from sonicvacuum.paper.printed import PRINTED
@@ -156,3 +157,17 @@ def test_an_unknown_figure_and_a_strange_csv_are_named(tmp_path):
     strange.write_text("a,b\n1,2\n")
     with pytest.raises(InputError, match=r"fig3\.csv: not the numbers of fig3"):
         figures.draw("fig3", strange)
+
+
+def test_fig4_leaves_the_printed_reading_out_where_no_simulated_wave_is_as_weak(studies, tmp_path):
+    """A sweep that starts above 0.25 N does not say which contact force gives that reading."""
+    strong = studies["fig4a.matched"]
+    fast = strong.speeds > 0.1
+    card = msgspec.structs.replace(
+        strong.card,
+        striker=msgspec.structs.replace(strong.card.striker, speeds_m_s=tuple(strong.speeds[fast])),
+    )
+    kept = {"fig4a.matched": study.run(card), "fig4b.nominal": studies["fig4b.nominal"]}
+    table = pandas.read_csv(figures.make("fig4", kept, tmp_path)[0])
+    assert "paper" not in set(table.series)
+    assert "paper-as-read" in set(table.series)

@@ -15,7 +15,7 @@ _TITLES = {"a": "(a) Steel ball, 0.036 g", "b": "(b) PTFE ball, 0.123 g"}
 CAPTION = style.paragraph("""
 Force on the wall, less the static part, below a vertical chain of 22 small coated beads (2.48 mm, 0.04 g)
 struck at 0.89 m/s by (a) a steel ball of 2 mm and 0.036 g, (b) a PTFE ball of 4.76 mm and 0.123 g.
-Simulated, without losses, for three moduli of the coating; numbers (at the first modulus) and pale lines
+Simulated, without losses, for three moduli of the coating; numbers (at 15 GPa) and pale lines
 as in Fig. 5. In (b) the lossless chain splits the pulse; the paper saw one shock-like pulse. Masses are
 those printed in the paper, although the geometry of a bead asks for 0.056 g. The paper prints neither
 forces nor times of this figure and its measured traces are not available.
