@@ -75,7 +75,7 @@ def test_a_lane_in_which_it_is_off_is_nominal(id, name):
     b = batch(id, name)
     symplectic = b.setup.chain.laws().splits
     nominals = in_lanes(nominal(), len(b.readings[0, 0]))
-    # The same steps as the batch: they follow the stiffest lane.
+    # One step for all, as each chain would choose its own.
     step = {"step": b.history.step[0], "refine": 1}
     _, readings = run(nominals, symplectic=symplectic, **step)
     _, lanes = run(b.setup, **step)
