@@ -5,7 +5,7 @@ from importlib.resources import files
 from pathlib import Path
 
 from sonicvacuum.files import InputError, replacing
-from sonicvacuum.records.blocks import schema
+from sonicvacuum.records.blocks import RunBlock, schema
 from sonicvacuum.records.checks import warnings
 from sonicvacuum.records.reader import FILE, read
 from sonicvacuum.records.record import Record, Run
@@ -51,18 +51,22 @@ def summary(record: Record) -> str:
         f"{record.name}: {record.title}",
         f"  {kind} of {record.surface.name}, {record.diameter_m * 1e3:g} mm, "
         f"{record.bead_mass_kg * 1e3:g} g, {record.block.chain.orientation}; gauges: {gauges or 'none'}",
-        *(line for run in record.runs for line in _run(record, run)),
+        *(
+            line
+            for run, block in zip(record.runs, record.block.runs, strict=True)
+            for line in _run(record, run, block)
+        ),
     ]
     found = warnings(record)
     lines += [f"  warning: {w}" for w in found] or ["  nothing suspicious"]
     return "\n".join(lines)
 
 
-def _run(record: Record, run: Run):
-    s = run.striker
+def _run(record: Record, run: Run, block: RunBlock):
+    s, count = run.striker, len(run.observables)
     yield (
         f"  run {run.id}: striker {s.surface.name}, {s.mass_kg * 1e3:g} g, {s.speed_m_s:g} m/s; "
-        f"{len(run.observables)} scalars" + (", traces:" if run.signals else ", no traces")
+        f"{count} scalar{'' if count == 1 else 's'}" + (", traces:" if run.signals else ", no traces")
     )
     if run.signals:
         yield (
@@ -72,12 +76,6 @@ def _run(record: Record, run: Run):
         for g in record.gauges:
             peak = float(run.signals.readings[g.id].max())
             yield f"    {g.id}: peak {peak:.4g} N, {peak / g.sigma:.3g} times the noise"
-    for o in run.observables:
-        yield f"    {o.label} = {o.value:g} ± {o.sigma:g}" + _unit(o.quantity)
-
-
-def _unit(quantity):
-    from sonicvacuum.observe.quantities import QUANTITIES
-
-    unit = QUANTITIES[quantity].unit
-    return "" if unit == "1" else f" {unit}"
+    for o, given in zip(run.observables, block.observables, strict=True):
+        unit = "" if str(given.unit) == "1" else f" {given.unit}"
+        yield f"    {o.label} = {given.value:g} ± {given.sigma:g}{unit}"

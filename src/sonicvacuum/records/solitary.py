@@ -20,6 +20,8 @@ LADDER = np.geomspace(0.5, 2.0, 8)
 TRIES = 6
 # The speed is taken over this many beads on either side of the gauge, where the chain has them.
 REACH = 2
+# Beads before the wall in which the reflection lies on the pulse.
+CLEAR = 2
 # Amplitudes grow about as striker speed to the power 6/5.
 _POWER = 5.0 / 6.0
 
@@ -37,8 +39,8 @@ def speed_at_amplitude(
         refine: divides the step of the simulation.
 
     Returns:
-        Peak-to-peak speed between gauges 2 beads before and behind (at the wall: over the last beads that are
-        clear of the reflection), interpolated between striker speeds; NaN with a reason where there is none.
+        Peak-to-peak speed between gauges 2 beads before and behind (near the wall: over the last 4 beads that
+        are clear of the reflection), interpolated between striker speeds; NaN with a reason if there is none.
     """
     pair = _pair(sensor, record.beads)
     if pair is None:
@@ -58,9 +60,10 @@ def speed_at_amplitude(
 
 
 def _pair(sensor, beads):
-    """The virtual gauges between which the speed is taken."""
-    middle = beads - 2 * REACH if sensor.kind == "wall" else sensor.bead
-    first, last = max(1, middle - REACH), min(beads, middle + REACH)
+    """The virtual gauges between which the speed is taken, clear of the wall's reflection."""
+    place = beads if sensor.kind == "wall" else sensor.bead
+    last = min(place + REACH, beads - CLEAR)
+    first = max(1, min(place - REACH, last - 2 * REACH))
     if first >= last:
         return None
     return Sensor("(before)", "embedded", first), Sensor("(behind)", "embedded", last)
