@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from sonicvacuum import config, study
+from sonicvacuum.files import InputError
 from sonicvacuum.paper import contacts, gauges, trains
 from sonicvacuum.paper.metrics import card_rows
 from sonicvacuum.paper.one_run import OneRun
@@ -22,7 +23,7 @@ FIT = 1e-5
 
 
 def signal(card, pulses, reflected=0.0):
-    """(samples, contacts) force of pulses (relative height, delay in s); their return is `reflected` as high."""
+    """(samples, contacts) force of pulses (relative height, delay in s); return is `reflected` as high."""
     time = np.arange(int(card.duration_s / card.interval_s) + 1)[:, None] * card.interval_s
     contact = np.arange(card.beads + 1)[None, :]
     step = card.bead.diameter_m / SPEED
@@ -166,7 +167,7 @@ def test_gauge_over_contact(single, card):
 
 
 def test_droop_lowers_the_peak_and_undershoots(single):
-    # To first order in T/RC the peak loses half of the impulse over RC; behind the pulse all of it is missing,
+    # To first order in T/RC the peak loses half of the impulse over RC; behind the pulse all is missing,
     # less what has come back since the pulse's middle.
     lost = WIDTH * math.pi * 5 / 16 / 1e-3
     back = math.exp(-math.pi / 2 * WIDTH / 1e-3)
@@ -253,3 +254,20 @@ def test_a_record_that_ends_too_early_gives_reasons(card):
     assert not rows["amplitude", "wall"].known
     assert rows["speed", "g5-wall"].reason
     assert all(r.known or r.reason for r in rows.values())
+
+
+def test_a_speed_given_twice_is_refused(card):
+    twice = msgspec.structs.replace(card.striker, speeds_m_s=(0.4, 0.44, 0.44))
+    made = study.run(msgspec.structs.replace(card, striker=twice, duration_s=1e-4))
+    with pytest.raises(InputError, match=r"fig3a\.matched@0\.44: striker\.speed_m_s holds this speed twice"):
+        card_rows(made)
+
+
+def test_runs_of_a_sweep_are_named_by_speed(card):
+    sweep = msgspec.structs.replace(card.striker, speeds_m_s=(0.4, 0.44))
+    rows = card_rows(study.run(msgspec.structs.replace(card, striker=sweep, interval_s=0.5e-6)))
+    assert {r.case for r in rows} == {"fig3a.matched@0.4", "fig3a.matched@0.44", "fig3a.matched"}
+    peak = {r.case: r.value for r in rows if (r.quantity, r.sensor) == ("amplitude", "g9")}
+    # Without gravity amplitude grows as speed^(6/5); 1 %: the small preload
+    ratio = peak["fig3a.matched@0.44"] / peak["fig3a.matched@0.4"]
+    assert ratio == pytest.approx(1.1**1.2, rel=0.01)

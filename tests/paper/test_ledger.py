@@ -40,16 +40,16 @@ def test_matched_decides_and_the_other_is_told_where_it_differs():
     assert row.verdict == "reproduced"
     assert row.difference_sigma == pytest.approx(22.7 / 19.7, rel=1e-12)
     assert row.reason == (
-        "matched: 219.7 against 197 ± 19.7 m/s (+1.2 σ); handbook: 113.1 (-4.3 σ), disagrees."
+        "matched: speed 219.7 against 197 ± 19.7 m/s (+1.2 σ); handbook: 113.1 (-4.3 σ), disagrees."
     )
 
 
-def test_one_value_for_all_columns_says_so():
+def test_one_value_for_all_columns_names_none():
     row = one(
         [Row("fig3b.nominal", "speed", "g9-g5", 570.0, "m/s")], claim(metric="fig3b/speed/g9-g5", value="578")
     )
     assert row.handbook == row.matched == 570.0
-    assert row.reason.startswith("all columns: 570 against 578")
+    assert row.reason.startswith("speed 570 against 578")
 
 
 def test_named_column_is_filled_once_there_is_one():
@@ -69,6 +69,29 @@ def test_named_decides_what_nothing_else_tells():
     ]
     row = one(rows, claim("order", "1", "", "compare/losses/g9", "1"), {**COLUMNS, "named": ["named"]})
     assert (row.verdict, row.reason) == ("reproduced", "named: the order holds.")
+
+
+def test_an_order_quotes_what_it_compares():
+    rows = [
+        Row("fig3a.matched", "decay", "g9-g5", 1.003, "1"),
+        Row("fig3b.nominal", "decay", "g9-g5", 1.002, "1"),
+        Row("compare.matched", "decay_coated_faster", "g9-g5", 0.0, "1"),
+    ]
+    row = one(rows, claim("order", "1", "", "compare/decay_coated_faster/g9-g5", "1"))
+    assert row.reason == "the order does not hold (fig3a decay 1.003, fig3b decay 1.002)."
+
+
+def test_digits_grow_until_a_number_is_told_from_its_bound():
+    row = one(speeds(1.0, 1.0000555), claim("at_least", "1", ""))
+    assert "speed 1.0001 against at least 1 m/s" in row.reason
+
+
+def test_digits_resolve_sigma():
+    row = one(speeds(1.0, 0.16666670), claim(value="0.1666667", sigma="1e-6", unit="1"))
+    assert (
+        row.reason
+        == "matched: speed 0.1666667 against 0.1666667 ± 1e-6; handbook: 1 (+8.3e+05 σ), disagrees."
+    )
 
 
 def test_absent_metric_is_not_testable_and_quotes_its_companion():

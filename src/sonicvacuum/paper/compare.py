@@ -43,6 +43,13 @@ def modulus_row(metrics: Metrics, moduli: dict[str, float]) -> Row:
     return _propagated("compare", name, "", "GPa", found, modulus)
 
 
+def needs_of(row: Row) -> tuple[tuple[str, str, str], ...]:
+    """The (case, quantity, sensor) that a comparison is made of; empty for any other metric."""
+    if not row.case.startswith("compare."):
+        return ()
+    return next((needs for name, at, needs, _ in COMPARISONS if (name, at) == (row.quantity, row.sensor)), ())
+
+
 def _interpolated(speeds, moduli):
     """ln E linear in ln speed through the two runs nearest in ln speed to the printed one."""
     target = math.log(PRINTED.speed_coated)

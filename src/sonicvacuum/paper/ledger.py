@@ -8,18 +8,16 @@ all columns. `named` decides only what no other column can tell.
 
 import csv
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass, fields
 
 from sonicvacuum.files import InputError, replacing
+from sonicvacuum.paper import wording
 from sonicvacuum.paper.columns import Metrics
 from sonicvacuum.paper.rows import Row, cells_of, number
-from sonicvacuum.paper.verdict import DISAGREES, NOT_TESTABLE, REPRODUCED, Judged, Target, judge
+from sonicvacuum.paper.verdict import DISAGREES, NOT_TESTABLE, Judged, Target, judge
 
 COLUMNS = ("handbook", "matched", "named")
 DECIDING = ("matched", "named", "handbook")
-# Quoted where the quantity itself does not exist: the same pulse at a level that losses leave intact.
-COMPANIONS = {"duration": "duration_05", "width": "width_05"}
 
 
 @dataclass(frozen=True)
@@ -131,74 +129,13 @@ def _row(metrics, claim, where):
         numerical_error=error,
         difference_sigma=outcome.difference_sigma,
         verdict=outcome.verdict,
-        reason=_reason(metrics, claim, target, rows, column, outcome),
+        reason=_reason(metrics, claim, target, rows, column),
     )
 
 
-def _reason(metrics, claim, target, rows, column, outcome):
+def _reason(metrics, claim, target, rows, column):
     if claim.test == "not-testable":
         return claim.note or "No metric tests this statement."
     if column is None:
-        return _absence(metrics, claim, rows)
-    if outcome.verdict == NOT_TESTABLE:
-        return f"Not testable: {outcome.reason}."
-    parts = [f"{told(rows, column)} {compared(target, rows[column].value, claim, outcome)}"]
-    for other in COLUMNS:
-        if other == column or other not in rows or not rows[other].known:
-            continue
-        apart = judge(target, rows[other].value, rows[other].numerical_error)
-        if apart.verdict not in (outcome.verdict, NOT_TESTABLE):
-            verb = "disagrees" if apart.verdict == DISAGREES else "would be reproduced"
-            parts.append(f"{other}: {rows[other].value:.4g}{by(apart)}, {verb}")
-    return "; ".join(parts) + "."
-
-
-def told(rows: Mapping[str, Row], column: str) -> str:
-    """What gave the number: the column, where columns differ."""
-    one = len({r.key for r in rows.values()}) == 1
-    return "all columns:" if one else f"{column}:"
-
-
-def compared(target: Target, value: float, claim, outcome: Judged) -> str:
-    """The number and what it is held against, in words."""
-    unit = "" if claim.unit in ("", "1") else f" {claim.unit}"
-    if target.test == "order":
-        return "the order holds" if outcome.verdict == REPRODUCED else "the order does not hold"
-    if target.test == "count":
-        return f"{value:g} against {target.low:g}"
-    spread = f" ± {claim.sigma}" if target.sigma > 0.0 else ""
-    against = {
-        "equals": f"against {claim.value}{spread}{unit}",
-        "at_least": f"against at least {claim.value}{spread}{unit}",
-        "at_most": f"against at most {claim.value}{spread}{unit}",
-        "between": f"against {claim.value.replace('..', ' to ')}{spread}{unit}",
-    }[target.test]
-    return f"{apart_from(value, target.low, target.high)} {against}{by(outcome)}"
-
-
-def apart_from(value: float, *bounds: float) -> str:
-    """A number with four digits, or with as many as tell it from the bounds that it does not equal."""
-    for digits in range(4, 12):
-        text = f"{value:.{digits}g}"
-        if all(float(text) != bound or abs(value - bound) < 1e-12 * abs(bound) for bound in bounds):
-            break
-    return text
-
-
-def by(outcome: Judged) -> str:
-    """The difference in standard errors, where there is one."""
-    d = outcome.difference_sigma
-    return f" ({d:+.2g} σ)" if math.isfinite(d) and d != 0.0 else ""
-
-
-def _absence(metrics, claim, rows):
-    if not rows:
-        return f"Not testable: {claim.metric} has not been found in any column."
-    row = next(rows[c] for c in DECIDING if c in rows)
-    companion = metrics.at(row.case, COMPANIONS.get(row.quantity, ""), row.sensor)
-    quoted = (
-        f"; {companion.quantity} is {companion.value:.4g} {companion.unit}"
-        if companion and companion.known
-        else ""
-    )
-    return f"Not testable: {row.reason}{quoted}."
+        return wording.absence(metrics, claim.metric, [rows[c] for c in DECIDING if c in rows])
+    return wording.comparison(metrics, claim, target, {c: rows[c] for c in COLUMNS if c in rows}, column)

@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from sonicvacuum.files import InputError
 from sonicvacuum.observe.trace import Measured
 from sonicvacuum.paper import contacts, gauges, sweep, trains
 from sonicvacuum.paper.one_run import OneRun
@@ -61,9 +62,15 @@ def card_rows(study: Study) -> list[Row]:
     """The metrics of a card: of each run, and of the sweep where it has several.
 
     Runs of a sweep are named `card@speed` (m/s); the numerical error is the change on halving the step.
+
+    Raises:
+        InputError: for two speeds of a sweep that six digits do not tell apart.
     """
     lanes = len(study.speeds)
     names = [study.card.name if lanes == 1 else f"{study.card.name}@{speed:g}" for speed in study.speeds]
+    for name in names:
+        if names.count(name) > 1:
+            raise InputError(f"{name}: striker.speed_m_s holds this speed twice; remove one")
     rows = []
     both = [[OneRun(study, lane, refined) for lane in range(lanes)] for refined in (False, True)]
     for name, plain, refined in zip(names, *both, strict=True):

@@ -11,7 +11,7 @@ import numpy as np
 
 from sonicvacuum.observe import quantities
 from sonicvacuum.observe.run import Geometry, Run
-from sonicvacuum.observe.sensor import Sensor, contacts_of
+from sonicvacuum.observe.sensor import Sensor, contacts_of, reading
 from sonicvacuum.observe.trace import Measured, Trace
 from sonicvacuum.study import Study, sensors
 
@@ -76,7 +76,8 @@ class OneRun:
         inner = [self._virtual(b) for b in range(1, beads + 1)]
         kept = [s for s in inner if set(contacts_of(s, beads)) <= set(self.study.contacts)]
         placed = (*self.gauges, *kept)
-        readings = {s.id: self.study.read(s, self.refined)[:, self.lane] for s in placed}
+        forces = {c: self.contact(c).force for c in self.study.contacts}
+        readings = {s.id: reading(s, forces, self.study.interval, beads) for s in placed}
         return Run(readings, self.study.time, Geometry(beads, self.diameter, placed))
 
     def speed(self) -> Measured:
@@ -94,15 +95,21 @@ class OneRun:
 
     def static_force(self, contact: int) -> float:
         """Force in N at rest."""
-        return float(self.study.chain.static_forces(self.card.beads + 1)[contact, self.lane])
+        return float(self._at_rest[0][contact])
 
     def stiffness(self, contact: int) -> float:
         """Hertz constant in N/m^(3/2)."""
-        return float(self.study.chain.stiffnesses(self.card.beads + 1)[contact, self.lane])
+        return float(self._at_rest[1][contact])
 
     def reduced_radius(self, contact: int) -> float:
         """Effective radius in m."""
-        return float(self.study.chain.reduced_radii(self.card.beads + 1)[contact, 0])
+        return float(self._at_rest[2][contact])
+
+    @cached_property
+    def _at_rest(self):
+        chain, bodies = self.study.chain, self.card.beads + 1
+        tables = chain.static_forces(bodies), chain.stiffnesses(bodies), chain.reduced_radii(bodies)
+        return [np.broadcast_to(t, (bodies, chain.lanes))[:, self.lane] for t in tables]
 
     def contacts_between_gauges(self) -> range:
         """Contacts between the first and the last embedded gauge."""
