@@ -27,6 +27,7 @@ WRONG_KEYS = [
     ({"runs__0__id": 7}, ["runs[0].id", "7", "quote it"]),
     ({"runs__0__id": "a b"}, ["runs[0].id", "'a b'", "letters, digits"]),
     ({"runs__0__signals": "../x.csv"}, ["runs[0].signals", "'../x.csv'", "beside record.yaml"]),
+    ({"runs__0__signals": "record.yaml"}, ["runs[0].signals", "record.yaml itself"]),
     ({"chain__orientation": "upright"}, ["chain.orientation", "'upright'", "vertical or horizontal"]),
     ({"runs__0__striker__shape": "cylinder"}, ["runs[0].striker.shape", "'cylinder'", "flat or sphere"]),
     ({"chain__bead__mass_g": "0.44 g"}, ["chain.bead.mass_g", "'0.44 g'", "without quotes or unit"]),

@@ -162,6 +162,12 @@ def test_a_record_that_would_not_read_is_not_written(tmp_path):
     assert not (tmp_path / "new").exists()
 
 
+def test_a_folder_that_cannot_be_written_is_named(tmp_path):
+    (tmp_path / "file").write_text("in the way")
+    with pytest.raises(InputError, match="choose a folder that can be written"):
+        write(made(BALL), tmp_path / "file")
+
+
 def test_defaults_are_left_out_and_keys_keep_the_order_of_the_contract():
     written = dump(made(**CASES["scalars"]))
     assert list(written["chain"]) == ["beads", "orientation", "bead", "wall", "static_force_N"]

@@ -130,6 +130,8 @@ def _check_striker(block, striker, key):
 def _check_traced(block, run, key):
     if not block.sensors:
         raise SuspectError(f"{key}.signals", "is given, but the record has no sensors; describe them")
+    if run.signals.lower() == "record.yaml":
+        raise SuspectError(f"{key}.signals", "is record.yaml itself; name the CSV file with the traces")
     for k, s in enumerate(block.sensors):
         if s.sigma_N == 0.0:
             raise SuspectError(

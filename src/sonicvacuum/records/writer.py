@@ -19,7 +19,7 @@ def write(record: Record, path) -> None:
     """Write a record into a folder, made if need be; each file takes its name once it is complete.
 
     Raises:
-        InputError: for a record that `read` would refuse; nothing is written then.
+        InputError: for a record that `read` would refuse (nothing is written then) or an unwritable folder.
     """
     folder = Path(path)
     content = dump(record)
@@ -30,10 +30,15 @@ def write(record: Record, path) -> None:
             f"{folder}: runs {sorted(files)} name signals and {sorted(record.signals)} have traces; "
             "each run with traces needs its own file name"
         )
-    for run, name in files.items():
-        signals.write(record.signals[run], folder / name)
-    with replacing(folder / FILE) as stream:
-        stream.write(text(content))
+    try:
+        for run, name in files.items():
+            signals.write(record.signals[run], folder / name)
+        with replacing(folder / FILE) as stream:
+            stream.write(text(content))
+    except OSError as error:
+        raise InputError(
+            f"{folder}: {error.strerror or error}; choose a folder that can be written"
+        ) from None
 
 
 def dump(record: Record) -> dict:
