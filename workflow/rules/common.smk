@@ -57,3 +57,8 @@ def resolved(wildcards):
     """Text of a card: as a parameter it reruns the rule of this card alone when the configuration changes."""
     case, variant = wildcards.card.split(".")
     return msgspec.json.encode(configuration.card(CONFIG, case, variant)).decode()
+
+
+def drawn(figure):
+    """Cards that a figure shows and the configuration has."""
+    return [name for name in cards_of(figure) if name in CARDS]

@@ -3,8 +3,8 @@
 
 rule draw:
     input:
-        cards=lambda wildcards: expand("results/cards/{card}.json", card=cards_of(wildcards.figure)),
-        histories=lambda wildcards: expand("results/histories/{card}.npz", card=cards_of(wildcards.figure)),
+        cards=lambda wildcards: expand("results/cards/{card}.json", card=drawn(wildcards.figure)),
+        histories=lambda wildcards: expand("results/histories/{card}.npz", card=drawn(wildcards.figure)),
         sources=sources("card", "physics", "figures"),
     output:
         table="figures/{figure}.csv",

@@ -105,7 +105,8 @@ rule timings:
 # Run on purpose: the ledger of this run becomes the one that later runs are compared with.
 rule publish:
     input:
-        "results/ledger.csv",
+        ledger="results/ledger.csv",
+        claims=CLAIMS,
     log:
         "results/logs/publish.log",
     localrule: True
@@ -114,11 +115,14 @@ rule publish:
     params:
         readme="README.md",
         reference="workflow/resources/reference/ledger.csv",
+        captions="workflow/report",
+        guide="figures/README.md",
     message:
         "Keeping the ledger in git and in the README"
     shell:
-        "sonicvacuum publish --ledger {input} --readme {params.readme} --reference {params.reference}"
-        " 2> {log}"
+        "(sonicvacuum publish --ledger {input.ledger} --readme {params.readme} --reference {params.reference}"
+        " && sonicvacuum captions --out {params.captions} --claims {input.claims}"
+        " --readme {params.guide}) 2> {log}"
 
 
 # Figure tables and ledger made anew in clean folders, compared with those in git.

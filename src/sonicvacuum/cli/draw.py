@@ -4,6 +4,7 @@ from pathlib import Path
 
 import click
 
+from sonicvacuum.cli import existing
 from sonicvacuum.cli.card import read_card
 
 _FOLDER = click.Path(exists=True, file_okay=False)
@@ -18,20 +19,28 @@ def draw(figure, cards, histories, out):
     """Draw FIGURE (fig3, fig4, fig5 or fig6) of simulated cards."""
     from sonicvacuum import figures, study
 
+    # A variant that the configuration does not have leaves its panel without that line.
+    names = [name for name in figures.cards_of(figure) if (Path(cards) / f"{name}.json").exists()]
     studies = {
         name: study.load(read_card(Path(cards) / f"{name}.json"), Path(histories) / f"{name}.npz")
-        for name in figures.cards_of(figure)
+        for name in names
     }
     figures.make(figure, studies, out)
 
 
 @click.command()
 @click.option("--out", required=True, type=click.Path(file_okay=False), help="Folder for figN.rst.")
-def captions(out):
-    """Write the caption of every figure to a file of its own."""
+@click.option("--claims", required=True, type=existing(), help="Table of the paper's claims.")
+@click.option(
+    "--readme", required=True, type=click.Path(dir_okay=False), help="Guide to the figures (Markdown)."
+)
+def captions(out, claims, readme):
+    """Write the caption of every figure to a file of its own, and the guide that maps figures to claims."""
     from sonicvacuum import figures
     from sonicvacuum.files import replacing
 
     for name in figures.names():
         with replacing(Path(out) / f"{name}.rst") as stream:
             stream.write(figures.caption(name) + "\n")
+    with replacing(readme) as stream:
+        stream.write(figures.readme(claims))

@@ -32,6 +32,8 @@ class Sensor:
             off the middle of its bead, ε > 0 towards the striker.
         gain: reading per force.
 
+    The four numbers may be arrays (lanes,): the same gauge on chains that are read side by side.
+
     Raises:
         ValueError: for a value outside these ranges.
     """
@@ -48,17 +50,26 @@ class Sensor:
         self._check(self.kind in ("embedded", "wall"), "kind", "'embedded' or 'wall'")
         if self.kind == "wall":
             self._check(self.bead is None, "bead", "None for a gauge at the wall")
-            self._check(self.offset_fraction == 0.0, "offset_fraction", "0 for a gauge at the wall")
+            self._check(
+                np.all(np.equal(self.offset_fraction, 0.0)), "offset_fraction", "0 for a gauge at the wall"
+            )
         else:
             self._check(self.bead is not None and self.bead >= 1, "bead", "1 or more for an embedded gauge")
-        self._check(self.droop_s is None or self.droop_s > 0.0, "droop_s", "positive, or None")
-        self._check(0.0 <= self.lowpass_s < math.inf, "lowpass_s", "0 or positive")
-        self._check(abs(self.offset_fraction) <= 0.5, "offset_fraction", "between -0.5 and 0.5")
-        self._check(0.0 < self.gain < math.inf, "gain", "positive")
+        self._check(
+            self.droop_s is None or np.all(np.greater(self.droop_s, 0.0)), "droop_s", "positive, or None"
+        )
+        self._check(_within(self.lowpass_s, 0.0), "lowpass_s", "0 or positive")
+        self._check(np.all(np.abs(self.offset_fraction) <= 0.5), "offset_fraction", "between -0.5 and 0.5")
+        self._check(_within(self.gain, np.nextafter(0.0, 1.0)), "gain", "positive")
 
     def _check(self, good, name, must_be):
         if not good:
             raise ValueError(f"sensor {self.id}: {name} is {getattr(self, name)!r}; it must be {must_be}")
+
+
+def _within(values, least):
+    """Whether all are finite and at least so large."""
+    return bool(np.all(np.isfinite(values)) and np.all(np.greater_equal(values, least)))
 
 
 def contacts_of(sensor: Sensor, beads: int) -> tuple[int, ...]:

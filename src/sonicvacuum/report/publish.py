@@ -15,7 +15,7 @@ HEADLINES = (
     "fig3b-speed",
     "fig3a-width",
     "fig3b-width",
-    "low-amplitude-speed",
+    "low-speed",
     "modulus-ratio",
 )
 

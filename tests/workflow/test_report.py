@@ -1,0 +1,185 @@
+"""The page and the README say what the tables say, and the page needs nothing but itself."""
+
+import re
+from html.parser import HTMLParser
+
+import pandas as pd
+import pytest
+
+from sonicvacuum import config, figures
+from sonicvacuum.files import InputError
+from sonicvacuum.report import publish, tables, timings
+from sonicvacuum.report.page import CLAIMS, build
+
+LEDGER = [
+    (
+        "a-speed",
+        "Fig. 1",
+        "speed",
+        "m/s",
+        "100",
+        "10",
+        "90",
+        "101.23456",
+        "",
+        "1e-7",
+        "0.12",
+        "reproduced",
+        "close",
+    ),
+    ("b-order", "Fig. 2", "order", "1", "1", "", "0", "0", "", "", "", "disagrees", "it <does> not hold"),
+    ("c-mass", "Fig. 2", "mass", "g", "1", "0.1", "2", "2", "", "", "10", "disagrees", "2 against 1"),
+    ("d-crack", "Fig. 7", "count", "1", "", "", "", "", "", "", "", "not testable", "needs a microscope"),
+]
+SVG = '<?xml version="1.0"?><svg><defs><clipPath id="c"/></defs><g clip-path="url(#c)"/></svg>'
+
+
+class Page(HTMLParser):
+    """What a browser would fetch, and the ids on the page."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.fetched, self.ids = [], []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attributes):
+        attributes = dict(attributes)
+        self.ids += [attributes["id"]] if "id" in attributes else []
+        if tag in ("script", "img", "link", "iframe") and (
+            source := attributes.get("src", attributes.get("href"))
+        ):
+            self.fetched.append(source)
+
+
+@pytest.fixture
+def page(tmp_path, pytestconfig):
+    """The page of small tables and two figures that use the same id."""
+    ledger = pd.DataFrame(LEDGER, columns=tables.LEDGER)
+    ledger.to_csv(tmp_path / "ledger.csv", index=False)
+    claims = pd.DataFrame(
+        [(row[0], row[1], f"Statement {row[0]}.", *[""] * 8) for row in LEDGER], columns=CLAIMS
+    )
+    claims.to_csv(tmp_path / "claims.csv", index=False)
+    pd.DataFrame(columns=tables.ASSUMPTIONS).to_csv(tmp_path / "assumptions.csv", index=False)
+    metrics = [("fig3a.matched", "speed", "g9-g5", "219.7", "m/s", "1e-6")]
+    pd.DataFrame(metrics, columns=tables.METRICS).to_csv(tmp_path / "metrics.csv", index=False)
+    for name in ("fig3", "fig4"):
+        (tmp_path / f"{name}.svg").write_text(SVG)
+        (tmp_path / f"{name}.rst").write_text(f"Caption of {name} with F_m & more.\n")
+    root = pytestconfig.rootpath
+    card = config.card(config.read(root / "config.yaml"), "fig3a", "matched")
+    paths = [tmp_path / f"{name}.csv" for name in ("ledger", "assumptions", "metrics", "claims")]
+    drawn = [[tmp_path / f"{name}.{kind}" for name in ("fig3", "fig4")] for kind in ("svg", "rst")]
+    return build(*paths, *drawn, [card], [root / "requirements.lock"])
+
+
+def test_the_page_needs_nothing_but_itself(page):
+    assert Page(page).fetched == []
+    assert "url(http" not in page
+
+
+def test_no_id_stands_twice(page):
+    ids = Page(page).ids
+    assert len(ids) == len(set(ids))
+    assert {"fig3-c", "fig4-c"} <= set(ids)
+    assert "url(#fig4-c)" in page
+
+
+def test_every_claim_stands_on_the_page(page):
+    for row in LEDGER:
+        assert row[0] in page
+        assert f"Statement {row[0]}." in page
+    assert "it &lt;does&gt; not hold" in page
+    assert "219.7" in page
+    assert "<i>F</i><sub>m</sub> &amp; more" in page
+
+
+def test_the_same_tables_give_the_same_page(page, request):
+    again = request.getfixturevalue("page")
+    assert again == page
+
+
+def test_disagreements_are_ranked_with_the_unmeasured_last():
+    ledger = pd.DataFrame(LEDGER, columns=tables.LEDGER)
+    assert list(tables.disagreements(ledger)["claim"]) == ["c-mass", "b-order"]
+    assert tables.counts(ledger) == {"reproduced": 1, "disagrees": 2, "not testable": 1}
+
+
+@pytest.mark.parametrize(
+    ("text", "shown"),
+    [
+        ("219.7123", "219.7"),
+        ("0.000012345", "1.234e-5"),
+        ("0", "0"),
+        ("", ""),
+        ("nan", ""),
+        ("2..3", "2..3"),
+        ("1500000", "1.5e6"),
+    ],
+)
+def test_numbers_are_shown_with_four_digits(text, shown):
+    assert tables.number(text) == shown
+
+
+def test_a_table_with_other_columns_is_refused(tmp_path):
+    path = tmp_path / "t.csv"
+    path.write_text("a,b\n1,2\n")
+    with pytest.raises(InputError, match=r"t\.csv: columns are a,b; expected case"):
+        tables.read(path, tables.METRICS)
+
+
+def test_publishing_replaces_the_summary_and_nothing_else(tmp_path):
+    ledger, readme, reference = (tmp_path / name for name in ("l.csv", "R.md", "ref.csv"))
+    pd.DataFrame(LEDGER, columns=tables.LEDGER).to_csv(ledger, index=False)
+    readme.write_text(f"before\n{publish.BEGIN}\nstale\n{publish.END}\nafter\n")
+    publish.publish(ledger, readme, reference)
+    text = readme.read_text()
+    assert text.startswith("before\n") and text.endswith("\nafter\n") and "stale" not in text
+    assert "**1 are reproduced, 2 disagree, 1 cannot be tested**" in text
+    assert reference.read_bytes() == ledger.read_bytes()
+    publish.publish(ledger, readme, reference)
+    assert readme.read_text() == text
+
+
+def test_a_readme_without_markers_is_refused():
+    with pytest.raises(InputError, match="markers are missing"):
+        publish.with_summary("nothing here", "text")
+
+
+def test_the_readme_in_git_shows_the_ledger_in_git(pytestconfig):
+    root = pytestconfig.rootpath
+    ledger = tables.read(root / "workflow/resources/reference/ledger.csv", tables.LEDGER)
+    readme = (root / "README.md").read_text()
+    assert publish.with_summary(readme, publish.summary(ledger)) == readme
+
+
+def test_the_headlines_are_claims(pytestconfig):
+    claims = tables.read(pytestconfig.rootpath / "workflow/resources/claims.csv", CLAIMS)
+    assert set(publish.HEADLINES) <= set(claims["claim"])
+
+
+@pytest.mark.parametrize("name", figures.names())
+def test_the_captions_in_git_are_the_figures_own(pytestconfig, name):
+    kept = (pytestconfig.rootpath / f"workflow/report/{name}.rst").read_text()
+    assert kept == figures.caption(name) + "\n"
+
+
+def test_links_in_the_readme_lead_somewhere(pytestconfig):
+    root = pytestconfig.rootpath
+    for target in re.findall(r"\]\(([^)#]+)\)", (root / "README.md").read_text()):
+        assert target.startswith("https://doi.org/") or (root / target).exists(), target
+
+
+def test_timings_summarise_the_benchmark_files(tmp_path):
+    (tmp_path / "draw").mkdir()
+    for name, seconds in (("a", 1.0), ("b", 3.0)):
+        (tmp_path / "draw" / f"{name}.tsv").write_text(f"s\tmax_rss\n{seconds}\t{10 * seconds}\n")
+    (tmp_path / "page.tsv").write_text("s\tmax_rss\n0.5\t-\n")
+    table = timings.gather(tmp_path).set_index("rule")
+    assert table.loc["draw", ["jobs", "median_s", "longest_s", "peak_memory_MB"]].tolist() == [
+        2,
+        2.0,
+        3.0,
+        30.0,
+    ]
+    assert table.loc["page", "jobs"] == 1
