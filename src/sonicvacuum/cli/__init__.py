@@ -26,6 +26,8 @@ VERBS = {
     "publish": "report",
     "timings": "report",
     "record": "record",
+    "hide": "blind",
+    "score": "blind",
 }
 
 

@@ -1,0 +1,161 @@
+"""What gauges show of an impact, and the scalars read from them.
+
+Change from rest → bandwidth → droop → gauge faults outside the catalogue → gain. Filters are sampled four
+times finer than the record and solved by scipy's first-order-hold discretisation, exact for a force that is
+linear between samples.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import signal
+
+from sonicvacuum.blind.integrate import TOLERANCE, integrate
+from sonicvacuum.blind.laws import force_at_rest
+from sonicvacuum.blind.plan import Plan, problem
+
+FINER = 4
+
+
+def read(plan: Plan, times: np.ndarray, tolerance: float = TOLERANCE) -> np.ndarray:
+    """(gauges, samples) readings in N at equidistant true times in s; zero before the impact (time 0)."""
+    finer = FINER if any(plan.electronics.get(k) for k in ("lowpass", "inverse_droop")) else 1
+    interval = (times[1] - times[0]) / finer
+    fine = times[0] + interval * np.arange((len(times) - 1) * finer + 1)
+    force = _forces(plan, fine, tolerance)
+    weights = {"wall": lambda g: {plan.beads: 1.0}, "embedded": _halves}
+    shown = np.stack([sum(w * force[c] for c, w in weights[g.kind](g).items()) for g in plan.gauges])
+    shown = _filtered(shown, interval, plan.electronics)[:, ::finer]
+    shown = _faults(shown, times, plan.electronics)
+    return shown * np.array([[g.gain] for g in plan.gauges])
+
+
+def _halves(gauge):
+    return {gauge.bead - 1: 0.5 + gauge.offset, gauge.bead: 0.5 - gauge.offset}
+
+
+def _forces(plan, times, tolerance):
+    """contact → (samples,) force beyond the static one, for the contacts that the gauges feel."""
+    setting = problem(plan)
+    contacts = sorted(
+        {c for g in plan.gauges for c in (_halves(g) if g.kind == "embedded" else [plan.beads])}
+    )
+    after = times >= 0.0
+    motion = integrate(setting, times[after], contacts, tolerance=tolerance)
+    forces = {}
+    for k, c in enumerate(contacts):
+        forces[c] = np.zeros(len(times))
+        forces[c][after] = motion.force[:, k] - force_at_rest(setting.rest[c], setting.rows, c)
+    return forces
+
+
+def _filtered(shown, interval, electronics):
+    lowpass, inverse_droop = electronics.get("lowpass", 0.0), electronics.get("inverse_droop", 0.0)
+    if lowpass > 0.0:
+        shown = _first_order(shown, ([1.0], [lowpass, 1.0]), interval)
+    if inverse_droop > 0.0:
+        shown = _first_order(shown, ([1.0, 0.0], [1.0, inverse_droop]), interval)
+    return shown
+
+
+def _first_order(shown, system, interval):
+    numerator, denominator, _ = signal.cont2discrete(system, interval, method="foh")
+    return signal.lfilter(numerator.ravel(), denominator, shown, axis=1)
+
+
+def _faults(shown, times, electronics):
+    """Faults of gauges that the catalogue does not hold."""
+    if bend := electronics.get("bend"):
+        shown = shown * (1.0 + bend * shown)
+    if limit := electronics.get("inverse_limit"):
+        shown = np.tanh(limit * shown) / limit
+    if share := electronics.get("lag_share"):
+        shown = (1.0 - share) * shown + share * np.stack([_play(y, electronics["play"]) for y in shown])
+    if share := electronics.get("crosstalk"):
+        shown = shown + share * (shown.sum(axis=0) - shown)
+    if drift := electronics.get("drift"):
+        shown = shown + drift * np.maximum(times, 0.0)
+    return shown
+
+
+def _play(y, width):
+    """Output of a backlash of half width `width`: it follows only when pushed."""
+    out, at = np.empty_like(y), 0.0
+    for k, value in enumerate(y):
+        at = min(max(at, value - width), value + width)
+        out[k] = at
+    return out
+
+
+@dataclass(frozen=True)
+class Pulse:
+    """A main pulse: peak in N and its time in s, and the samples between which it exceeds half of it."""
+
+    force: float
+    time: float
+    sample: int
+
+
+def main_pulse(reading: np.ndarray, times: np.ndarray) -> Pulse:
+    """The first local maximum above half the trace's largest value, by a parabola through three samples."""
+    inner = reading[1:-1]
+    peaks = (inner >= reading[:-2]) & (inner > reading[2:]) & (inner > 0.5 * reading.max())
+    k = int(np.argmax(peaks)) + 1
+    a, b, c = reading[k - 1], reading[k], reading[k + 1]
+    bend = a - 2.0 * b + c
+    shift = 0.5 * (a - c) / bend if bend < 0.0 else 0.0
+    return Pulse(b - 0.25 * (a - c) * shift, times[k] + shift * (times[1] - times[0]), k)
+
+
+def time_above(reading: np.ndarray, times: np.ndarray, pulse: Pulse, level: float) -> float:
+    """Time in s for which the main pulse exceeds level × peak, straight lines between samples."""
+    limit = level * pulse.force
+    first = pulse.sample - int(np.argmax(reading[pulse.sample :: -1] < limit))
+    last = pulse.sample + int(np.argmax(reading[pulse.sample :] < limit))
+    interval = times[1] - times[0]
+    rise = (limit - reading[first]) / (reading[first + 1] - reading[first])
+    fall = (reading[last - 1] - limit) / (reading[last - 1] - reading[last])
+    return times[last - 1] + fall * interval - times[first] - rise * interval
+
+
+def position(plan: Plan, gauge: str) -> float:
+    """Distance of a gauge from the wall in m, an embedded one at its bead's centre."""
+    g = next(g for g in plan.gauges if g.id == gauge)
+    return 0.0 if g.kind == "wall" else (plan.beads - g.bead + 0.5) * 2.0 * plan.bead_radius
+
+
+def scalar(plan: Plan, readings: np.ndarray, times: np.ndarray, quantity: str, options: dict) -> float:
+    """One observable of a run in SI units: speed, amplitude, duration or decay."""
+    index = {g.id: k for k, g in enumerate(plan.gauges)}
+    pulses = {name: main_pulse(readings[index[name]], times) for name in options.values() if name in index}
+    if quantity == "speed":
+        a, b = options["from"], options["to"]
+        return (position(plan, a) - position(plan, b)) / (pulses[b].time - pulses[a].time)
+    if quantity == "decay":
+        return pulses[options["to"]].force / pulses[options["from"]].force
+    name = options["sensor"]
+    if quantity == "amplitude":
+        return pulses[name].force
+    if quantity == "duration":
+        return time_above(readings[index[name]], times, pulses[name], options["level"])
+    raise ValueError(f"quantity {quantity!r} is not made here")
+
+
+def bounce(plan: Plan, tolerance: float = TOLERANCE) -> dict[str, float]:
+    """Restitution and contact duration (s) of one ball on the wall."""
+    setting = problem(plan)
+    span = 8.0 * plan.contact_time
+    while True:
+        times = np.linspace(0.0, span, 4001)
+        motion = integrate(setting, times, [0], states=True, tolerance=tolerance)
+        force = motion.force[1:, 0]
+        free = np.flatnonzero(force <= 0.0)
+        if len(free) or span > 1e3 * plan.contact_time:
+            break
+        span *= 2.0
+    end = int(free[0]) if len(free) else len(force) - 1
+    a, b = force[end - 2], force[end - 1]
+    # The contact opens where a straight line through the cube roots of squared force ends (a Hertz contact).
+    beyond = b ** (2.0 / 3.0) / max(a ** (2.0 / 3.0) - b ** (2.0 / 3.0), 1e-300)
+    duration = times[end] + min(1.0, beyond) * (times[1] - times[0])
+    return {"restitution": -motion.velocity[end + 1, 0] / plan.speed, "contact_duration": duration}
