@@ -15,6 +15,8 @@ Samples fall between steps: the compression of each recorded contact is interpol
 Hermite polynomial of its values and rates at both ends of the step, and the law gives the force.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
 from numba.extending import overload
@@ -139,6 +141,18 @@ def _choose_step(c, table, first, beyond, weight, method, step, pending):
     return stepper.py_func
 
 
+class Recorder(NamedTuple):
+    """What it takes to write the samples of one group; see `advance` for the arrays."""
+
+    interval: float
+    contacts: np.ndarray
+    clock: np.ndarray
+    cursor: np.ndarray
+    chains: np.ndarray
+    scratch: np.ndarray
+    out: np.ndarray
+
+
 @_inlined
 def _note(c, table, first, contacts, pending, ends):
     """Keep approach and rate of the recorded contacts, positions being `pending` seconds of drift behind."""
@@ -167,11 +181,9 @@ def _sample(c, table, body, start, end, r, step, fraction):
 
 
 @_inlined
-def _emit(
-    c, table, first, contacts, start, end, before, time, step, interval, clock, cursor, chains, scratch, out
-):
+def _emit(c, table, first, recorder, start, end, before, time, step):
     """Write the samples that fall between `before` and `time`, chain by chain at its own moments."""
-    samples = out.shape[2]
+    interval, contacts, clock, cursor, chains, scratch, out = recorder
     store(c, scratch, 0, time)
     while is_any_positive(time - load(c, clock, DUE)):
         fraction = (load(c, clock, DUE) + load(c, clock, TOLERANCE) - before) / step
@@ -183,7 +195,8 @@ def _emit(
         for k in range(len(cursor)):
             if clock[DUE, k] < scratch[0, k]:
                 cursor[k] += 1
-                clock[DUE, k] = cursor[k] * interval - clock[TOLERANCE, k] if cursor[k] < samples else np.inf
+                due = cursor[k] * interval - clock[TOLERANCE, k]
+                clock[DUE, k] = due if cursor[k] < out.shape[2] else np.inf
 
 
 def _audit(c, table, first, beyond, weight, impulse, pending, time, balance, status):
@@ -216,26 +229,9 @@ def _keep_balance(c, table, first, beyond, weight, impulse, pending, time, balan
 
 
 @_inlined
-def _advance_group(
-    c,
-    method,
-    interval,
-    contacts,
-    table,
-    first,
-    bodies,
-    extendable,
-    clock,
-    cursor,
-    chains,
-    scratch,
-    start,
-    end,
-    out,
-    every,
-    balance,
-    status,
-):
+def _advance_group(c, method, table, first, bodies, extendable, recorder, start, end, every, balance, status):
+    """Integrate one group, whose bodies begin at row `first` of the table."""
+    clock, contacts = recorder.clock, recorder.contacts
     weight = load(c, clock, WEIGHT)
     threshold = load(c, clock, THRESHOLD)
     pending_part = method[0][len(method[1]) :].sum()
@@ -254,6 +250,11 @@ def _advance_group(
         step = select(load(c, clock, LAST) - time, step, zero(c))
         if not is_any_positive(step):
             break
+        while beyond < first + bodies and is_any_positive(absolute(get(c, table, beyond - 1, V)) - threshold):
+            beyond = min(beyond + MARGIN, first + bodies)
+        if extendable and beyond == first + bodies:
+            status[RAN_OUT] = 1
+            break
         before = time
         time = time + step
         sampled = is_any_positive(time - load(c, clock, DUE))
@@ -264,35 +265,16 @@ def _advance_group(
             _note(c, table, first, contacts, pending, start)
         impulse = impulse + _step(c, table, first, beyond, weight, method, step, pending)
         pending = pending_part * step
-        while beyond < first + bodies and is_any_positive(absolute(get(c, table, beyond - 1, V)) - threshold):
-            beyond = min(beyond + MARGIN, first + bodies)
-        if extendable and beyond == first + bodies:
-            status[RAN_OUT] = 1
-            break
         if sampled:
             _note(c, table, first, contacts, pending, end)
-            _emit(
-                c,
-                table,
-                first,
-                contacts,
-                start,
-                end,
-                before,
-                time,
-                step,
-                interval,
-                clock,
-                cursor,
-                chains,
-                scratch,
-                out,
-            )
+            _emit(c, table, first, recorder, start, end, before, time, step)
             start, end = end, start
         noted = sampled
         count += 1
         if every > 0 and count % every == 0:
             _audit(c, table, first, beyond, weight, impulse, pending, time, balance, status)
+    for body in range(first, beyond):
+        put(c, table, body, U, get(c, table, body, U) + pending * get(c, table, body, V))
     status[STEPPED] = beyond - first
 
 
@@ -339,22 +321,18 @@ def advance(
     """
     bodies = table.shape[1] - 1
     for g in range(begin, end):
+        recorder = Recorder(interval, contacts, clock[g], cursor[g], chains[g], work[0], out)
+        first_row = g * (bodies + 1)
         _advance_group(
             c,
             (first, second),
-            interval,
-            contacts,
             table,
-            g * (bodies + 1),
+            first_row,
             bodies,
             extendable,
-            clock[g],
-            cursor[g],
-            chains[g],
-            work[0],
+            recorder,
             work[1],
             work[2],
-            out,
             every,
             balance[g],
             status[g],

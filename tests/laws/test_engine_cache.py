@@ -1,0 +1,149 @@
+"""Compiled code is never stale, survives the process, and many processes may make it at once."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import sonicvacuum
+from sonicvacuum.physics import compiled
+from sonicvacuum.physics.fingerprint import fingerprint
+from sonicvacuum.physics.laws import HERTZ, LawSet, Term, hertz_force
+
+PACKAGE = Path(sonicvacuum.__file__).parent
+# Prints the largest force and how often code was compiled and loaded.
+SCRIPT = """
+import math
+from sonicvacuum.physics import compiled
+from sonicvacuum.physics.chain import Chain, Elastic
+from sonicvacuum.physics.run import advance, simulate
+body = Elastic("coating", 15e9, 0.388)
+chain = Chain(3, body, body, body, 2.43e-3, math.inf, 0.44e-3, 0.47e-3, 0.44)
+print(repr(float(simulate(chain, [0], 1e-4, 1e-6).force.max())))
+print(sum(advance.stats.cache_misses.values()), sum(advance.stats.cache_hits.values()))
+"""
+
+
+@pytest.fixture(scope="module")
+def copy(tmp_path_factory):
+    """A copy of the physics that may be edited."""
+    root = tmp_path_factory.mktemp("source")
+    (root / "sonicvacuum").mkdir()
+    shutil.copy(PACKAGE / "__init__.py", root / "sonicvacuum")
+    shutil.copytree(
+        PACKAGE / "physics", root / "sonicvacuum" / "physics", ignore=shutil.ignore_patterns("__pycache__")
+    )
+    return root
+
+
+def start(copy, cache):
+    environment = os.environ | {"PYTHONPATH": str(copy), "SONICVACUUM_CACHE_DIR": str(cache)}
+    # A folder of its own, so that the package found is the copy and not the one beside the tests.
+    return subprocess.Popen(
+        [sys.executable, "-c", SCRIPT], cwd=copy, env=environment, stdout=subprocess.PIPE, text=True
+    )
+
+
+def finish(process):
+    output, _ = process.communicate(timeout=120)
+    assert process.returncode == 0
+    force, counts = output.splitlines()
+    return float(force), counts
+
+
+@pytest.fixture(scope="module")
+def crowd(copy, tmp_path_factory):
+    """Eight processes that need the same code at once, with an empty cache."""
+    cache = tmp_path_factory.mktemp("cache")
+    return cache, [finish(p) for p in [start(copy, cache) for _ in range(8)]]
+
+
+def test_of_many_processes_one_compiles_and_the_others_load(crowd):
+    cache, results = crowd
+    assert len({force for force, _ in results}) == 1
+    assert sorted(counts for _, counts in results) == ["0 1"] * 7 + ["1 0"]
+    assert len(list(cache.glob("*/*.bin"))) == 1
+
+
+def test_an_edited_callee_takes_effect_at_once_and_back(crowd, copy):
+    cache, results = crowd
+    laws = copy / "sonicvacuum" / "physics" / "laws.py"
+    text = laws.read_text()
+    edited = text.replace("return stiffness * power_3_2(delta)", "return 2.0 * stiffness * power_3_2(delta)")
+    assert edited != text
+    laws.write_text(edited)
+    force, counts = finish(start(copy, cache))
+    assert counts == "1 0"
+    # F scales as K^{2/5}; the step still is that of K.
+    assert force == pytest.approx(2**0.4 * results[0][0], rel=1e-3)
+    laws.write_text(text)
+    assert finish(start(copy, cache)) == (results[0][0], "0 1")
+
+
+def test_a_damaged_file_is_replaced(crowd, copy):
+    cache, results = crowd
+    (path,) = [p for p in cache.glob("*/*.bin") if p.parent == max(cache.iterdir(), key=os.path.getmtime)]
+    path.write_bytes(path.read_bytes()[:1000])
+    assert finish(start(copy, cache)) == (results[0][0], "1 0")
+    assert path.stat().st_size > 1000
+
+
+def test_without_a_writable_folder_code_is_compiled_afresh(crowd, copy, tmp_path):
+    (tmp_path / "file").write_text("no folder can be made here")
+    assert finish(start(copy, tmp_path / "file" / "cache")) == (crowd[1][0][0], "1 0")
+
+
+def test_folders_long_unused_are_removed(monkeypatch, tmp_path):
+    for k in range(12):
+        folder = tmp_path / f"compiled-{k}"
+        folder.mkdir()
+        os.utime(folder, (k, k))
+    (tmp_path / "other").mkdir()
+    monkeypatch.setenv("SONICVACUUM_CACHE_DIR", str(tmp_path))
+    folder = compiled.cache_folder.__wrapped__()
+    left = {p.name for p in tmp_path.iterdir()}
+    assert left == {"other", folder.name, *(f"compiled-{k}" for k in range(5, 12))}
+
+
+FACTOR = 1.0
+
+
+def _helper(delta):
+    return FACTOR * delta
+
+
+def _law(delta, stiffness):
+    return stiffness * _helper(delta)
+
+
+def test_fingerprint_sees_code_constants_closures_and_what_is_called(monkeypatch):
+    def scaled(factor):
+        return lambda delta, stiffness: factor * stiffness * delta
+
+    distinct = [
+        hertz_force,
+        scaled(1.0),
+        scaled(2.0),
+        lambda delta, stiffness: stiffness * delta + 1.0,
+        lambda delta, stiffness: stiffness * delta + 2.0,
+        lambda delta, stiffness: np.sqrt(delta) * stiffness,
+        lambda delta, stiffness: np.cbrt(delta) * stiffness,
+        _law,
+    ]
+    found = [fingerprint(f) for f in distinct]
+    assert len(set(found)) == len(found)
+    assert fingerprint(scaled(1.0)) == found[1]
+    monkeypatch.setattr(sys.modules[__name__], "FACTOR", 3.0)
+    assert fingerprint.__wrapped__(_law) != found[-1]
+
+
+def test_law_sets_are_told_apart_by_their_formulas_not_their_names():
+    one, two = (Term("x", "elastic", f, 1) for f in (lambda d, k: k * d, lambda d, k: k * d * d))
+    assert LawSet((one,)) != LawSet((two,))
+    assert LawSet((one,)).name != LawSet((two,)).name
+    assert LawSet() == LawSet((HERTZ,))
+    assert LawSet().name != LawSet(preloaded=True).name != LawSet(symplectic=False).name
