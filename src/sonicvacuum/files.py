@@ -42,6 +42,8 @@ def read_text(path: str | os.PathLike) -> str:
         raise InputError(f"{path}: {error.strerror or error}; give the path of a readable file") from None
     except UnicodeDecodeError as error:
         raise InputError(f"{path}: not a text file (byte {error.start} is not UTF-8)") from None
+    except ValueError as error:
+        raise InputError(f"{path}: {error}; give the path of a readable file") from None
 
 
 def read_yaml(path: str | os.PathLike) -> dict[str, Any]:
@@ -68,11 +70,18 @@ def read_yaml(path: str | os.PathLike) -> dict[str, Any]:
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         place = f", line {mark.line + 1}" if mark else ""
-        problem = getattr(error, "problem", None) or error
-        raise InputError(f"{path}{place}: not valid YAML: {problem}") from None
+        raise _not_yaml(path, place, getattr(error, "problem", None) or error) from None
+    except (ValueError, TypeError, AttributeError, RecursionError) as error:
+        # What the YAML library stumbles over without a word of its own: impossible dates, keys that are lists.
+        raise _not_yaml(path, "", error) from None
     if not isinstance(content, dict):
         raise InputError(f"{path}: expected keys and values at the top level, found {type(content).__name__}")
     return content
+
+
+def _not_yaml(path, place, problem):
+    told = " ".join(str(problem).split())
+    return InputError(f"{path}{place}: not valid YAML: {told}; quote texts with special characters")
 
 
 def convert(content: Any, kind: type, path: str | os.PathLike, prefix: str = "") -> Any:

@@ -6,6 +6,7 @@ workflow/resources/tolerances.csv. Exit code 1 and a table of differences when s
 """
 
 import filecmp
+import os
 import shutil
 import subprocess
 import sys
@@ -37,7 +38,9 @@ def run(folder: Path, cores: int) -> None:
     """The default target of the workflow in a folder."""
     print(f"running the pipeline in {folder.name} with --cores {cores}", flush=True)
     command = [sys.executable, "-m", "snakemake", "--cores", str(cores), "--quiet", "all", "--nocolor"]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
+    # The folder's own copy of the source, whatever becomes of the original meanwhile.
+    environment = os.environ | {"PYTHONPATH": str(folder / "src")}
+    done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True)
     if done.returncode:
         sys.exit(f"the pipeline failed in {folder}:\n{done.stdout[-4000:]}{done.stderr[-8000:]}")
 

@@ -44,7 +44,7 @@ def read(path) -> Record:
     file = folder / FILE
     if not file.is_file():
         raise InputError(f"{folder}: has no {FILE}; sonicvacuum record new {folder} writes one to fill in")
-    block = parse(_content(file), file)
+    block = parse(read_yaml(file), file)
     ids = [s.id for s in block.sensors]
     traces = {r.id: signals.read(folder / r.signals, ids) for r in block.runs if r.signals}
     record = Record(block, traces, folder.resolve().name)
@@ -52,17 +52,6 @@ def read(path) -> Record:
         if run.signals:
             check_scales(record, run.id, folder / run.signals)
     return record
-
-
-def _content(file):
-    """The mapping in a YAML file; what the YAML library itself stumbles over ends in one line as well."""
-    try:
-        return read_yaml(file)
-    except InputError as error:
-        raise InputError(" ".join(str(error).split())) from None
-    except (ValueError, TypeError, AttributeError, RecursionError) as error:
-        problem = " ".join(str(error).split())
-        raise InputError(f"{file}: not valid YAML: {problem}; quote texts with special characters") from None
 
 
 def parse(content: dict, path=FILE) -> RecordBlock:
