@@ -72,7 +72,7 @@ def read_yaml(path: str | os.PathLike) -> dict[str, Any]:
         place = f", line {mark.line + 1}" if mark else ""
         raise _not_yaml(path, place, getattr(error, "problem", None) or error) from None
     except (ValueError, TypeError, AttributeError, RecursionError) as error:
-        # What the YAML library stumbles over without a word of its own: impossible dates, keys that are lists.
+        # What the YAML library stumbles over without a word of its own: impossible dates, lists as keys.
         raise _not_yaml(path, "", error) from None
     if not isinstance(content, dict):
         raise InputError(f"{path}: expected keys and values at the top level, found {type(content).__name__}")
