@@ -14,6 +14,7 @@ from sonicvacuum.files import InputError
 VERBS = {
     "card": "card",
     "materials": "card",
+    "effects": "card",
     "schema": "card",
     "simulate": "simulate",
     "observe": "observe",
@@ -26,6 +27,8 @@ VERBS = {
     "publish": "report",
     "timings": "report",
     "record": "record",
+    "discover": "discover",
+    "compare": "discover",
     "hide": "blind",
     "score": "blind",
 }

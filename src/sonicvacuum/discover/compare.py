@@ -1,0 +1,98 @@
+"""Score a model on a record: only the record's own nuisances are fitted, effects and their parameters
+stay.
+"""
+
+from pathlib import Path
+
+import msgspec
+import numpy as np
+from msgspec import Struct
+
+from sonicvacuum.discover.forward import Forward
+from sonicvacuum.discover.hypothesis import Component, Hypothesis
+from sonicvacuum.discover.problem import experiment
+from sonicvacuum.discover.refit import fit
+from sonicvacuum.discover.verdict import Gap, Model, gap
+from sonicvacuum.effects import IDS, effect
+from sonicvacuum.files import InputError
+from sonicvacuum.records import Record
+
+
+class Comparison(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A model against one record, with the nominal model beside it.
+
+    Attributes:
+        model: record from which the model comes, and its effects.
+        gap: χ² per datum of the nominal model (before) and of this one (after).
+        chi2, data: of this model.
+        runs: run → gap.
+    """
+
+    format: int = 1
+    record: str
+    model: str
+    effects: list[str]
+    gap: Gap
+    chi2: float
+    data: int
+    runs: dict[str, Gap]
+
+
+def read_model(path) -> Model:
+    """The model of a `model.json`; InputError names file and key."""
+    try:
+        text = Path(path).read_bytes()
+        found = msgspec.json.decode(text, type=Model)
+    except OSError as error:
+        raise InputError(f"{path}: {error.strerror}; give the path of a model.json") from None
+    except (msgspec.DecodeError, msgspec.ValidationError) as error:
+        raise InputError(f"{path}: not a model ({error}); sonicvacuum discover writes one") from None
+    for name, given in found.effects.items():
+        if name not in IDS:
+            raise InputError(f"{path}: effects.{name}: no such effect; the catalogue holds {', '.join(IDS)}")
+        known = [p.name for p in effect(name).parameters] + [effect(name).places]
+        for key in given:
+            if key not in known:
+                raise InputError(
+                    f"{path}: effects.{name}.{key}: unknown key; {name} has {', '.join(filter(None, known))}"
+                )
+    return found
+
+
+def hypothesis(model: Model) -> Hypothesis:
+    """The model's effects, nothing free."""
+    components = []
+    for name, given in model.effects.items():
+        one = effect(name)
+        fixed = {k: v for k, v in given.items() if k != one.places}
+        place = int(given[one.places]) if one.places else None
+        components.append(Component(one, (), fixed, place))
+    return Hypothesis(tuple(components))
+
+
+def compare(model: Model, record: Record, threads: int = 1) -> Comparison:
+    """The model's score on a record."""
+    forward = Forward(experiment(record), threads)
+    sizes = np.array([forward.experiment.size(k) for k in range(len(forward.experiment.runs))])
+    nominal, extended = (_fit(forward, h) for h in (Hypothesis(), hypothesis(model)))
+    before, after = nominal.normal.chi2[:, 0], extended.normal.chi2[:, 0]
+    runs = {
+        run.id: gap(float(before[k] / sizes[k]), float(after[k] / sizes[k]))
+        for k, run in enumerate(forward.experiment.runs)
+    }
+    return Comparison(
+        record=forward.experiment.name,
+        model=model.record,
+        effects=list(model.effects),
+        gap=gap(float(before.sum() / sizes.sum()), float(after.sum() / sizes.sum())),
+        chi2=float(after.sum()),
+        data=int(sizes.sum()),
+        runs=runs,
+    )
+
+
+def _fit(forward, one):
+    try:
+        return fit(forward, one, np.zeros((1, 0)), np.zeros((1, forward.layout.size)))
+    except ValueError as error:
+        raise InputError(f"the model does not fit this record: {error}") from None

@@ -1,0 +1,173 @@
+"""Small departures from a model, one for each way in which it may lack something: what the screen projects
+on.
+
+A direction is an effect of the catalogue at a place and with a shape, at a strength small enough for the
+readings to answer in proportion, and large enough to stand clear of numerical error.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from sonicvacuum.discover.forward import Forward
+from sonicvacuum.discover.hypothesis import Hypothesis, is_law, with_common_laws
+from sonicvacuum.discover.parameters import coordinate, shape_grid
+from sonicvacuum.effects import CATALOGUE, Effect, Setup
+
+# The first trial strength (typical departures), and the change of all data, in standard errors, that is
+# aimed at.
+TRIAL, AIM = 0.03, 100.0
+WEAKEST, STRONGEST = 1e-5, 0.5
+
+
+@dataclass(frozen=True)
+class Direction:
+    """One column of the screen.
+
+    Attributes:
+        effect: id; of a direction outside the catalogue, the family it belongs to.
+        strength: name of the parameter that departs from off.
+        shape: values of the parameters that only shape.
+        place: where it sits, None where it has no place.
+        two_sided: whether it may depart either way.
+        unit: typical departure of the strength.
+    """
+
+    effect: str
+    strength: str
+    shape: tuple[tuple[str, float], ...] = ()
+    place: int | None = None
+    two_sided: bool = False
+    unit: float = 1.0
+
+    @property
+    def label(self) -> str:
+        """`mass-defect bead 13`, for tables."""
+        parts = [self.effect, self.strength if self.effect == "striker-error" else ""]
+        parts += [f"{k} {v:.3g}" for k, v in self.shape]
+        return " ".join(p for p in (*parts, "" if self.place is None else str(self.place)) if p)
+
+
+@dataclass(frozen=True)
+class Family:
+    """Directions that are simulated in one call: their change is one function of strengths.
+
+    Attributes:
+        directions: K of them.
+        change: (setup, lane index, (lanes,) strengths) → setup, lane k departing in direction k.
+        trial: strength of the first trial.
+        least: smallest strength at which the change is what it is called (a gap opens at once).
+    """
+
+    directions: tuple[Direction, ...]
+    change: Callable[[Setup, np.ndarray, np.ndarray], Setup]
+    trial: float = TRIAL
+    least: float = WEAKEST
+
+
+def of_effect(
+    effect: Effect, setup: Setup, common: bool = False, present: tuple[str, ...] = ()
+) -> list[Family]:
+    """The families of one effect: one for each of its strengths."""
+    places = effect.candidates(setup) if effect.places else (None,)
+    families = []
+    for strength in (p for p in effect.parameters if p.switches):
+        two_sided = coordinate(strength, setup).two_sided
+        grid = [(place, shape) for place in places for shape in shape_grid(effect)]
+        directions = tuple(
+            Direction(effect.id, strength.name, tuple(shape.items()), place, two_sided, strength.scale)
+            for place, shape in grid
+        )
+        if directions:
+            least = strength.low / strength.scale if effect.id == "contact-gap" else WEAKEST
+            families.append(
+                Family(directions, _change(effect, strength, grid, common, present), TRIAL, least)
+            )
+    return families
+
+
+def _change(effect, strength, grid, common, present):
+    places = np.array([g[0] for g in grid])
+    shapes = {name: np.array([g[1][name] for g in grid]) for name in grid[0][1]}
+
+    def change(setup, index, strengths):
+        given = {name: values[index] for name, values in shapes.items()}
+        given[strength.name] = _at(strength, strengths, setup)
+        if effect.places:
+            given[effect.places] = places[index].astype(int)
+        changed = effect.apply(setup, **given)
+        return with_common_laws(changed, (*present, effect.id)) if common else changed
+
+    return change
+
+
+def _at(parameter, strength, setup):
+    """`Parameter.at` for an array of positive strengths."""
+    off = parameter.off_in(setup)
+    if np.all(np.isinf(off)):
+        with np.errstate(divide="ignore"):
+            return parameter.scale / strength
+    towards = np.where(off + parameter.scale > parameter.high, -1.0, 1.0)
+    value = off + towards * strength * parameter.scale
+    return np.clip(value, min(parameter.low, np.min(off)), max(parameter.high, np.max(off)))
+
+
+def catalogue(setup: Setup, present: tuple[str, ...] = ()) -> list[Family]:
+    """Families of all effects but those in force; a law joins the common law set where another is in
+    force.
+    """
+    families = []
+    laws = any(is_law(e, setup) for e in CATALOGUE if e.id in present)
+    for effect in CATALOGUE:
+        if effect.id in present:
+            continue
+        common = laws and is_law(effect, setup)
+        families += of_effect(effect, setup, common, present)
+    return families
+
+
+def like_nuisance(forward: Forward, family: Family, base: list[np.ndarray], free: int):
+    """Slopes of directions that act exactly as a nuisance does, from its column; None for all others.
+
+    Differences of simulations would leave a trace of such a direction where nothing of it is left.
+    """
+    sigma, layout = forward.nuisance_sigma, forward.layout
+    first = family.directions[0]
+    if first.effect == "dynamic-modulus" and sigma[layout.modulus]:
+        return [first.unit / sigma[layout.modulus] * c[:, free + 1] for c in base]
+    speeds = sigma[: layout.runs]
+    if (first.effect, first.strength) == ("striker-error", "speed_ratio") and np.all(speeds > 0.0):
+        return [first.unit / s * c[:, free + 2] for s, c in zip(speeds, base, strict=True)]
+    if first.effect == "sensor-gain" and np.all(sigma[layout.gains] > 0.0):
+        gains = sigma[layout.gains][:, None]
+        return [first.unit / gains * c[0, free + 4 :] for c in base]
+    return None
+
+
+def simulate(forward: Forward, hypothesis: Hypothesis, u, nu, family: Family):
+    """For each run, the slopes (K, M) of the whitened data with the strengths of a family; (K,) strengths
+    used.
+    """
+    count = len(family.directions)
+    many_u, many_nu = np.repeat(u[None], count + 1, axis=0), np.repeat(nu[None], count + 1, axis=0)
+
+    def at(strengths):
+        strengths = np.append(strengths, 0.0)
+
+        def change(setup, index):
+            setup = hypothesis.change(many_u)(setup, index)
+            return family.change(setup, np.minimum(index, count - 1), strengths[index])
+
+        found = [value for value, _ in forward.sampled(hypothesis, many_u, many_nu, None, change=change)]
+        return [(v[:-1] - v[-1]) for v in found]
+
+    trial = np.full(count, family.trial)
+    changes = at(trial)
+    size = np.sqrt(sum(np.square(c).sum(axis=1) for c in changes))
+    strengths = np.clip(trial * AIM / np.maximum(size, 1e-9), family.least, STRONGEST)
+    far = (strengths < 0.3 * trial) | (strengths > 3.0 * trial)
+    strengths = np.where(far, strengths, trial)
+    once = at(strengths) if np.any(far) else changes
+    twice = at(2.0 * strengths)
+    return [(2.0 * a - 0.5 * b) / strengths[:, None] for a, b in zip(once, twice, strict=True)], strengths

@@ -1,0 +1,108 @@
+"""How probable each explanation is: evidence by Laplace's approximation, relative to the nominal model.
+
+Priors. `none` and `unknown` have the weights below, the effects share the rest alike. The strength of an
+effect is given a prior flat in log d′, the same for all effects (d′ its size in the data, in standard
+errors): ranges of physical parameters are arbitrary, and would otherwise decide between effects that fit
+alike. Parameters that shape an effect are flat over their bounds, places are equally likely. Each enters as
+an Occam factor, never above 1.
+
+Unknown. A model that leaves a residual with p-value p is worth at most 1/(−e p ln p) of what fits
+(Sellke, Bayarri & Berger, Am. Stat. 55, 62, 2001); that bound is the weight of `unknown` against the best of
+the rest.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from sonicvacuum.discover.refit import Fit
+from sonicvacuum.effects import IDS
+
+PRIOR_NONE, PRIOR_UNKNOWN = 0.3, 0.1
+# Range of d′ of the prior.
+WEAK, STRONG = 1.0, 100.0
+_UNKNOWN_ODDS = 0.1
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """One effect as fitted.
+
+    Attributes:
+        effect: id.
+        fit: the best of its fits.
+        gain: Δχ² (nuisance penalties included) against the nominal model.
+        log_bayes: natural log of the Bayes factor against it.
+        places: (place, weight) where it may sit.
+        flags: what to doubt: "bound", "unsettled".
+    """
+
+    effect: str
+    fit: Fit
+    gain: float
+    log_bayes: float
+    places: tuple[tuple[int, float], ...] = ()
+    flags: tuple[str, ...] = ()
+
+
+def occam_strength(gain: float, two_sided: bool) -> float:
+    """Log of the Occam factor of a strength whose d′ is √Δχ²: √(2π) σ times the prior density."""
+    size = math.sqrt(max(gain, WEAK))
+    factor = math.sqrt(2.0 * math.pi) / (size * math.log(STRONG / WEAK) * (2.0 if two_sided else 1.0))
+    return math.log(min(1.0, factor))
+
+
+def occam_shape(fit: Fit, k: int) -> float:
+    """Log of the Occam factor of a parameter with a flat prior over its bounds."""
+    c = fit.hypothesis.coordinates[k]
+    sigma = fit.sigma[k]
+    share = math.sqrt(2.0 * math.pi) * sigma / (c.high - c.low) if np.isfinite(sigma) and sigma > 0.0 else 1.0
+    return math.log(min(1.0, max(share, 1e-6)))
+
+
+def occam(fit: Fit, gain: float) -> float:
+    """Log of the product of the Occam factors of all parameters of a fit; places aside."""
+    total = 0.0
+    for k, c in enumerate(fit.hypothesis.coordinates):
+        shape = not c.parameter.switches
+        total += occam_shape(fit, k) if shape else occam_strength(gain, c.two_sided)
+    return total
+
+
+def log_bayes(fit: Fit, gain: float, places: np.ndarray | None = None) -> float:
+    """Log Bayes factor of a fit against the nominal model.
+
+    Args:
+        fit: best fit.
+        gain: its Δχ².
+        places: (n,) Δχ² of the effect at each place it may have, the best one's included.
+    """
+    total = 0.5 * max(gain, 0.0) + occam(fit, gain)
+    if places is not None and len(places):
+        total += math.log(np.exp(0.5 * (places - places.max())).mean())
+    return total
+
+
+def unknown_odds(p: float) -> float:
+    """Odds of `unknown` against the best named explanation whose residual has p-value p."""
+    p = max(p, 1e-300)
+    bound = 1.0 / (-math.e * p * math.log(p)) if p < 1.0 / math.e else 0.1
+    return _UNKNOWN_ODDS * bound
+
+
+def probabilities(candidates: list[Candidate], alarm_p: float) -> dict[str, float]:
+    """Probability of none, unknown and every single effect; they sum to 1.
+
+    `alarm_p` is the p-value of the residual of the most probable of them.
+    """
+    each = (1.0 - PRIOR_NONE - PRIOR_UNKNOWN) / len(IDS)
+    logs = {"none": math.log(PRIOR_NONE)}
+    logs |= {c.effect: math.log(each) + c.log_bayes for c in candidates}
+    best = max(logs.values())
+    logs["unknown"] = best + math.log(unknown_odds(alarm_p))
+    top = max(logs.values())
+    weights = {name: math.exp(value - top) for name, value in logs.items()}
+    total = sum(weights.values())
+    order = ["none", "unknown", *(i for i in IDS if i in weights)]
+    return {name: weights[name] / total for name in order}

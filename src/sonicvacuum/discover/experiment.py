@@ -1,0 +1,163 @@
+"""One data set as the inference sees it: samples and scalars with their noise, chains that were struck,
+gauges.
+
+Signals of a run are whitened once: divided by the gauge's noise and, where the noise before the arrival is
+correlated from sample to sample, by the AR(1) recursion (`whiten`).
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from sonicvacuum.physics.chain import Chain
+
+# Of the bead material's modulus where a record does not say: a handbook value of a metal or polymer is
+# seldom better.
+MODULUS_REL_SIGMA = 0.05
+
+
+@dataclass(frozen=True)
+class Gauge:
+    """A gauge whose properties may differ from lane to lane: floats or (lanes,) arrays, unchecked.
+
+    Attributes are those of `observe.sensor.Sensor`, but `droop_s` is infinite where there is no discharge.
+    """
+
+    id: str
+    kind: str
+    bead: int | None = None
+    droop_s: float | np.ndarray = math.inf
+    lowpass_s: float | np.ndarray = 0.0
+    offset_fraction: float | np.ndarray = 0.0
+    gain: float | np.ndarray = 1.0
+
+
+@dataclass(frozen=True)
+class Scalar:
+    """One observable of a run: SI value and standard error; `options` as `observe.quantities` takes them."""
+
+    quantity: str
+    value: float
+    sigma: float
+    options: Mapping[str, object] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class RunData:
+    """What was measured in one run.
+
+    Attributes:
+        id: name of the run.
+        time: (T,) equidistant recorded times in s; empty without signals.
+        readings: (S, T) N, in the order of the experiment's gauges.
+        scalars: observables.
+        speed_rel_sigma: standard error of the striker's speed, relative.
+    """
+
+    id: str
+    time: np.ndarray
+    readings: np.ndarray
+    scalars: tuple[Scalar, ...] = ()
+    speed_rel_sigma: float = 0.0
+
+    @property
+    def has_signals(self) -> bool:
+        """Whether traces were recorded."""
+        return len(self.time) > 0
+
+    @property
+    def interval(self) -> float:
+        """Time between samples in s; NaN without signals."""
+        return float(self.time[-1] - self.time[0]) / (len(self.time) - 1) if self.has_signals else math.nan
+
+
+@dataclass(frozen=True)
+class Batch:
+    """Runs that are simulated together: chains that differ only in numbers, one lane for each run.
+
+    Attributes:
+        chain: nominal chains, lane k being run `runs[k]`.
+        runs: indices of the runs.
+        interval: time between simulated samples in s, a whole fraction of the runs' own.
+        duration: simulated time in s.
+    """
+
+    chain: Chain
+    runs: tuple[int, ...]
+    interval: float
+    duration: float
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """A data set.
+
+    Attributes:
+        name: of the record.
+        runs: the runs.
+        batches: how they are simulated; every run is in one batch.
+        gauges: nominal gauges.
+        sigma: (S,) standard deviation of one sample in N.
+        correlation: (S,) correlation of the noise of neighbouring samples, 0 where white.
+        gain_rel_sigma: (S,) standard error of the gains, relative.
+        trigger_sigma: s, of the common time zero of a run.
+        modulus_rel_sigma: of the bead material, relative.
+        diameter: of a bead in m.
+        record: the record it was made from, None in tests.
+        integrated: compare running integrals of the traces instead: a coarse view in which a late pulse is
+            still felt, for searches that start far from the data.
+    """
+
+    name: str
+    runs: tuple[RunData, ...]
+    batches: tuple[Batch, ...]
+    gauges: tuple[Gauge, ...]
+    sigma: np.ndarray
+    correlation: np.ndarray
+    gain_rel_sigma: np.ndarray
+    trigger_sigma: float
+    modulus_rel_sigma: float
+    diameter: float
+    record: object = None
+    integrated: bool = False
+
+    @property
+    def beads(self) -> int:
+        """Number of beads."""
+        return self.batches[0].chain.beads
+
+    def whitened(self, run: int) -> np.ndarray:
+        """(M,) data of a run over their noise: gauge after gauge, then the scalars."""
+        data = self.runs[run]
+        values = np.array([s.value for s in data.scalars])
+        return self.whiten(run, data.readings[None], values[None])[0]
+
+    def whiten(self, run: int, readings: np.ndarray, scalars: np.ndarray) -> np.ndarray:
+        """(L, M) readings (L, S, T) and scalars (L, n) of a run over their noise; linear."""
+        data = self.runs[run]
+        errors = np.array([s.sigma for s in data.scalars])
+        lanes = len(readings)
+        if not data.has_signals:
+            return scalars / errors
+        white = readings / self.sigma[:, None]
+        if np.any(self.correlation):
+            rho = self.correlation[:, None]
+            rest = (white[..., 1:] - rho * white[..., :-1]) / np.sqrt(1.0 - rho**2)
+            white = np.concatenate([white[..., :1], rest], axis=-1)
+        if self.integrated:
+            white = np.cumsum(white, axis=-1) / math.sqrt(white.shape[-1])
+        return np.concatenate([white.reshape(lanes, -1), scalars / errors], axis=1)
+
+    def size(self, run: int) -> int:
+        """Number of data of a run."""
+        data = self.runs[run]
+        return len(self.gauges) * len(data.time) + len(data.scalars)
+
+
+def lag_one(noise: np.ndarray) -> float:
+    """Correlation of neighbouring samples of (S,) noise, its mean removed."""
+    centred = noise - noise.mean()
+    power = centred @ centred
+    return float(centred[1:] @ centred[:-1] / power) if power > 0.0 else 0.0

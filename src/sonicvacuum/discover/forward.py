@@ -1,0 +1,255 @@
+"""The simulator as a function of parameters: predictions of all data of an experiment, lane by lane, with
+their slopes.
+
+A *lane* is one complete experiment with its own parameters; every run of it is one chain of the stepper. The
+nuisances are the striker's speed and the trigger of each run, the gain of each gauge and the modulus of the
+bead material, all in units of their standard errors; trigger and gain act on readings without further
+simulation.
+"""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from sonicvacuum.discover import gauges, scalars
+from sonicvacuum.discover.experiment import Experiment
+from sonicvacuum.discover.hypothesis import Hypothesis
+from sonicvacuum.effects import Setup
+from sonicvacuum.physics.run import simulate
+
+# Largest steps of speed and modulus for finite differences, relative; smaller where the data are precise, so
+# that all data together change by about this many standard errors, and collinear columns come out collinear.
+LARGEST_STEP, STEP_AIM = 3e-3, 10.0
+CHUNK = 512  # chains simulated in one call, to bound the memory
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Where the nuisances stand in a vector of them: speeds, triggers, gains, modulus."""
+
+    runs: int
+    gauges: int
+
+    @property
+    def size(self) -> int:
+        """Number of nuisances."""
+        return 2 * self.runs + self.gauges + 1
+
+    def speed(self, run):
+        """Place of a run's speed."""
+        return run
+
+    def trigger(self, run):
+        """Place of a run's trigger shift."""
+        return self.runs + run
+
+    @property
+    def gains(self) -> np.ndarray:
+        """(S,) places of the gains."""
+        return 2 * self.runs + np.arange(self.gauges)
+
+    @property
+    def modulus(self) -> int:
+        """Place of the modulus."""
+        return self.size - 1
+
+    def local(self, run) -> np.ndarray:
+        """(S + 3,) places of the nuisances that touch one run: modulus, speed, trigger, gains."""
+        return np.array([self.modulus, self.speed(run), self.trigger(run), *self.gains])
+
+
+class Forward:
+    """Predictions of an experiment; counts the chains it simulates in `simulations`."""
+
+    def __init__(self, experiment: Experiment, threads: int = 1):
+        self.experiment, self.threads, self.simulations = experiment, threads, 0
+        self.layout = Layout(len(experiment.runs), len(experiment.gauges))
+        self._coarse = None
+
+    @property
+    def coarse(self) -> "Forward":
+        """The same predictor of running integrals of the traces."""
+        if self._coarse is None:
+            self._coarse = Forward(replace(self.experiment, integrated=True), self.threads)
+        return self._coarse
+
+    @property
+    def chains(self) -> int:
+        """Chains simulated so far, the coarse view's included."""
+        return self.simulations + (self._coarse.simulations if self._coarse else 0)
+
+    def data(self, run: int) -> np.ndarray:
+        """(M,) whitened data of a run."""
+        return self._whitened[run]
+
+    @cached_property
+    def step(self) -> float:
+        """Relative step of speeds and modulus for finite differences."""
+        size = np.sqrt(sum(float(d @ d) for d in self._whitened))
+        return float(np.clip(STEP_AIM / max(size, 1e-9), 1e-5, LARGEST_STEP))
+
+    @cached_property
+    def _whitened(self):
+        return [self.experiment.whitened(run) for run in range(len(self.experiment.runs))]
+
+    @cached_property
+    def nuisance_sigma(self) -> np.ndarray:
+        """(q,) standard errors: relative for speeds, gains and modulus, s for triggers; 0: known exactly."""
+        e = self.experiment
+        speeds = [r.speed_rel_sigma for r in e.runs]
+        triggers = [e.trigger_sigma if r.has_signals else 0.0 for r in e.runs]
+        return np.array([*speeds, *triggers, *e.gain_rel_sigma, e.modulus_rel_sigma])
+
+    def columns(
+        self,
+        hypothesis: Hypothesis,
+        u: np.ndarray,
+        nu: np.ndarray,
+        places: np.ndarray | None = None,
+        precise: bool = False,
+    ) -> list[np.ndarray]:
+        """Whitened predictions and their derivatives.
+
+        Args:
+            hypothesis: the effects in force.
+            u: (L, p) coordinates of their free parameters.
+            nu: (L, q) nuisances over their standard errors.
+            places: (L, components) where they sit; None: as the hypothesis says.
+            precise: slopes to second order (twice the simulations), so that collinear ones come out
+                collinear.
+
+        Returns:
+            For each run (L, c, M): prediction, p derivatives to u, those to modulus, speed, trigger and
+            gains (as `Layout.local`).
+        """
+        u, nu = np.atleast_2d(u), np.atleast_2d(nu)
+        once = self._assemble(hypothesis, u, nu, places, 1.0)
+        if not precise:
+            return once
+        twice = self._assemble(hypothesis, u, nu, places, 2.0)
+        for one, two in zip(once, twice, strict=True):
+            one[:, 1:] = 2.0 * one[:, 1:] - two[:, 1:]
+        return once
+
+    def _assemble(self, hypothesis, u, nu, places, stretch):
+        """Stack base, parameter, modulus and speed lanes, simulate them at once, take differences."""
+        lanes, p = u.shape
+        sets = p + 3
+        many_u, many_nu = np.repeat(u, sets, axis=0), np.repeat(nu, sets, axis=0)
+        steps = stretch * np.array([c.step for c in hypothesis.coordinates])
+        for k in range(p):
+            towards = np.where(u[:, k] + steps[k] > hypothesis.coordinates[k].high, -1.0, 1.0)
+            many_u[1 + k :: sets, k] += steps[k] * towards
+        sigma = self.nuisance_sigma
+        runs = len(self.experiment.runs)
+        h = stretch * self.step
+        for run in range(runs):
+            many_nu[p + 2 :: sets, run] += h / sigma[run] if sigma[run] else 0.0
+        modulus = self.layout.modulus
+        many_nu[p + 1 :: sets, modulus] += h / sigma[modulus] if sigma[modulus] else 0.0
+        many_places = None if places is None else np.repeat(places, sets, axis=0)
+        found = self.sampled(hypothesis, many_u, many_nu, many_places, rate_of=sets)
+        divide = many_u.reshape(lanes, sets, p)[:, 1 : 1 + p] - u[:, None]
+        divide = np.einsum("lkk->lk", divide) if p else np.zeros((lanes, 0))
+        result = []
+        for run, (value, rate) in enumerate(found):
+            value = value.reshape(lanes, sets, -1)
+            base = value[:, :1]
+            slopes = (value[:, 1 : 1 + p] - base) / divide[..., None]
+            young = (value[:, p + 1 : p + 2] - base) * (sigma[modulus] / h)
+            speed = (value[:, p + 2 :] - base) * (sigma[run] / h)
+            trigger = -rate[:, None] * sigma[self.layout.trigger(run)]
+            gains = self._gain_columns(run, base[:, 0])
+            result.append(np.concatenate([base, slopes, young, speed, trigger, gains], axis=1))
+        return result
+
+    def _gain_columns(self, run, value):
+        """(L, S, M) change of the data of a run with the gain of each gauge, times its standard error."""
+        e, data = self.experiment, self.experiment.runs[run]
+        gauges_, samples = len(e.gauges), len(data.time)
+        columns = np.zeros((len(value), gauges_, value.shape[1]))
+        for s in range(gauges_):
+            columns[:, s, s * samples : (s + 1) * samples] = value[:, s * samples : (s + 1) * samples]
+            for k, one in enumerate(data.scalars):
+                at = gauges_ * samples + k
+                columns[:, s, at] = value[:, at] * scalars.gain_power(one, e.gauges[s].id)
+        return columns * e.gain_rel_sigma[:, None]
+
+    def sampled(self, hypothesis, u, nu, places=None, rate_of: int = 0, change=None):
+        """For each run whitened predictions (L, M) and their time derivative for every `rate_of`-th lane."""
+        change = change or hypothesis.change(u, places)
+        runs = len(self.experiment.runs)
+        values = [[] for _ in range(runs)]
+        rates = [[] for _ in range(runs)]
+        per_call = max(rate_of or 1, CHUNK // max(1, runs))
+        per_call -= per_call % (rate_of or 1)
+        for first in range(0, len(nu), per_call):
+            part = np.arange(first, min(first + per_call, len(nu)))
+            for batch in self.experiment.batches:
+                for run, value, rate in self._batch(batch, change, nu, part, rate_of):
+                    values[run].append(value)
+                    rates[run].append(rate)
+        return [(np.concatenate(v), np.concatenate(r)) for v, r in zip(values, rates, strict=True)]
+
+    def _batch(self, batch, change, nu, part, rate_of):
+        """Run, predictions and rates of one batch for the lanes `part`."""
+        runs = len(batch.runs)
+        index = np.repeat(part, runs)
+        setup = change(self.nominal(batch, nu[part]), index)
+        seen = self.simulate(batch, setup)
+        for k, run in enumerate(batch.runs):
+            yield run, *self._data(batch, run, k, runs, seen, nu[part], rate_of)
+
+    def _data(self, batch, run, k, runs, seen, nu, rate_of):
+        e, data, layout = self.experiment, self.experiment.runs[run], self.layout
+        gain = np.exp(nu[:, layout.gains] * e.gain_rel_sigma)
+        lanes_of = slice(k, None, runs)
+        signals = seen.readings[lanes_of] * gain[..., None]
+        measured = scalars.predict(e, run, lanes_of, seen, signals)
+        lanes = len(nu)
+        empty = np.zeros((lanes, len(e.gauges), 0))
+        value, rate = empty, empty
+        if data.has_signals:
+            shift = nu[:, layout.trigger(run)] * self.nuisance_sigma[layout.trigger(run)]
+            value, rate = gauges.shifted(signals, batch.interval, data.time, shift)
+        flat = e.whiten(run, value, measured)
+        kept = rate[:: rate_of or lanes]
+        return flat, e.whiten(run, kept, np.zeros((len(kept), measured.shape[1])))
+
+    def nominal(self, batch, nu) -> Setup:
+        """Setup of all lanes of a batch (lane-major, run-minor) with the nuisances in force."""
+        sigma, runs = self.nuisance_sigma, np.array(batch.runs)
+        lanes = len(nu)
+        chain = batch.chain.take(np.tile(np.arange(len(runs)), lanes))
+        speed = chain.speed * np.exp(nu[:, runs] * sigma[runs]).ravel()
+        stiffer = np.repeat(np.exp(nu[:, self.layout.modulus] * sigma[self.layout.modulus]), len(runs))
+        bodies = {
+            name: replace(body, modulus=body.modulus * stiffer)
+            for name in ("bead", "striker", "wall")
+            if (body := getattr(chain, name)).name == chain.bead.name
+        }
+        return Setup(replace(chain, speed=speed, **bodies), self.experiment.gauges)
+
+    def simulate(self, batch, setup: Setup):
+        """Readings (lanes, S, T') on the simulated grid, with what the scalars need besides."""
+        beads = setup.chain.beads
+        wanted = {*gauges.contacts_needed(setup.sensors, beads), *scalars.contacts_wanted(self.experiment)}
+        wanted = sorted(wanted)
+        history = simulate(setup.chain, wanted, batch.duration, batch.interval, threads=self.threads)
+        self.simulations += setup.chain.lanes
+        forces = {c: history.of(c) for c in wanted}
+        if setup.sensors:
+            read = gauges.readings(setup.sensors, forces, batch.interval, beads)
+        else:
+            read = np.zeros((setup.chain.lanes, 0, len(history.time)))
+        return Seen(read, history, setup)
+
+
+@dataclass(frozen=True)
+class Seen:
+    """What a simulation of one batch shows: readings (lanes, S, T') in N, the history, the setup."""
+
+    readings: np.ndarray
+    history: object
+    setup: Setup

@@ -1,0 +1,87 @@
+"""Leave one run out: what a model fitted to the other runs leaves of the one it has not seen.
+
+In the linearised model at the fit to all runs this is algebra: the run's share is taken out of the normal
+    equations,
+the parameters move, and on the run left out only the nuisances may follow, held by what the other runs say
+of them.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sonicvacuum.discover.normal import Normal
+from sonicvacuum.discover.refit import Fit
+
+
+@dataclass(frozen=True)
+class HeldOut:
+    """(R,) χ² of each run when it was left out, and the number of its data."""
+
+    chi2: np.ndarray
+    size: np.ndarray
+
+    @property
+    def mean(self) -> float:
+        """χ² per datum over all runs."""
+        return float(self.chi2.sum() / self.size.sum())
+
+
+def held_out(fit: Fit, sizes: np.ndarray) -> HeldOut:
+    """Every run of a fit left out once; `sizes` (R,) are numbers of data."""
+    chi2 = np.array([_without(fit.normal, run) for run in range(len(sizes))])
+    return HeldOut(chi2, np.asarray(sizes))
+
+
+def _without(normal: Normal, run: int) -> float:
+    gradient, hessian = (part[0] for part in normal.total())
+    own_gradient, own = normal.gradient[run, 0], normal.hessian[run, 0]
+    others, pull = hessian - own, gradient - own_gradient
+    moved = np.linalg.lstsq(others, pull, rcond=1e-12)[0]
+    free = normal.free
+    # On the run itself: minimise χ²_run + (δ − moved)ᵀ others (δ − moved) over the nuisances, parameters at
+    # `moved`.
+    rest = slice(free, None)
+    matrix = own[rest, rest] + others[rest, rest]
+    right = own_gradient[rest] - own[rest, :free] @ moved[:free] + others[rest, rest] @ moved[rest]
+    moved[rest] = np.linalg.lstsq(matrix, right, rcond=1e-12)[0]
+    value = normal.chi2[run, 0] - 2.0 * own_gradient @ moved + moved @ own @ moved
+    return float(max(value, 0.0))
+
+
+def predictive(fit: Fit) -> np.ndarray:
+    """(R,) log predictive density of each run given the others, up to a constant of the data.
+
+    Unlike the χ² left, it allows for what the other runs leave open: log p(y_r | y_-r) in the linearised
+        model,
+    parameters having a wide Gaussian prior (`_width`).
+    """
+    normal = fit.normal
+    gradient, hessian = (part[0] for part in normal.total())
+    hessian = hessian + np.diag([*(1.0 / np.square(_width(fit))), *np.zeros(len(fit.nu))])
+    whole = np.linalg.slogdet(hessian)[1]
+    result = []
+    for run in range(len(normal.chi2)):
+        others, pull = hessian - normal.hessian[run, 0], gradient - normal.gradient[run, 0]
+        drop = pull @ np.linalg.solve(others, pull)
+        result.append(-0.5 * (normal.chi2[run, 0] + drop + whole - np.linalg.slogdet(others)[1]))
+    return np.array(result)
+
+
+def _width(fit):
+    """(p,) width of the prior of each coordinate."""
+    return np.array(
+        [
+            2.0 if c.kind in ("log", "inverse") else 2.0 * abs(u) + 1e-3
+            for c, u in zip(fit.hypothesis.coordinates, fit.u, strict=True)
+        ]
+    )
+
+
+def better(before: Fit, after: Fit, room: float = 6.0) -> bool:
+    """Whether a model predicts unseen runs better, in sum and none of them much worse.
+
+    `room` is the log density by which one run may be worse. With a single run there is nothing to hold out.
+    """
+    gain = predictive(after) - predictive(before)
+    return len(gain) < 2 or bool(gain.sum() > 0.0 and gain.min() > -room)

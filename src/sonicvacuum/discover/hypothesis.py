@@ -1,0 +1,130 @@
+"""A hypothesis: which effects are in force, which of their parameters are free, where they sit."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from sonicvacuum.discover import flexible
+from sonicvacuum.discover.parameters import Coordinate, coordinate
+from sonicvacuum.effects import CATALOGUE, Effect, Setup
+
+# Laws with a free power are several times slower than all others; they join the common law set only when
+# needed.
+SLOW_LAWS = ("contact-exponent", "velocity-power")
+FLEXIBLE = "flexible"
+
+
+@dataclass(frozen=True)
+class Component:
+    """One effect of a hypothesis.
+
+    Attributes:
+        effect: of the catalogue.
+        free: coordinates of the searched parameters.
+        fixed: values of the others (a strength that is left out is off).
+        place: bead, contact or sensor, None where the effect has none.
+    """
+
+    effect: Effect
+    free: tuple[Coordinate, ...]
+    fixed: dict[str, float] = field(default_factory=dict)
+    place: int | None = None
+
+    def parameters(self, u: np.ndarray, places: np.ndarray | None) -> dict[str, np.ndarray]:
+        """Arguments of `Effect.apply` for (L, free) coordinates and (L,) places."""
+        given = {c.parameter.name: c.value(u[:, k]) for k, c in enumerate(self.free)}
+        given |= {name: np.full(len(u), value) for name, value in self.fixed.items()}
+        if self.effect.places:
+            given[self.effect.places] = np.full(len(u), self.place) if places is None else places
+        return given
+
+
+@dataclass(frozen=True)
+class Hypothesis:
+    """Effects in force together.
+
+    `common` composes the force law of all fast laws of the catalogue, those not in force being off, so that
+    any combination runs in one compiled stepper.
+    """
+
+    components: tuple[Component, ...] = ()
+    common: bool = False
+
+    @property
+    def coordinates(self) -> tuple[Coordinate, ...]:
+        """All free parameters in order."""
+        return tuple(c for component in self.components for c in component.free)
+
+    @property
+    def ids(self) -> tuple[str, ...]:
+        """Ids of the effects in order."""
+        return tuple(c.effect.id for c in self.components)
+
+    def with_component(self, component: Component) -> "Hypothesis":
+        """This hypothesis with one effect more."""
+        return replace(self, components=(*self.components, component))
+
+    def with_places(self, places) -> "Hypothesis":
+        """This hypothesis with its effects at the given places."""
+        moved = [
+            replace(c, place=int(p)) if c.effect.places else c
+            for c, p in zip(self.components, places, strict=True)
+        ]
+        return replace(self, components=tuple(moved))
+
+    def change(self, u: np.ndarray, places: np.ndarray | None = None) -> Callable:
+        """The change (setup, lane index of each chain) → setup for (L, p) coordinates."""
+        bounds = np.cumsum([0, *(len(c.free) for c in self.components)])
+
+        def changed(setup: Setup, index: np.ndarray) -> Setup:
+            for k, component in enumerate(self.components):
+                at = None if places is None else places[index, k]
+                given = component.parameters(u[index, bounds[k] : bounds[k + 1]], at)
+                setup = component.effect.apply(setup, **given)
+            return with_common_laws(setup, self.ids) if self.common else setup
+
+        return changed
+
+    def values(self, u: np.ndarray) -> dict[str, dict[str, float]]:
+        """Effect → parameter → value (places included) at (p,) coordinates."""
+        result, first = {}, 0
+        for component in self.components:
+            free = {c.parameter.name: float(c.value(u[first + k])) for k, c in enumerate(component.free)}
+            first += len(component.free)
+            place = {component.effect.places: component.place} if component.effect.places else {}
+            result[component.effect.id] = {**free, **component.fixed, **place}
+        return result
+
+
+def is_law(effect: Effect, setup: Setup) -> bool:
+    """Whether an effect adds to the force law of the chain."""
+    if effect.places:
+        return False
+    typical = {p.name: p.at(0.3, setup) for p in effect.parameters}
+    return len(effect.apply(setup, **typical).chain.actions) > len(setup.chain.actions)
+
+
+def with_common_laws(setup: Setup, present: tuple[str, ...]) -> Setup:
+    """The setup with all fast laws of the catalogue in its force law, those not `present` at their off
+    values.
+
+    The flexible law is among them.
+    """
+    for effect in CATALOGUE:
+        if effect.places or effect.id in present or effect.id in SLOW_LAWS:
+            continue
+        off = {p.name: p.at(0.0, setup) for p in effect.parameters}
+        changed = effect.change(setup, **off)
+        if len(changed.chain.actions) > len(setup.chain.actions):
+            setup = changed
+    return flexible.add(setup) if FLEXIBLE not in present else setup
+
+
+def variants(effect: Effect, setup: Setup) -> tuple[tuple[Coordinate, ...], ...]:
+    """Sets of parameters that may be free together: each strength alone, and all; shapes always."""
+    strengths = [coordinate(p, setup) for p in effect.parameters if p.switches]
+    shapes = tuple(coordinate(p, setup) for p in effect.parameters if not p.switches)
+    if len(strengths) == 1:
+        return ((*strengths, *shapes),)
+    return (*((s, *shapes) for s in strengths), (*strengths, *shapes))

@@ -1,0 +1,154 @@
+"""The next run: which change of the experiment best separates the explanations that are left.
+
+For each change the best fit and its rival predict a new run; the rival may follow the best fit's prediction
+with its own parameters and with all nuisances as far as the data at hand allow. The χ² that remains is what
+the run is expected to decide (Box & Hill, Technometrics 9, 57, 1967; Buzzi-Ferraris & Forzatti, Chem. Eng.
+Sci. 38, 225, 1983).
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from sonicvacuum.discover.experiment import Batch, Experiment, RunData
+from sonicvacuum.discover.forward import Forward
+from sonicvacuum.discover.rounds import Investigation
+from sonicvacuum.discover.verdict import Next
+from sonicvacuum.physics.chain import GRAVITY
+
+SPEEDS = (0.1, 0.3, 3.0, 10.0)
+MASSES = (0.25, 4.0)
+PRELOADS = (0.5, 5.0)
+# Changes are not proposed beyond these speeds (m/s) of the striker.
+SLOWEST, FASTEST = 0.02, 20.0
+# A run without signals is imagined with traces of this length.
+_RIVALS = 2
+
+
+def propose(found: Investigation, alike: list[list[str]]) -> Next | None:
+    """The run that best separates the named effect from its nearest rival; None without signals or rivals."""
+    forward = found.forward
+    if not any(r.has_signals for r in forward.experiment.runs):
+        return None
+    rivals = _rivals(found, alike)
+    if len(rivals) < 2:
+        return None
+    (name, best), others = rivals[0], rivals[1:]
+    scored = []
+    for change, imagined in changes(forward.experiment):
+        new = Forward(imagined, forward.threads)
+        values = [separation(forward, new, best, fit) for _, fit in others]
+        forward.simulations += new.simulations
+        scored.append((min(values), change, [name, others[int(np.argmin(values))][0]]))
+    if not scored:
+        return None
+    value, change, separates = max(scored, key=lambda s: s[0])
+    return Next(change=change, separates=separates, delta_chi2=float(value))
+
+
+def _rivals(found: Investigation, alike):
+    """(name, fit) of the best explanation and the nearest rivals."""
+    if found.pairs and len(found.named) == 2 and "unknown" not in found.named:
+        ranked = [("+".join(p.effects), p.fit) for p in found.pairs]
+        return ranked[: 1 + _RIVALS]
+    ranked = [(c.effect, c.fit) for c in found.candidates if c.gain > 0.0]
+    if len(found.named) == 1 and found.named[0] != "unknown":
+        ranked = sorted(ranked, key=lambda r: r[0] != found.named[0])
+        members = set(alike[0]) if alike else set()
+        near = [r for r in ranked if r[0] in members] or ranked[: 1 + _RIVALS]
+        return near[: 1 + _RIVALS]
+    return [("none", found.null), *ranked[:_RIVALS]] if not found.named else ranked[: 1 + _RIVALS]
+
+
+def changes(experiment: Experiment):
+    """(change, experiment with that one run) for every run that can be imagined; the last run is varied."""
+    batch = next(b for b in experiment.batches if experiment.runs[b.runs[0]].has_signals)
+    lane = len(batch.runs) - 1
+    run = experiment.runs[batch.runs[lane]]
+    chain = batch.chain.take([lane])
+    speed = float(chain.speed[0])
+    for factor in SPEEDS:
+        if SLOWEST <= speed * factor <= FASTEST:
+            changed = replace(chain, speed=chain.speed * factor)
+            yield (
+                {"striker.speed_m_s": round(speed * factor, 4)},
+                _with(experiment, batch, run, changed, factor),
+            )
+    for factor in MASSES:
+        changed = replace(chain, striker_mass=chain.striker_mass * factor)
+        mass = round(float(chain.striker_mass[0]) * factor * 1e3, 4)
+        yield {"striker.mass_g": mass}, _with(experiment, batch, run, changed)
+    for force in PRELOADS:
+        changed = replace(chain, static_force=chain.static_force + force)
+        yield {"chain.static_force_N": float(changed.static_force[0])}, _with(experiment, batch, run, changed)
+    upright = bool(chain.gravity[0] > 0.0)
+    changed = replace(chain, gravity=np.array([0.0 if upright else GRAVITY]))
+    yield (
+        {"chain.orientation": "horizontal" if upright else "vertical"},
+        _with(experiment, batch, run, changed),
+    )
+    yield from _gauges(experiment, batch, run, chain)
+
+
+def _gauges(experiment, batch, run, chain):
+    """An embedded gauge moved near either end."""
+    embedded = [k for k, g in enumerate(experiment.gauges) if g.kind == "embedded"]
+    for bead in {max(1, experiment.beads // 4), max(1, experiment.beads - 2)} if embedded else ():
+        gauge = experiment.gauges[embedded[0]]
+        moved = tuple(
+            replace(g, bead=bead) if k == embedded[0] else g for k, g in enumerate(experiment.gauges)
+        )
+        if bead != gauge.bead:
+            imagined = _with(experiment, batch, run, chain)
+            yield {f"sensors.{gauge.id}.bead": bead}, replace(imagined, gauges=moved)
+
+
+def _with(experiment, batch, run, chain, faster: float = 1.0):
+    """The experiment that consists of one imagined run; slower pulses are watched for longer."""
+    longer = max(1.0, faster**-0.2)
+    step = run.interval
+    samples = int(len(run.time) * longer)
+    time = run.time[0] + step * np.arange(samples)
+    data = RunData("next", time, np.zeros((len(experiment.gauges), samples)), (), run.speed_rel_sigma)
+    new = Batch(chain, (0,), batch.interval, batch.duration + step * (samples - len(run.time)))
+    return replace(experiment, runs=(data,), batches=(new,))
+
+
+def separation(old: Forward, new: Forward, best, rival) -> float:
+    """χ² by which a new run is expected to tell `best` from `rival`.
+
+    The rival's parameters and the shared nuisances (gains, modulus) move within what the old data leave
+    them; speed and trigger of the new run are free within their errors.
+    """
+    truth = new.columns(best.hypothesis, best.u[None], _shared(old, new, best)[None])[0][0, 0]
+    columns = new.columns(rival.hypothesis, rival.u[None], _shared(old, new, rival)[None])[0][0]
+    miss, slopes = truth - columns[0], columns[1:]
+    prior = _precision(old, new, rival)
+    matrix = slopes @ slopes.T + prior
+    pull = slopes @ miss
+    return float(max(miss @ miss - pull @ np.linalg.lstsq(matrix, pull, rcond=1e-12)[0], 0.0))
+
+
+def _shared(old, new, fit):
+    """(q,) nuisances of the new run: gains and modulus as fitted, speed and trigger at zero."""
+    nu = np.zeros(new.layout.size)
+    nu[new.layout.gains] = fit.nu[old.layout.gains]
+    nu[new.layout.modulus] = fit.nu[old.layout.modulus]
+    return nu
+
+
+def _precision(old, new, fit):
+    """Precision of the columns of the new run: parameters and shared nuisances from the old data, 1 for its
+    own.
+    """
+    _, hessian = fit.normal.total()
+    free = fit.normal.free
+    kept = np.array([*range(free), free + old.layout.modulus, *(free + old.layout.gains)])
+    covariance = np.linalg.pinv(hessian[0], rcond=1e-12, hermitian=True)[np.ix_(kept, kept)]
+    known = np.linalg.pinv(covariance, rcond=1e-12, hermitian=True)
+    count = free + 3 + len(new.experiment.gauges)
+    result = np.eye(count)
+    # Columns run: parameters, modulus, speed, trigger, gains; the first and the last are shared.
+    shared = np.array([*range(free + 1), *range(free + 3, count)])
+    result[np.ix_(shared, shared)] = known
+    return result

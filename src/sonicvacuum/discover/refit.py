@@ -1,0 +1,182 @@
+"""Non-linear least squares for many starts at once: Levenberg–Marquardt, one lane for each start.
+
+Marquardt, J. SIAM 11, 431 (1963). Bounds are kept by clipping; a coordinate at its bound that is pushed
+outward is held there. `scipy.optimize.least_squares` is the reference that the tests hold this against.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sonicvacuum.discover.forward import Forward
+from sonicvacuum.discover.hypothesis import Hypothesis
+from sonicvacuum.discover.normal import Normal, linearise
+
+ITERATIONS = 30
+# A fit has settled when an accepted step gains less than this in χ².
+SETTLED = 1e-3
+# Longest step: in a coordinate of an effect, in a nuisance (standard errors).
+LONGEST_U, LONGEST_NU = 1.2, 6.0
+_HELD = 1e12
+
+
+@dataclass(frozen=True)
+class Fit:
+    """The best fit of one hypothesis.
+
+    Attributes:
+        hypothesis: with the places found.
+        normal: normal equations there, one lane.
+        settled: whether the fit converged.
+        others: (n,) objectives of the other starts that settled elsewhere, ascending.
+    """
+
+    hypothesis: Hypothesis
+    normal: Normal
+    settled: bool = True
+    others: np.ndarray = None
+
+    @property
+    def u(self) -> np.ndarray:
+        """(p,) coordinates."""
+        return self.normal.u[0]
+
+    @property
+    def nu(self) -> np.ndarray:
+        """(q,) nuisances."""
+        return self.normal.nu[0]
+
+    @property
+    def objective(self) -> float:
+        """χ² and the penalty of the nuisances."""
+        return float(self.normal.objective[0])
+
+    @property
+    def covariance(self) -> np.ndarray:
+        """(n, n) covariance of coordinates and nuisances in the linearised model; bounds left aside."""
+        _, hessian = self.normal.total()
+        return np.linalg.pinv(hessian[0], hermitian=True)
+
+    @property
+    def sigma(self) -> np.ndarray:
+        """(p,) standard errors of the coordinates."""
+        return np.sqrt(np.diag(self.covariance)[: self.normal.free])
+
+    def at_bound(self) -> np.ndarray:
+        """(p,) whether a coordinate stands at a bound of its search."""
+        room = 1e-6
+        return np.array(
+            [
+                u <= c.low + room or u >= c.high - room
+                for u, c in zip(self.u, self.hypothesis.coordinates, strict=True)
+            ],
+            dtype=bool,
+        )
+
+
+def fit(
+    forward: Forward,
+    hypothesis: Hypothesis,
+    u: np.ndarray,
+    nu: np.ndarray,
+    places: np.ndarray | None = None,
+    keep: int = 4,
+    iterations: int = ITERATIONS,
+    coarse: int = 0,
+) -> Fit:
+    """The best fit from (L, p) starts; only the `keep` of lowest χ² are followed.
+
+    With `coarse`, starts are judged, and followed for so many steps, on running integrals of the traces
+    first.
+    """
+    u = np.atleast_2d(np.asarray(u, dtype=float))
+    nu = np.broadcast_to(nu, (len(u), forward.layout.size)).copy()
+    chosen = _promising(forward.coarse if coarse else forward, hypothesis, u, nu, places, keep)
+    u, nu, places = u[chosen], nu[chosen], None if places is None else places[chosen]
+    if coarse:
+        rough = linearise(forward.coarse, hypothesis, u, nu, places)
+        rough, _ = descend(forward.coarse, hypothesis, rough, places, coarse)
+        u, nu = rough.u, rough.nu
+    now = linearise(forward, hypothesis, u, nu, places)
+    now, settled = descend(forward, hypothesis, now, places, iterations)
+    order = np.argsort(now.objective, kind="stable")
+    best = int(order[0])
+    found = hypothesis if places is None else hypothesis.with_places(places[best])
+    return Fit(found, now.take([best]), bool(settled[best]), now.objective[order[1:]])
+
+
+def polish(forward: Forward, one: Fit, iterations: int = ITERATIONS) -> Fit:
+    """The same fit, followed further."""
+    now, settled = descend(forward, one.hypothesis, one.normal.take([0]), None, iterations)
+    return Fit(one.hypothesis, now, bool(settled[0]), one.others)
+
+
+def _promising(forward, hypothesis, u, nu, places, keep):
+    """Starts of the lowest χ²."""
+    if len(u) <= keep:
+        return np.arange(len(u))
+    found = forward.sampled(hypothesis, u, nu, places)
+    chi2 = sum(np.square(forward.data(run) - value).sum(axis=1) for run, (value, _) in enumerate(found))
+    chi2 = np.where(np.isfinite(chi2), chi2, np.inf) + np.square(nu).sum(axis=1)
+    return np.sort(np.argsort(chi2, kind="stable")[:keep])
+
+
+def descend(forward, hypothesis, now: Normal, places, iterations):
+    """Follow all lanes to their minimum; the normal equations there and which have settled.
+
+    While a lane is far from the data, its nuisances are held by as much more as its χ² per datum exceeds 1:
+        they must
+    not do the work of the effect.
+    """
+    lanes = len(now.u)
+    now = now.take(np.arange(lanes))
+    size = sum(forward.experiment.size(run) for run in range(len(now.chi2)))
+    damping = np.full(lanes, 1e-3)
+    settled = ~np.isfinite(now.objective)
+    for _ in range(iterations):
+        at = np.flatnonzero(~settled)
+        if not len(at):
+            break
+        part = now.take(at)
+        weight = np.maximum(1.0, part.chi2.sum(axis=0) / (2.0 * size))
+        gradient, hessian = part.total(weight)
+        step = _step(part, hypothesis, gradient, hessian, damping[at])
+        u, nu = _moved(part, hypothesis, step)
+        new = linearise(forward, hypothesis, u, nu, None if places is None else places[at])
+        gained = part.weighted(weight) - new.weighted(weight)
+        better = gained > 0.0
+        now.replaced(at[better], new.take(better))
+        done = (better & (gained < SETTLED)) | (damping[at] > 1e7)
+        done |= ~better & (_promise(gradient, hessian, step) < SETTLED)
+        settled[at] = done & ((weight == 1.0) | ~better)
+        damping[at] = np.where(better, damping[at] * 0.1, damping[at] * 8.0).clip(1e-9, 1e9)
+    return now, settled
+
+
+def _promise(gradient, hessian, step):
+    return 2.0 * np.einsum("ln,ln->l", gradient, step) - np.einsum("ln,lnm,lm->l", step, hessian, step)
+
+
+def _step(now, hypothesis, gradient, hessian, damping):
+    """(L, n) Marquardt's step, coordinates at their bounds held."""
+    free, diagonal = now.free, np.einsum("lnn->ln", hessian)
+    matrix = hessian.copy()
+    places = np.arange(matrix.shape[1])
+    matrix[:, places, places] += damping[:, None] * np.maximum(diagonal, 1e-9)
+    for k, c in enumerate(hypothesis.coordinates):
+        held = ((now.u[:, k] <= c.low) & (gradient[:, k] < 0.0)) | (
+            (now.u[:, k] >= c.high) & (gradient[:, k] > 0.0)
+        )
+        matrix[held, k, k] += _HELD
+        matrix[:, k, k] += 1e-9
+    step = np.linalg.solve(matrix, gradient[..., None])[..., 0]
+    longest = np.concatenate([np.full(free, LONGEST_U), np.full(matrix.shape[1] - free, LONGEST_NU)])
+    over = np.abs(step / longest).max(axis=1)
+    return step / np.maximum(over, 1.0)[:, None]
+
+
+def _moved(now, hypothesis, step):
+    u, nu = now.u + step[:, : now.free], now.nu + step[:, now.free :]
+    for k, c in enumerate(hypothesis.coordinates):
+        u[:, k] = u[:, k].clip(c.low, c.high)
+    return u, nu

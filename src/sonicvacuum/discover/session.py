@@ -1,0 +1,215 @@
+"""One record from reading to files: verdict.json, model.json and the tables, written whole or not at all."""
+
+import math
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from sonicvacuum.discover import (
+    degenerate,
+    directions,
+    heldout,
+    locate,
+    next_experiment,
+    screen,
+    singles,
+    verdict,
+)
+from sonicvacuum.discover.problem import experiment
+from sonicvacuum.discover.rounds import Investigation, investigate
+from sonicvacuum.discover.verdict import Verdict
+from sonicvacuum.files import InputError
+from sonicvacuum.records import Record
+
+
+@dataclass(frozen=True)
+class Result:
+    """What `discover` found in one record, with all that tables and figures need."""
+
+    record: Record
+    found: Investigation
+    places: list[locate.Place]
+    after: list[locate.Place]
+    limits: list[degenerate.Limit]
+    verdict: Verdict
+
+
+def discover(record: Record, threads: int = 1) -> Result:
+    """The verdict on one record."""
+    clock = Clock()
+    found = investigate(experiment(record), threads)
+    clock.mark("search")
+    forward = found.forward
+    places = locate.locate(forward, found.null)
+    final = found.final
+    after = locate.locate(forward, final) if final is not found.null else places
+    clock.mark("locate")
+    setup = singles.setup_of(forward)
+    if final is found.null:
+        scores = found.scores
+    else:
+        scores = screen.screen(forward, final, directions.catalogue(setup, final.hypothesis.ids))
+    limits = degenerate.limits(scores, setup)
+    alike = degenerate.confusable(found.named, found.candidates, found.pairs)
+    before = heldout.held_out(found.null, found.sizes)
+    left = heldout.held_out(final, found.sizes)
+    clock.mark("limits")
+    proposal = next_experiment.propose(found, alike)
+    clock.mark("next experiment")
+    named = verdict.named_effects(found)
+    result = Verdict(
+        record=found.forward.experiment.name,
+        named=found.named,
+        probabilities=found.probabilities,
+        confusable=alike,
+        parameters=verdict.parameters(final) if named else {},
+        gap=verdict.gaps(found.null, final, found.sizes, before, left),
+        where=verdict.where(places),
+        upper_limits=verdict.upper_limits(limits),
+        not_testable=sorted({one.effect for one in limits if not one.testable}),
+        next_experiment=proposal,
+        reasons=found.reasons,
+        alarms={step: alarm.p for step, alarm in found.alarms.items()},
+        timing_s=clock.seconds(),
+        simulations=forward.chains,
+    )
+    return Result(record, found, places, after, limits, result)
+
+
+class Clock:
+    """Seconds by step."""
+
+    def __init__(self):
+        self._start = self._last = time.perf_counter()
+        self._steps: dict[str, float] = {}
+
+    def mark(self, step: str) -> None:
+        """End a step."""
+        now = time.perf_counter()
+        self._steps[step], self._last = round(now - self._last, 3), now
+
+    def seconds(self) -> dict[str, float]:
+        """Seconds of each step and in total."""
+        return {"total": round(time.perf_counter() - self._start, 3), **self._steps}
+
+
+def write(result: Result, folder: Path) -> None:
+    """Write verdict, model and tables; the verdict last, so that a folder that holds one is complete."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"{folder}: {error.strerror}; give a folder that can be written") from None
+    header = ["run", "sensor", "feature", "z_before", "p_before", "q_before", "size", "z_after"]
+    left = {(p.run, p.sensor, p.feature): p.z for p in result.after}
+    verdict.write_table(
+        folder / "where.csv",
+        header,
+        (
+            (
+                p.run,
+                p.sensor,
+                p.feature,
+                p.z,
+                p.p,
+                p.q,
+                p.size,
+                left.get((p.run, p.sensor, p.feature), math.nan),
+            )
+            for p in result.places
+        ),
+    )
+    verdict.write_table(folder / "candidates.csv", *candidates(result))
+    verdict.write_table(folder / "gap.csv", *gap_rows(result))
+    verdict.write_table(
+        folder / "limits.csv",
+        ["effect", "parameter", "limit_95", "estimate", "testable", "place"],
+        ((x.effect, x.parameter, x.value, x.estimate, int(x.testable), x.place) for x in result.limits),
+    )
+    verdict.write_table(folder / "traces.csv", *trace_rows(result))
+    verdict.write_json(verdict.model(result.found), folder / "model.json")
+    verdict.write_json(result.verdict, folder / "verdict.json")
+
+
+def candidates(result: Result):
+    """Header and rows: singles, then pairs."""
+    header = ["effects", "delta_chi2", "log10_bayes", "probability", "parameters", "flags"]
+    rows = []
+    for c in result.found.candidates:
+        p = result.verdict.probabilities.get(c.effect, math.nan)
+        rows.append((c.effect, c.gain, c.log_bayes / math.log(10.0), p, _values(c.fit), " ".join(c.flags)))
+    for pair in result.found.pairs:
+        rows.append(
+            (
+                "+".join(pair.effects),
+                pair.gain,
+                pair.log_bayes / math.log(10.0),
+                math.nan,
+                _values(pair.fit),
+                "",
+            )
+        )
+    return header, rows
+
+
+def _values(fit):
+    values = fit.hypothesis.values(fit.u)
+    return "; ".join(
+        f"{e} {n} {v:.6g}" for e, given in values.items() for n, v in given.items() if v is not None
+    )
+
+
+def gap_rows(result: Result):
+    """Header and rows: χ² per datum of each run before and after, fitted and held out, and by round."""
+    found = result.found
+    e = found.forward.experiment
+    before = heldout.held_out(found.null, found.sizes)
+    after = heldout.held_out(found.final, found.sizes)
+    rows = []
+    for k, run in enumerate(e.runs):
+        size = found.sizes[k]
+        fitted = (found.null.normal.chi2[k, 0] / size, found.final.normal.chi2[k, 0] / size)
+        rows.append((run.id, size, *fitted, before.chi2[k] / size, after.chi2[k] / size, 1.0))
+    total = found.sizes.sum()
+    steps = [("all", found.null, found.final)]
+    for name, first, last in steps:
+        fitted = (first.normal.chi2.sum() / total, last.normal.chi2.sum() / total)
+        rows.append((name, total, *fitted, before.mean, after.mean, 1.0))
+    for k, best in enumerate(rounds_of(found)):
+        rows.append((f"round {k}: {best[0]}", total, math.nan, best[1] / total, math.nan, math.nan, 1.0))
+    header = ["run", "data", "before", "after", "held_out_before", "held_out_after", "floor"]
+    return header, rows
+
+
+def rounds_of(found: Investigation) -> list[tuple[str, float]]:
+    """Best model of each round and its χ²."""
+    result = [("nominal", float(found.null.normal.chi2.sum()))]
+    if found.candidates:
+        best = found.candidates[0]
+        result.append((best.effect, float(best.fit.normal.chi2.sum())))
+    if found.pairs:
+        best = found.pairs[0]
+        result.append(("+".join(best.effects), float(best.fit.normal.chi2.sum())))
+    return result
+
+
+def trace_rows(result: Result):
+    """Header and rows: measured trace and both models for each run and gauge (empty without signals)."""
+    from sonicvacuum.discover.unknown import raw
+
+    found = result.found
+    e = found.forward.experiment
+    header = ["run", "sensor", "time_us", "measured_N", "nominal_N", "extended_N", "sigma_N"]
+    if not any(r.has_signals for r in e.runs):
+        return header, []
+    before = raw(found.forward, found.null)
+    after = raw(found.forward, found.final) if found.final is not found.null else before
+    rows = []
+    for k, run in enumerate(e.runs):
+        step = max(1, len(run.time) // 1000)
+        for s, gauge in enumerate(e.gauges):
+            columns = (run.time * 1e6, run.readings[s], before[k][s], after[k][s])
+            table = np.column_stack([c[::step] for c in columns])
+            rows.extend((run.id, gauge.id, *row, e.sigma[s]) for row in table)
+    return header, rows

@@ -1,0 +1,145 @@
+"""Every effect of the catalogue fitted alone: starts from the screen, and from a grid where the misfit is
+large.
+"""
+
+import numpy as np
+
+from sonicvacuum.discover.evidence import Candidate, log_bayes
+from sonicvacuum.discover.forward import Forward
+from sonicvacuum.discover.hypothesis import Component, Hypothesis, variants
+from sonicvacuum.discover.refit import Fit, fit
+from sonicvacuum.discover.screen import Screen
+from sonicvacuum.effects import CATALOGUE, Effect, Setup
+
+# Beyond this misfit of the nominal model (in χ²) its slopes may point the wrong way: whole grids are
+# searched.
+NONLINEAR = 150.0
+# Effects whose predicted gain is this far behind the best are not refitted while slopes can be trusted.
+HOPELESS = 30.0
+PLACES_TRIED = 4
+ITERATIONS = 14
+
+
+def setup_of(forward: Forward) -> Setup:
+    """The nominal setup of the first batch, which knows places and off values."""
+    return forward.nominal(forward.experiment.batches[0], np.zeros((1, forward.layout.size)))
+
+
+def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
+    """Candidates, best first."""
+    setup = setup_of(forward)
+    best = {e: float(np.square(scores.z[k])) for e, k in scores.best().items()}
+    nonlinear = max(best.values(), default=0.0) > NONLINEAR
+    enough = -np.inf if nonlinear else max(best.values(), default=0.0) - HOPELESS
+    found = []
+    for effect in CATALOGUE:
+        if nonlinear or best.get(effect.id, 0.0) > max(enough, 0.5):
+            found.append(candidate(forward, null, scores, effect, setup, nonlinear))
+    found = [c for c in found if c is not None]
+    return sorted(found, key=lambda c: -c.log_bayes)
+
+
+def candidate(forward, null: Fit, scores: Screen, effect: Effect, setup: Setup, nonlinear: bool):
+    """The best fit of one effect over its places, shapes and sets of strengths; None where nothing fits."""
+    best = None
+    logs = []
+    options = variants(effect, setup)
+    for free in options:
+        u, places, nu = starts(forward, null, scores, effect, free, nonlinear)
+        if not len(u):
+            continue
+        hypothesis = Hypothesis((Component(effect, free),))
+        one = fit(
+            forward,
+            hypothesis,
+            u,
+            nu,
+            places,
+            keep=5 if nonlinear else 3,
+            iterations=ITERATIONS,
+            coarse=6 * nonlinear,
+        )
+        if not np.isfinite(one.objective):
+            continue
+        gain = null.objective - one.objective
+        logs.append(log_bayes(one, gain, by_place(scores, effect, gain)))
+        if best is None or logs[-1] > best[1]:
+            best = (one, logs[-1], gain)
+    if best is None:
+        return None
+    one, _, gain = best
+    total = float(np.logaddexp.reduce(logs) - np.log(len(options)))
+    flags = ("bound",) * bool(one.at_bound().any()) + ("unsettled",) * (not one.settled)
+    return Candidate(effect.id, one, gain, total, place_weights(scores, effect, one), flags)
+
+
+def by_place(scores: Screen, effect: Effect, gain: float):
+    """(n,) Δχ² at each place as the screen predicts it, shifted so that the best has `gain`."""
+    if not effect.places:
+        return None
+    squares = np.array(
+        [np.square(z) for d, z in zip(scores.directions, scores.z, strict=True) if d.effect == effect.id]
+    )
+    return np.maximum(squares - squares.max() + gain, 0.0)
+
+
+def place_weights(scores, effect, one):
+    """(place, weight) of the likely places."""
+    if not effect.places:
+        return ()
+    at = [k for k, d in enumerate(scores.directions) if d.effect == effect.id]
+    squares = np.square(scores.z[at])
+    weights = np.exp(0.5 * (squares - squares.max()))
+    weights /= weights.sum()
+    return tuple((scores.directions[k].place, float(w)) for k, w in zip(at, weights, strict=True) if w > 0.01)
+
+
+def starts(forward, null: Fit, scores: Screen, effect: Effect, free, nonlinear: bool):
+    """Coordinates (L, p), places (L, 1) or None and nuisances (L, q) from which one effect is fitted."""
+    rows = _from_screen(scores, effect, free)
+    count = len(rows)
+    if nonlinear:
+        rows += _grid(scores, effect, free)
+    u = np.array([r[0] for r in rows]).reshape(len(rows), len(free))
+    for k, c in enumerate(free):
+        u[:, k] = u[:, k].clip(c.low + 1e-9, c.high - 1e-9)
+    places = np.array([[r[1] or 0] for r in rows]) if effect.places else None
+    nu = np.zeros((len(rows), forward.layout.size))
+    nu[:count] = null.nu
+    return u, places, nu
+
+
+def _from_screen(scores, effect, free):
+    strengths = [c.parameter.name for c in free if c.parameter.switches]
+    at = [k for k, d in enumerate(scores.directions) if d.effect == effect.id and d.strength in strengths]
+    at = sorted(at, key=lambda k: -abs(scores.z[k]))[:PLACES_TRIED]
+    rows = []
+    for k in at:
+        d, shape = scores.directions[k], dict(scores.directions[k].shape)
+        size = scores.strength[k] if scores.z[k] else 1.0 / max(scores.length[k], 1e-9)
+        rows.append(([_start(c, d, shape, size) for c in free], d.place))
+    return rows
+
+
+def _start(c, direction, shape, size):
+    """Coordinate of one parameter for a direction taken `size` typical departures far."""
+    p = c.parameter
+    if p.name in shape:
+        return c.inverse(shape[p.name])
+    if p.name != direction.strength:
+        return 1e-3 if c.kind in ("ratio", "linear") else c.low
+    if c.kind in ("log", "inverse"):
+        return float(np.log(max(abs(size), 1e-12)))
+    if c.kind == "ratio":
+        return float(np.log(max(1.0 + size * p.scale / c.unit, 0.05)))
+    return size if c.two_sided or c.high > 0.0 else -abs(size)
+
+
+def _grid(scores, effect, free):
+    """All strengths, coarse in whatever else is free, at all places."""
+    axes = [c.starts() if k == 0 else c.starts()[1::4] for k, c in enumerate(free)]
+    points = np.array(np.meshgrid(*axes, indexing="ij")).reshape(len(free), -1).T
+    if not effect.places:
+        return [(list(p), None) for p in points]
+    places = dict.fromkeys(d.place for d in scores.directions if d.effect == effect.id)
+    return [(list(p), place) for place in places for p in points[:: 2 if len(places) > 3 else 1]]

@@ -1,0 +1,222 @@
+"""The alarm: is anything left in the residual of a fitted model that it should not contain, whatever its
+name?
+
+The residual is projected on groups of directions: the catalogue, a flexible contact law and drag, stiffness
+    and mass
+of each contact and bead, distortions of each gauge, gain and delay of each gauge in each run, and time bins
+around the pulse. Each group gives a χ² of as many degrees of freedom as it resolves; the smallest p counts,
+times their number.
+"""
+
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+from scipy import stats
+
+from sonicvacuum.discover import directions as ways
+from sonicvacuum.discover import flexible, screen
+from sonicvacuum.discover.directions import Direction, Family
+from sonicvacuum.discover.forward import Forward
+from sonicvacuum.discover.hypothesis import FLEXIBLE, with_common_laws
+from sonicvacuum.discover.refit import Fit
+
+# The residual counts as explained while the alarm's p is above this.
+ALARM = 1e-3
+# Cosines between signatures that are resolved as different.
+_RANK = 1e-3
+_BINS = np.arange(-2.0, 9.0, 1.0)
+
+
+@dataclass(frozen=True)
+class Alarm:
+    """What is left.
+
+    Attributes:
+        groups: group → (χ², degrees of freedom, p).
+        p: of the whole, after the number of groups.
+        group: the group of the smallest p.
+        screen: all directions.
+    """
+
+    groups: dict[str, tuple[float, int, float]]
+    p: float
+    group: str
+    screen: screen.Screen
+
+    @property
+    def raised(self) -> bool:
+        """Whether a real misfit is left."""
+        return self.p < ALARM
+
+
+def alarm(forward: Forward, fit: Fit, catalogue: screen.Screen | None = None) -> Alarm:
+    """Test what a fitted model leaves; `catalogue` is its screen, where at hand."""
+    base = forward.columns(fit.hypothesis, fit.u[None], fit.nu[None], precise=True)
+    directions, slopes = [], [[] for _ in base]
+
+    def take(new, columns):
+        directions.extend(new)
+        for run, c in enumerate(columns):
+            slopes[run].append(c)
+
+    bare = replace(fit.hypothesis, common=False)
+    for family in families(forward, fit):
+        take(family.directions, ways.simulate(forward, bare, fit.u, fit.nu, family)[0])
+    if any(r.has_signals for r in forward.experiment.runs):
+        for new, columns in distortions(forward, fit):
+            take(new, columns)
+    scalars = scalar_directions(forward)
+    if scalars:
+        take(*scalars)
+    whole = screen.from_columns(forward, fit, tuple(directions), base, [np.concatenate(s) for s in slopes])
+    groups = _groups(whole)
+    if catalogue is not None and len(catalogue.z):
+        groups["catalogue"] = _largest(catalogue)
+    worst = min(groups, key=lambda g: groups[g][2])
+    return Alarm(groups, min(1.0, groups[worst][2] * len(groups)), worst, whole)
+
+
+def _groups(whole):
+    names = [d.effect for d in whole.directions]
+    result = {}
+    for name in dict.fromkeys(names):
+        at = np.flatnonzero([n == name for n in names])
+        result[name] = test(whole, at)
+    return result
+
+
+def test(whole: screen.Screen, at: np.ndarray) -> tuple[float, int, float]:
+    """χ², degrees of freedom and p of the residual's part along some directions."""
+    at = at[whole.length[at] > 1e-3 * np.sqrt(np.einsum("kk->k", whole.products.sum(axis=0)))[at]]
+    if not len(at):
+        return 0.0, 0, 1.0
+    values, vectors = np.linalg.eigh(whole.correlation[np.ix_(at, at)])
+    kept = values > _RANK
+    scores = whole.projected[0][at] / whole.length[at]
+    parts = (vectors[:, kept].T @ scores) / np.sqrt(values[kept])
+    chi2 = float(parts @ parts)
+    return chi2, int(kept.sum()), float(stats.chi2.sf(chi2, kept.sum()))
+
+
+def _largest(catalogue):
+    """The same for the largest single score of the catalogue, its p from simulated noise."""
+    reference = catalogue.threshold(0.01)
+    trials = 0.01 / stats.chi2.sf(reference, 1)
+    largest = float(np.square(catalogue.z).max())
+    return largest, 1, min(1.0, float(trials * stats.chi2.sf(largest, 1)))
+
+
+def families(forward: Forward, fit: Fit) -> list[Family]:
+    """The flexible law, and stiffness of each contact and mass of each bead."""
+    beads = forward.experiment.beads
+    present = fit.hypothesis.ids
+    laws = [Direction("law", f"a{k}", two_sided=True) for k in range(flexible.CONTACT + flexible.DRAG)]
+
+    def law(setup, index, strengths):
+        contact, drag = flexible.changes(index, strengths)
+        changed = flexible.add(setup, contact, drag)
+        return with_common_laws(changed, (*present, FLEXIBLE))
+
+    places = [Direction("place", "stiffness", place=c, two_sided=True) for c in range(beads + 1)]
+    places += [Direction("place", "mass", place=b, two_sided=True) for b in range(1, beads + 1)]
+
+    def place(setup, index, strengths):
+        chain = setup.chain
+        for k, d in enumerate(places):
+            here = np.where(index == k, 1.0 + strengths, 1.0)
+            if np.any(here != 1.0):
+                chain = chain.with_departure(d.strength, d.place, here)
+        return replace(setup, chain=chain)
+
+    found = [Family(tuple(laws), law, 0.01)]
+    return [*found, Family(tuple(places), place, 0.02)] if beads else found
+
+
+def distortions(forward: Forward, fit: Fit):
+    """Pairs (directions, whitened columns of each run) of what gauges may do to a signal."""
+    e = forward.experiment
+    readings = raw(forward, fit)
+    peaks = np.array([np.abs(r).max(axis=1, initial=0.0) for r in readings])
+    largest = np.maximum(peaks.max(axis=0), 1e-300)
+    for name, function in _DISTORTIONS.items():
+        shapes = [function(r / largest[:, None]) * largest[:, None] for r in readings]
+        yield _by_gauge("gauge", name, e, shapes)
+    for name, function in {"gain": lambda y: y, "delay": _slope}.items():
+        for run in range(len(readings)):
+            if readings[run].shape[1]:
+                shapes = [function(r) if k == run else np.zeros_like(r) for k, r in enumerate(readings)]
+                yield _by_gauge("run", f"{name} {e.runs[run].id}", e, shapes)
+    for low, high in pairwise(_BINS):
+        shapes = [_bin(r, low, high) for r in readings]
+        yield _by_gauge("time", f"{low:g} to {high:g} widths", e, shapes)
+
+
+def _slope(y):
+    return np.gradient(y, axis=1) if y.shape[1] > 1 else y
+
+
+def _integral(y):
+    return np.cumsum(y, axis=1) / max(1, y.shape[1])
+
+
+_DISTORTIONS = {
+    "quadratic": lambda y: y * np.abs(y),
+    "cubic": lambda y: y**3,
+    "delay": _slope,
+    "bandwidth": lambda y: _slope(_slope(y)),
+    "leak": _integral,
+}
+
+
+def _bin(y, low, high):
+    """Ones, times the peak, in a window of pulse widths around each gauge's peak."""
+    result = np.zeros_like(y)
+    for s, trace in enumerate(y):
+        if not len(trace) or not trace.max() > 0.0:
+            continue
+        peak = int(trace.argmax())
+        width = max(2, int(np.count_nonzero(trace > 0.5 * trace[peak])))
+        first, last = (int(np.clip(peak + width * (b - 0.5), 0, len(trace))) for b in (low, high))
+        result[s, first:last] = trace[peak]
+    return result
+
+
+def _by_gauge(group, name, e, shapes):
+    """One direction for each gauge, and its whitened columns."""
+    count = len(e.gauges)
+    directions = [Direction(group, name, place=s, two_sided=True) for s in range(count)]
+    columns = []
+    for run, shape in enumerate(shapes):
+        alone = np.einsum("st,gs->gst", shape, np.eye(count))
+        columns.append(e.whiten(run, alone, np.zeros((count, len(e.runs[run].scalars)))))
+    return directions, columns
+
+
+def scalar_directions(forward: Forward):
+    """Every scalar as a direction of its own."""
+    e = forward.experiment
+    total = sum(len(r.scalars) for r in e.runs)
+    if not total:
+        return None
+    columns, first = [], 0
+    for run, data in enumerate(e.runs):
+        part = np.zeros((total, e.size(run)))
+        for k in range(len(data.scalars)):
+            part[first + k, e.size(run) - len(data.scalars) + k] = 1.0
+        first += len(data.scalars)
+        columns.append(part)
+    names = [(run, k) for run, data in enumerate(e.runs) for k in range(len(data.scalars))]
+    return [Direction("scalars", "value", (("run", r), ("k", k)), two_sided=True) for r, k in names], columns
+
+
+def raw(forward: Forward, fit: Fit) -> list[np.ndarray]:
+    """For each run the predicted readings (S, T) in N at the recorded times."""
+    e = forward.experiment
+    white = Forward(replace(e, correlation=np.zeros(len(e.gauges))), forward.threads)
+    found = white.sampled(fit.hypothesis, fit.u[None], fit.nu[None])
+    forward.simulations += white.simulations
+    return [
+        value[0, : len(e.gauges) * len(run.time)].reshape(len(e.gauges), len(run.time)) * e.sigma[:, None]
+        for (value, _), run in zip(found, e.runs, strict=True)
+    ]

@@ -1,0 +1,215 @@
+"""What is written: the verdict and the extended model (closed schemas), and the tables behind the pictures.
+
+`verdict.json` and `model.json` are JSON with the keys of `Verdict` and `Model`; numbers that do not exist
+are null.
+"""
+
+import csv
+import math
+from pathlib import Path
+
+import msgspec
+import numpy as np
+from msgspec import Struct
+
+from sonicvacuum.discover.degenerate import Limit
+from sonicvacuum.discover.heldout import HeldOut
+from sonicvacuum.discover.locate import Place
+from sonicvacuum.discover.refit import Fit
+from sonicvacuum.discover.rounds import Investigation
+from sonicvacuum.files import replacing
+
+
+class _Part(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    pass
+
+
+class Value(_Part, kw_only=True):
+    """A parameter with its standard error; `sigma` 0 for a place."""
+
+    value: float
+    sigma: float
+
+
+class Gap(_Part, kw_only=True):
+    """Mean squared residual over its noise variance, nuisances fitted; closed = 1 − (after − floor)/(before
+    − floor).
+    """
+
+    before: float
+    after: float
+    floor: float
+    closed: float | None
+
+
+class Gaps(_Part, kw_only=True):
+    """Over all data as fitted, and over runs left out; null where there is a single run."""
+
+    fitted: Gap
+    held_out: Gap | None
+
+
+class Where(_Part, kw_only=True):
+    """One significant disagreement of the nominal model."""
+
+    run: str
+    sensor: str
+    feature: str
+    z: float
+    p: float
+
+
+class Next(_Part, kw_only=True):
+    """The change of the experiment that best separates rivals; `delta_chi2` as predicted."""
+
+    change: dict[str, float | int | str]
+    separates: list[str]
+    delta_chi2: float
+
+
+class Verdict(_Part, kw_only=True):
+    """The verdict on one record, format 1.
+
+    Attributes:
+        record: name of the record.
+        named: ids of the effects, `unknown` last where a misfit is left that nothing of the catalogue
+            explains.
+        probabilities: over none, unknown and single effects.
+        confusable: sets of effects between which this data do not decide, the named one first.
+        parameters: effect → parameter → value.
+        gap: before and after.
+        where: significant disagreements of the nominal model, largest first.
+        upper_limits: effect → parameter → 95 % limit; effects that cannot be tested here are left out.
+        not_testable: effects whose limit lies beyond the bounds of the search.
+        next_experiment: null where nothing is left to separate.
+        reasons: what decided.
+        alarms: p-value of what each step leaves.
+        timing_s: seconds by step.
+        simulations: chains simulated.
+    """
+
+    format: int = 1
+    record: str
+    named: list[str]
+    probabilities: dict[str, float]
+    confusable: list[list[str]]
+    parameters: dict[str, dict[str, Value]]
+    gap: Gaps
+    where: list[Where]
+    upper_limits: dict[str, dict[str, float]]
+    not_testable: list[str]
+    next_experiment: Next | None
+    reasons: list[str]
+    alarms: dict[str, float]
+    timing_s: dict[str, float]
+    simulations: int
+
+
+class Model(_Part, kw_only=True):
+    """The extended model: effects with their parameters (places included) and the record's nuisances as
+    fitted.
+
+    Attributes:
+        effects: effect → parameter → value, in order.
+        speed_ratio: run → striker speed over the recorded one.
+        trigger_us: run → trigger shift.
+        gain: gauge → gain over the stated one.
+        modulus_ratio: bead material's modulus over the recorded one, as far as its stated error goes.
+    """
+
+    format: int = 1
+    record: str
+    effects: dict[str, dict[str, float]]
+    speed_ratio: dict[str, float]
+    trigger_us: dict[str, float]
+    gain: dict[str, float]
+    modulus_ratio: float
+
+
+def parameters(fit: Fit) -> dict[str, dict[str, Value]]:
+    """Values and standard errors of the free parameters; places with error 0."""
+    result, first, sigma = {}, 0, fit.sigma
+    for component in fit.hypothesis.components:
+        values = {}
+        for k, c in enumerate(component.free):
+            u = fit.u[first + k]
+            values[c.parameter.name] = Value(
+                value=float(c.value(u)), sigma=_finite(c.slope(u) * sigma[first + k])
+            )
+        if component.effect.places:
+            values[component.effect.places] = Value(value=float(component.place), sigma=0.0)
+        first += len(component.free)
+        result[component.effect.id] = values
+    return result
+
+
+def gap(before: float, after: float) -> Gap:
+    """A gap over the noise floor, 1."""
+    closed = 1.0 - (after - 1.0) / (before - 1.0) if abs(before - 1.0) > 1e-12 else None
+    return Gap(before=before, after=after, floor=1.0, closed=closed)
+
+
+def gaps(null: Fit, final: Fit, sizes: np.ndarray, before: HeldOut, after: HeldOut) -> Gaps:
+    """Fitted and held-out gaps."""
+    total = float(sizes.sum())
+    fitted = gap(float(null.normal.chi2.sum()) / total, float(final.normal.chi2.sum()) / total)
+    return Gaps(fitted=fitted, held_out=gap(before.mean, after.mean) if len(sizes) > 1 else None)
+
+
+def model(found: Investigation) -> Model:
+    """The extended model of an investigation; the nominal one where nothing, or nothing known, was named."""
+    forward, fit = found.forward, found.final if named_effects(found) else found.null
+    e, layout = forward.experiment, forward.layout
+    shift = fit.nu * forward.nuisance_sigma
+    return Model(
+        record=e.name,
+        effects={k: {n: float(v) for n, v in p.items()} for k, p in fit.hypothesis.values(fit.u).items()},
+        speed_ratio={r.id: float(np.exp(shift[layout.speed(k)])) for k, r in enumerate(e.runs)},
+        trigger_us={r.id: float(shift[layout.trigger(k)] * 1e6) for k, r in enumerate(e.runs)},
+        gain={g.id: float(np.exp(shift[at])) for g, at in zip(e.gauges, layout.gains, strict=True)},
+        modulus_ratio=float(np.exp(shift[layout.modulus])),
+    )
+
+
+def named_effects(found: Investigation) -> list[str]:
+    """What was named, without `unknown`."""
+    return [n for n in found.named if n != "unknown"]
+
+
+def where(places: list[Place], most: int = 40) -> list[Where]:
+    """The significant cells, largest first."""
+    cells = sorted((p for p in places if p.found), key=lambda p: -abs(p.z))[:most]
+    return [Where(run=c.run, sensor=c.sensor, feature=c.feature, z=c.z, p=c.p) for c in cells]
+
+
+def upper_limits(limits: list[Limit]) -> dict[str, dict[str, float]]:
+    """Effect → parameter → limit, of those that can be tested."""
+    result: dict[str, dict[str, float]] = {}
+    for one in limits:
+        if one.testable:
+            result.setdefault(one.effect, {})[one.parameter] = one.value
+    return result
+
+
+def write_json(content: Struct, path: Path) -> None:
+    """JSON with keys in the order of the schema."""
+    with replacing(path, "wb") as stream:
+        stream.write(msgspec.json.format(msgspec.json.encode(content), indent=1) + b"\n")
+
+
+def write_table(path: Path, header: list[str], rows) -> None:
+    """CSV of a header and rows; numbers to seven digits, empty where there is none."""
+    with replacing(path) as stream:
+        writer = csv.writer(stream, lineterminator="\n")
+        writer.writerow(header)
+        writer.writerows([_cell(v) for v in row] for row in rows)
+
+
+def _cell(value):
+    if isinstance(value, (float, np.floating)):
+        return "" if math.isnan(value) else f"{value:.7g}"
+    return "" if value is None else value
+
+
+def _finite(value):
+    return float(value) if np.isfinite(value) else 0.0
