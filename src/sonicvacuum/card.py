@@ -96,6 +96,7 @@ class CaseBlock(_Block):
     duration_us: Positive
     sample_us: Positive = 0.5
     materials: dict[str, MaterialBlock] = {}
+    effects: dict[str, dict[str, float | str]] = {}
     variants: dict[str, dict[str, Any]] = {}
 
 
@@ -155,7 +156,7 @@ class Card(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     sensors: tuple[CardSensor, ...]
     duration_s: Positive
     interval_s: Positive
-    effects: dict[str, dict[str, float]] = field(default_factory=dict)
+    effects: dict[str, dict[str, float | str]] = field(default_factory=dict)
 
     @property
     def name(self) -> str:
@@ -254,6 +255,7 @@ def resolve(case: str, variant: str, block: CaseBlock) -> Card:
         sensors=tuple(_sensor(s, k, chain.beads) for k, s in enumerate(block.sensors)),
         duration_s=block.duration_us / 1e6,
         interval_s=block.sample_us / 1e6,
+        effects=block.effects,
     )
 
 

@@ -10,6 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from sonicvacuum.card import Card
+from sonicvacuum.effects import Setup, effect
 from sonicvacuum.files import InputError, replacing
 from sonicvacuum.observe.sensor import Sensor, contacts_needed, reading
 from sonicvacuum.physics.assemble import assemble
@@ -46,7 +47,7 @@ class Study:
     @cached_property
     def chain(self) -> Chain:
         """The chains as integrated, lane k at speed k."""
-        return assemble(self.card, self.speeds)
+        return set_up(self.card, self.speeds).chain
 
     @property
     def interval(self) -> float:
@@ -64,12 +65,27 @@ class Study:
         return reading(sensor, forces, self.interval, self.card.beads)
 
     def readings(self, refined: bool = False) -> dict[str, np.ndarray]:
-        """Sensor id → (samples, runs) reading of the card's own gauges."""
-        return {s.id: self.read(s, refined) for s in sensors(self.card)}
+        """Sensor id → (samples, runs) reading of the card's own gauges, with the effects on gauges."""
+        return {s.id: self.read(s, refined) for s in set_up(self.card, self.speeds).sensors}
+
+
+def set_up(card: Card, speeds=None) -> Setup:
+    """Chains and gauges of a card with its effects in them; lane k is struck at `speeds[k]` in m/s.
+
+    Raises:
+        InputError: for an effect that is not in the catalogue, or parameters that it does not take.
+    """
+    setup = Setup(assemble(card, speeds), sensors(card))
+    for name, parameters in card.effects.items():
+        try:
+            setup = effect(name).apply(setup, **parameters)
+        except ValueError as error:
+            raise InputError(f"{card.name}: effects.{name}: {error}") from None
+    return setup
 
 
 def sensors(card: Card) -> tuple[Sensor, ...]:
-    """The card's gauges."""
+    """The card's gauges, without effects."""
     return tuple(
         Sensor(id=s.id, kind=s.kind, bead=s.bead, droop_s=s.droop_s, lowpass_s=s.lowpass_s)
         for s in card.sensors
@@ -106,25 +122,26 @@ def run(card: Card) -> Study:
 
 
 def _simulate(card, speeds, contacts, refine=1.0, audit=False) -> History:
-    chain = assemble(card, speeds)
+    chain = set_up(card, speeds).chain
     return simulate(chain, contacts, card.duration_s, card.interval_s, refine=refine, audit=audit)
 
 
 def _aimed(card, speeds):
     """Striker speeds at which the aimed sensor's peak is the wanted one; peaks grow about as speed^(6/5)."""
-    sensor = next(s for s in sensors(card) if s.id == card.striker.aim.sensor)
+    sensor = next(s for s in set_up(card, speeds).sensors if s.id == card.striker.aim.sensor)
+    aim = card.striker.aim.amplitude_N
     for _ in range(20):
         history = _simulate(card, speeds, contacts_needed((sensor,), card.beads))
         forces = {c: history.of(c) for c in history.contacts}
-        ratio = card.striker.aim.amplitude_N / reading(sensor, forces, card.interval_s, card.beads).max(
-            axis=0
-        )
-        if np.all(np.abs(ratio - 1.0) < AIM_TOLERANCE):
+        peak = reading(sensor, forces, card.interval_s, card.beads).max(axis=0)
+        if np.all(np.abs(peak - aim) < AIM_TOLERANCE * aim):
             return speeds
-        speeds = speeds * ratio ** (5.0 / 6.0)
+        if np.any(peak <= 0.0):
+            break
+        speeds = speeds * (aim / peak) ** (5.0 / 6.0)
     raise InputError(
-        f"{card.name}: striker.aim: no speed found at which {sensor.id} reads "
-        f"{card.striker.aim.amplitude_N} N; start from another speed_m_s"
+        f"{card.name}: striker.aim: no speed found at which {sensor.id} reads {aim} N; "
+        "start from another speed_m_s, or simulate for longer"
     )
 
 

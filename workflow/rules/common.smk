@@ -34,7 +34,7 @@ wildcard_constraints:
 # A layer is a module or a package below src/sonicvacuum; every rule depends on the locked environment too.
 LAYERS = {
     "card": ["card.py", "materials.py", "config.py", "files.py", "cli/__init__.py", "cli/card.py"],
-    "physics": ["physics", "study.py", "observe/sensor.py", "cli/simulate.py"],
+    "physics": ["physics", "effects", "study.py", "observe/sensor.py", "cli/simulate.py"],
     "observe": ["observe", "paper", "cli/observe.py"],
     "ledger": ["paper", "cli/ledger.py"],
     "figures": ["figures", "observe", "paper", "cli/draw.py"],

@@ -1,4 +1,4 @@
-"""`sonicvacuum card`, `materials`, `schema`: what is going to be simulated, and with which numbers."""
+"""`sonicvacuum card`, `materials`, `effects`, `schema`: what will be simulated, and with which numbers."""
 
 import json
 
@@ -22,7 +22,12 @@ def card(path, case, variant, out):
     if case is None:
         click.echo("\n".join(configuration.card_names(config)))
         return
-    text = dump(configuration.card(config, case, variant, path))
+    resolved = configuration.card(config, case, variant, path)
+    if resolved.effects:
+        from sonicvacuum.study import set_up
+
+        set_up(resolved)  # an effect that does not exist is best known now
+    text = dump(resolved)
     if out is None:
         click.echo(text, nl=False)
         return
@@ -38,6 +43,38 @@ def materials():
         strength = "" if m.yield_strength is None else f"{m.yield_strength / 1e6:g}"
         row = f"{name:18} {m.modulus / 1e9:7g} {m.poisson:6g} {m.density:7g} {strength:>9}  {m.source}"
         click.echo(row)
+
+
+@click.command()
+@click.argument("name", required=False)
+def effects(name):
+    """List the catalogue of effects, or tell all about the one with id NAME."""
+    from sonicvacuum.effects import CATALOGUE, IDS
+
+    if name is None:
+        for e in CATALOGUE:
+            taken = ", ".join([*(p.name for p in e.parameters), *([e.places] if e.places else [])])
+            click.echo(f"{e.id:18} {e.missing} ({taken})")
+        return
+    if name not in IDS:
+        raise InputError(f"effect {name!r} is not in the catalogue; known: {', '.join(IDS)}")
+    e = CATALOGUE[IDS.index(name)]
+    for title in (
+        "title",
+        "missing",
+        "equation",
+        "energy",
+        "reference",
+        "signature",
+        "when_to_use",
+        "when_not",
+    ):
+        click.echo(f"{title.replace('_', ' '):12} {getattr(e, title)}")
+    for p in e.parameters:
+        off = "shapes only" if p.off is None else "as recorded" if callable(p.off) else f"off at {p.off:g}"
+        click.echo(f"{p.name:12} {p.help}; {p.unit}, {off}, searched from {p.low:g} to {p.high:g}")
+    if e.places:
+        click.echo(f"{e.places:12} where it sits")
 
 
 @click.command()

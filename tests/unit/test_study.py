@@ -1,0 +1,110 @@
+"""A card from simulation to readings: errors shrink with the step, aims are met, effects are simulated."""
+
+import msgspec
+import numpy as np
+import pytest
+
+from sonicvacuum import study
+from sonicvacuum.card import AimBlock, Card, CardBead, CardMaterial, CardSensor, CardStriker
+from sonicvacuum.files import InputError
+
+STEEL = CardMaterial(name="steel", modulus_Pa=193e9, poisson=0.3)
+
+
+def card(**changes):
+    values = {
+        "case": "c",
+        "variant": "nominal",
+        "title": "Eight steel beads",
+        "beads": 8,
+        "bead": CardBead(diameter_m=5e-3, mass_kg=0.5e-3, surface=STEEL),
+        "wall": STEEL,
+        "striker": CardStriker(mass_kg=0.5e-3, surface=STEEL, speeds_m_s=(0.5,)),
+        "gravity_m_s2": 0.0,
+        "static_force_N": 0.0,
+        "sensors": (CardSensor(id="g", kind="embedded", bead=5), CardSensor(id="wall", kind="wall")),
+        "duration_s": 150e-6,
+        "interval_s": 0.25e-6,
+    }
+    return Card(**(values | changes))
+
+
+def test_the_error_from_half_the_step_bounds_the_true_error():
+    done = study.run(card())
+    fine = study._simulate(card(), done.speeds, done.contacts, refine=8.0)
+    estimate = np.abs(done.force - done.refined).max()
+    truth = np.abs(done.refined - fine.force).max()
+    # An order above one halves the error at least, so the finer run is off by less than the difference.
+    assert truth < estimate
+    assert estimate < 1e-4 * done.force.max()  # the accuracy promised by default
+
+
+def test_energy_and_momentum_stay_in_balance():
+    done = study.run(card(gravity_m_s2=9.81))
+    assert np.ptp(done.energy[:, 0]) < 1e-4 * done.energy[0, 0]  # the splitting method's bounded error
+    assert np.ptp(done.momentum[:, 0]) < 1e-11 * done.momentum[0, 0]  # exact but for rounding in 1e3 steps
+
+
+def test_a_sweep_keeps_the_contacts_between_its_gauges_only():
+    sweep = card(striker=CardStriker(mass_kg=0.5e-3, surface=STEEL, speeds_m_s=(0.2, 0.4, 0.8)))
+    assert study.recorded_contacts(sweep) == (4, 5, 8)
+    assert study.recorded_contacts(card()) == tuple(range(9))
+    assert study.run(sweep).force.shape == (601, 3, 3)
+
+
+def test_the_aimed_amplitude_is_met():
+    striker = CardStriker(
+        mass_kg=0.5e-3, surface=STEEL, speeds_m_s=(0.5,), aim=AimBlock(sensor="g", amplitude_N=2.0)
+    )
+    done = study.run(card(striker=striker))
+    assert done.readings()["g"].max() == pytest.approx(
+        2.0, rel=1e-5
+    )  # tolerance of the aim, and the sampling
+    assert 0.0 < done.speeds[0] < 0.5
+
+
+def test_an_aim_out_of_reach_is_said():
+    striker = CardStriker(
+        mass_kg=0.5e-3, surface=STEEL, speeds_m_s=(0.5,), aim=AimBlock(sensor="wall", amplitude_N=1e-9)
+    )
+    with pytest.raises(InputError, match=r"c\.nominal: striker\.aim: no speed found"):
+        study.run(card(striker=striker, duration_s=20e-6))
+
+
+def test_effects_of_a_card_are_simulated():
+    plain = study.run(card()).readings()["g"].max()
+    damped = study.run(card(effects={"kuwabara-kono": {"time_us": 0.5}})).readings()["g"].max()
+    louder = (
+        study.run(card(effects={"sensor-gain": {"gain_ratio": 1.5, "sensor": "g"}})).readings()["g"].max()
+    )
+    assert damped < 0.95 * plain
+    assert louder == pytest.approx(1.5 * plain, rel=1e-12)  # the same simulation, times a number
+
+
+@pytest.mark.parametrize(
+    ("effects", "hint"),
+    [
+        ({"phlogiston": {}}, "phlogiston"),
+        ({"kuwabara-kono": {"time_s": 1.0}}, "no parameter time_s"),
+        ({"mass-defect": {"mass_ratio": 2.0}}, "bead"),
+    ],
+)
+def test_an_effect_that_cannot_be_is_refused(effects, hint):
+    with pytest.raises(InputError, match=f"c.nominal: effects.*{hint}"):
+        study.run(card(effects=effects))
+
+
+def test_a_study_survives_its_file(tmp_path):
+    done = study.run(card())
+    study.save(done, tmp_path / "h.npz")
+    read = study.load(card(), tmp_path / "h.npz")
+    for name in ("speeds", "time", "force", "refined", "energy", "momentum"):
+        assert np.array_equal(getattr(read, name), getattr(done, name))
+    assert read.contacts == done.contacts
+
+
+def test_a_card_with_effects_survives_its_file():
+    from sonicvacuum.card import dump, load
+
+    with_effects = msgspec.structs.replace(card(), effects={"mass-defect": {"mass_ratio": 1.1, "bead": 3.0}})
+    assert load(dump(with_effects)) == with_effects
