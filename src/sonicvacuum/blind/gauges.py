@@ -1,6 +1,6 @@
 """What gauges show of an impact, and the scalars read from them.
 
-Change from rest → bandwidth → droop → gauge faults outside the catalogue → gain. Filters are sampled four
+Change from rest → bandwidth → droop → gauge faults outside the catalogue → gain. Filters are sampled ten
 times finer than the record and solved by scipy's first-order-hold discretisation, exact for a force that is
 linear between samples.
 """
@@ -14,7 +14,7 @@ from sonicvacuum.blind.integrate import TOLERANCE, integrate
 from sonicvacuum.blind.laws import force_at_rest
 from sonicvacuum.blind.plan import Plan, problem
 
-FINER = 4
+FINER = 10
 
 
 def read(plan: Plan, times: np.ndarray, tolerance: float = TOLERANCE) -> np.ndarray:

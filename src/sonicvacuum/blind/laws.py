@@ -166,7 +166,7 @@ def force_at_rest(delta, rows, c):
 
 @njit(nogil=True, error_model="numpy")
 def compression_at_rest(load, rows):
-    """(contacts,) compression in m at which contacts bear their load (contacts,) in N, by the law in force."""
+    """(contacts,) compression in m at which contacts bear their load (contacts,) in N by the law in force."""
     rest = np.zeros(len(load))
     for c in range(len(load)):
         if load[c] <= 0.0 and rows[c, _ADHESION] == 0.0:

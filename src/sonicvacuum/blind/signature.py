@@ -252,7 +252,7 @@ class Frame:
         return best
 
     def _start(self, shown):
-        """Errors and first step: at the nominal model, or at the best of some moduli if pulses are far off."""
+        """Errors and first step: at the nominal model, or at the best of some moduli if pulses are off."""
         vector = np.zeros(self.slopes.shape[1])
         if np.linalg.norm(shown - self.base) < FAR * np.linalg.norm(self.base):
             return vector, self.solve @ (shown - self.base)

@@ -58,7 +58,7 @@ def scale(frame: Frame, entry: Entry, target: float, sign: int, shape, place, me
 
 @dataclass(frozen=True)
 class Rival:
-    """A unit vector in data space that an effect of the catalogue could cause, and whether with both signs."""
+    """A unit vector in data space that a catalogue effect could cause, and whether with both signs."""
 
     id: str
     place: str | int | None

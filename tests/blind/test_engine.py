@@ -1,0 +1,79 @@
+"""Two implementations of the same contract: the hidden-effect laws against the engine with the catalogue."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from sonicvacuum.blind import catalogue, design
+from sonicvacuum.blind.record import as_record
+from sonicvacuum.blind.signature import predict
+from sonicvacuum.effects import CATALOGUE, effect
+from sonicvacuum.records.predict import Conditions
+from sonicvacuum.records.predict import predict as engine
+
+# Largest difference over the largest reading: errors of peaks and arrivals of the engine's step.
+USUAL = 3e-5
+CLOSE = {
+    "guide-friction": 1e-2,  # below 1 mm/s a straight line here and a cubic there
+    "plastic-contact": 2e-4,  # turning points are located to a step in the engine
+    "sensor-lowpass": 5e-4,  # two grids on which the force is taken as linear
+    "linear-dashpot": 1e-4,  # the force jumps where contacts close
+}
+
+
+@pytest.fixture(scope="module")
+def record():
+    """A drawn design: a horizontal coated chain, two speeds."""
+    drawn = (design.draw("traces", np.random.default_rng(seed)) for seed in range(200))
+    chosen = next(d for d in drawn if d.coating is not None and not d.reference.gravity)
+    return replace(chosen, runs=chosen.runs[:2])
+
+
+def readings(made, model):
+    found = engine(as_record(made, np.zeros((2, 3, made.samples)), np.zeros(0), "compared"), model)
+    return np.array([[run.readings[g.id] for g in made.reference.gauges] for run in found])
+
+
+def test_both_know_the_same_effects_and_parameters():
+    assert [e.id for e in catalogue.ENTRIES] == [e.id for e in CATALOGUE]
+    for entry, other in zip(catalogue.ENTRIES, CATALOGUE, strict=True):
+        assert entry.places == other.places
+
+
+def test_nominal_chains_agree(record):
+    mine = predict(record, tolerance=1e-10).traces
+    assert np.abs(mine - readings(record, Conditions())).max() < USUAL * np.abs(mine).max()
+
+
+@pytest.mark.parametrize("entry", catalogue.ENTRIES, ids=lambda e: e.id)
+def test_effects_agree(record, entry):
+    plan = record.reference
+    shape = entry.shapes(plan)[-1]
+    place = entry.where(plan)[0] if entry.places == "sensor" else plan.gauges[0].bead - 2
+    place = place if entry.places else None
+    strength = 0.7 if entry.id == "gravity" else 5.0 * entry.start
+    parameters = entry.values(strength, plan, shape)
+    given = parameters | ({entry.places: place} if entry.places else {})
+    mine = predict(record, catalogue.hidden(entry, strength, shape, place, plan), tolerance=1e-10).traces
+    other = readings(record, Conditions(model=lambda setup: effect(entry.id).apply(setup, **given)))
+    largest = np.abs(mine).max()
+    assert np.abs(mine - other).max() < CLOSE.get(entry.id, USUAL) * largest
+    assert np.abs(mine - predict(record).traces).max() > 0.01 * largest
+
+
+def test_scalars_mean_the_same():
+    made = design.draw("scalars", np.random.default_rng(7))
+    mine = predict(made, tolerance=1e-10).scalars
+    found = engine(as_record(made, np.zeros((0, 0, 0)), mine, "compared"))
+    other = np.concatenate([[o.value for o in run.observables] for run in found])
+    # Peaks between samples: parabolas here, other fits there.
+    assert np.abs(mine / other - 1.0).max() < 2e-3
+
+
+def test_one_ball_means_the_same():
+    made = design.draw("ball", np.random.default_rng(7))
+    mine = predict(made, tolerance=1e-10).scalars
+    found = engine(as_record(made, np.zeros((0, 0, 0)), mine, "compared"))
+    other = np.concatenate([[o.value for o in run.observables] for run in found])
+    assert np.abs(mine / other - 1.0).max() < 1e-4  # durations from samples

@@ -1,0 +1,148 @@
+"""Records with hidden effects: valid, reproducible, and silent about what is in them."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sonicvacuum import records
+from sonicvacuum.blind import catalogue, foreign, study
+from sonicvacuum.blind.hide import Spec, hide, write
+
+CASES = [
+    Spec("a", "single", "traces", "white", ("viscous-drag",), 10.0, 5, 0),
+    Spec("b", "null", "traces", "ar1", (), 0.0, 5, 1),
+    Spec("c", "null", "one-speed", "quantised", (), 0.0, 5, 2),
+    Spec("d", "single", "ball", "white", ("hunt-crossley",), 10.0, 5, 3),
+    Spec("e", "foreign", "one-speed", "white", ("dimer",), 10.0, 5, 4),
+    Spec("f", "pair", "one-speed", "white", ("sensor-gain", "contact-exponent"), 10.0, 5, 5),
+    Spec("g", "single", "scalars", "white", ("sensor-gain",), 10.0, 5, 6),
+]
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """Folders of records and truths."""
+    root = tmp_path_factory.mktemp("hidden")
+    for spec in CASES:
+        write(spec, root / "records", root / "truth")
+    return root
+
+
+def truth(root, id):
+    return json.loads((root / "truth" / id / "truth.json").read_text())
+
+
+@pytest.mark.parametrize("spec", CASES, ids=lambda s: s.id)
+def test_records_are_valid(made, spec):
+    record = records.read(made / "records" / spec.id)
+    assert len(record.runs) == truth(made, spec.id)["runs"]
+
+
+def test_same_spec_same_bytes(made, tmp_path):
+    for spec in (CASES[1], CASES[3]):
+        write(spec, tmp_path / "records", tmp_path / "truth")
+        for kind in ("records", "truth"):
+            for path in sorted((made / kind / spec.id).iterdir()):
+                assert (tmp_path / kind / spec.id / path.name).read_bytes() == path.read_bytes()
+
+
+def test_places_give_different_data():
+    one, _ = hide(Spec("x", "null", "one-speed", "white", (), 0.0, 5, 20))
+    other, _ = hide(Spec("x", "null", "one-speed", "white", (), 0.0, 5, 21))
+    assert one.block != other.block
+
+
+def test_records_do_not_tell(made):
+    """No name of an effect, no strength, no truth anywhere among the records."""
+    words = [*catalogue.BY_ID, *foreign.BY_ID, "truth", "d_prime", "null", "pair", "foreign", "single"]
+    for path in (made / "records").rglob("*"):
+        assert path.suffix in ("", ".yaml", ".csv")
+        text = path.read_text() if path.is_file() else path.name
+        assert not [w for w in words if w in text.replace("single-", "")], path
+    assert not list((made / "records").rglob("truth*"))
+
+
+def test_truth_states_the_strength_reached(made):
+    told = truth(made, "a")
+    (hidden,) = told["hidden"]
+    assert hidden["id"] == "viscous-drag"
+    assert hidden["d_prime"] == pytest.approx(10.0, rel=0.01)
+    assert hidden["parameters"]["rate_per_s"] > 0.0
+    assert 0.0 < told["ideal"]["viscous-drag"] <= 1.0
+    assert sum(told["ideal"].values()) == pytest.approx(1.0)
+    assert truth(made, "e")["leftover_d_prime"] == pytest.approx(10.0, rel=0.05)
+    assert [h["d_prime"] for h in truth(made, "f")["hidden"]] == pytest.approx([10.0, 10.0], rel=0.01)
+
+
+def before_arrival(made, id):
+    """(runs, samples) of the first gauge before the wave, in units of the stated noise."""
+    record = records.read(made / "records" / id)
+    gauge = record.gauges[0]
+    quiet = min(int(np.argmax(np.abs(run.signals.readings["g1"]) > 8.0 * gauge.sigma)) for run in record.runs)
+    return np.array([run.signals.readings["g1"][: quiet // 2] for run in record.runs]) / gauge.sigma
+
+
+def test_noise_is_as_stated(made):
+    quiet = before_arrival(made, "a")
+    assert np.std(quiet) == pytest.approx(1.0, abs=4.0 / np.sqrt(2.0 * quiet.size))  # 4 standard errors
+
+
+def test_coloured_noise_has_the_stated_correlation(made):
+    quiet = before_arrival(made, "b")
+    told = truth(made, "b")["noise_drawn"]["correlation"]
+    found = np.mean(quiet[:, 1:] * quiet[:, :-1]) / np.mean(quiet**2)
+    assert found == pytest.approx(told, abs=4.0 / np.sqrt(quiet.size))  # 4 standard errors
+
+
+def test_quantised_readings_are_whole_steps(made):
+    record = records.read(made / "records" / "c")
+    step = truth(made, "c")["noise_drawn"]["lsb_sigma"]
+    for gauge in record.gauges:
+        counts = record.runs[0].signals.readings[gauge.id] / (step * gauge.sigma)
+        assert np.abs(counts - np.round(counts)).max() < 1e-6
+
+
+@pytest.mark.parametrize(
+    "change, message",
+    [
+        ({"kind": "triple"}, "kind is 'triple'"),
+        ({"noise": "pink"}, "noise is 'pink'"),
+        ({"effects": ()}, "hides 1 effects"),
+        ({"effects": ("magic",)}, "effect 'magic'"),
+    ],
+)
+def test_bad_specs_are_refused(change, message):
+    good = {"id": "x", "kind": "single", "design": "traces", "noise": "white", "effects": ("tsuji",)}
+    with pytest.raises(ValueError, match=message):
+        Spec(**{**good, "d_prime": 10.0, "seed": 1, "place": 0, **change})
+
+
+def test_effects_that_cannot_act_are_refused():
+    with pytest.raises(ValueError, match="cannot act"):
+        hide(Spec("x", "single", "ball", "white", ("sensor-gain",), 10.0, 1, 0))
+
+
+def test_studies_cover_what_is_asked(tmp_path):
+    small, full = study.cases("small"), study.cases("full")
+    assert len(small) >= 24
+    assert len(full) >= 2000
+    for specs in (small, full):
+        assert {s.kind for s in specs} == {"null", "single", "pair", "foreign"}
+        assert len({s.id for s in specs}) == len(specs)
+        assert [s.place for s in specs] == list(range(len(specs)))
+    assert {s.effects[0] for s in full if s.kind == "single"} == set(catalogue.BY_ID)
+    assert {s.effects[0] for s in full if s.kind == "foreign"} == set(foreign.BY_ID)
+    study.write_cases(full, tmp_path / "cases.csv")
+    assert study.read_cases(tmp_path / "cases.csv") == full
+    parts = [study.batch(small, k, 5) for k in range(5)]
+    assert sorted((s for p in parts for s in p), key=lambda s: s.id) == small
+
+
+def test_bad_case_lists_name_the_line(tmp_path):
+    path = Path(tmp_path / "cases.csv")
+    study.write_cases(CASES[:2], path)
+    path.write_text(path.read_text().replace("ar1", "pink"))
+    with pytest.raises(Exception, match=r"line 3: case b: noise is 'pink'"):
+        study.read_cases(path)
