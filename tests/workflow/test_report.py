@@ -6,7 +6,7 @@ from html.parser import HTMLParser
 import pandas as pd
 import pytest
 
-from sonicvacuum import config, figures
+from sonicvacuum import config
 from sonicvacuum.files import InputError
 from sonicvacuum.report import publish, tables, timings
 from sonicvacuum.report.page import CLAIMS, build
@@ -65,12 +65,11 @@ def page(tmp_path, pytestconfig):
     pd.DataFrame(metrics, columns=tables.METRICS).to_csv(tmp_path / "metrics.csv", index=False)
     for name in ("fig3", "fig4"):
         (tmp_path / f"{name}.svg").write_text(SVG)
-        (tmp_path / f"{name}.rst").write_text(f"Caption of {name} with F_m & more.\n")
     root = pytestconfig.rootpath
     card = config.card(config.read(root / "config.yaml"), "fig3a", "matched")
     paths = [tmp_path / f"{name}.csv" for name in ("ledger", "assumptions", "metrics", "claims")]
-    drawn = [[tmp_path / f"{name}.{kind}" for name in ("fig3", "fig4")] for kind in ("svg", "rst")]
-    return build(*paths, *drawn, [card], [root / "requirements.lock"])
+    drawn = [(tmp_path / f"{name}.svg", f"Caption of {name} with F_m & more.") for name in ("fig3", "fig4")]
+    return build(*paths, drawn, [card], [root / "requirements.lock"])
 
 
 def test_the_page_needs_nothing_but_itself(page):
@@ -156,12 +155,6 @@ def test_the_readme_in_git_shows_the_ledger_in_git(pytestconfig):
 def test_the_headlines_are_claims(pytestconfig):
     claims = tables.read(pytestconfig.rootpath / "workflow/resources/claims.csv", CLAIMS)
     assert set(publish.HEADLINES) <= set(claims["claim"])
-
-
-@pytest.mark.parametrize("name", figures.names())
-def test_the_captions_in_git_are_the_figures_own(pytestconfig, name):
-    kept = (pytestconfig.rootpath / f"workflow/report/{name}.rst").read_text()
-    assert kept == figures.caption(name) + "\n"
 
 
 def test_links_in_the_readme_lead_somewhere(pytestconfig):

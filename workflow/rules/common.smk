@@ -7,7 +7,7 @@ import msgspec
 from snakemake.exceptions import WorkflowError
 
 from sonicvacuum import config as configuration
-from sonicvacuum.figures import cards_of
+from sonicvacuum.figures import caption, cards_of
 from sonicvacuum.files import InputError
 
 CONFIG_FILE = "config.yaml"

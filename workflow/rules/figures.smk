@@ -11,7 +11,7 @@ rule draw:
         svg=report(
             "figures/{figure}.svg",
             category="Figures",
-            caption="../report/{figure}.rst",
+            caption="../report/figure.rst",
             labels={"figure": "{figure}"},
         ),
         png="figures/{figure}.png",
@@ -21,6 +21,9 @@ rule draw:
         "results/benchmarks/draw/{figure}.tsv"
     conda:
         ENVIRONMENT
+    params:
+        # Read by the caption file of Snakemake's own report.
+        caption=lambda wildcards: caption(wildcards.figure),
     message:
         "Drawing {wildcards.figure}"
     shell:

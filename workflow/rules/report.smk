@@ -59,11 +59,10 @@ rule page:
         metrics="results/metrics.csv",
         claims=CLAIMS,
         figures=expand("figures/{figure}.svg", figure=FIGURES),
-        captions=expand("workflow/report/{figure}.rst", figure=FIGURES),
         cards=expand("results/cards/{card}.json", card=CARDS),
         locks=LOCKS,
         template="src/sonicvacuum/report/page.html.j2",
-        sources=sources("card", "report"),
+        sources=sources("card", "report", "figures"),
     output:
         report("results/report.html", category="Report", caption="../report/page.rst"),
     log:
@@ -74,14 +73,13 @@ rule page:
         ENVIRONMENT
     params:
         figures=lambda wildcards, input: [f"--figure {path}" for path in input.figures],
-        captions=lambda wildcards, input: [f"--caption {path}" for path in input.captions],
         cards=lambda wildcards, input: [f"--card {path}" for path in input.cards],
         locks=lambda wildcards, input: [f"--lock {path}" for path in input.locks],
     message:
         "Writing the report"
     shell:
         "sonicvacuum report --ledger {input.ledger} --assumptions {input.assumptions}"
-        " --metrics {input.metrics} --claims {input.claims} {params.figures} {params.captions}"
+        " --metrics {input.metrics} --claims {input.claims} {params.figures}"
         " {params.cards} {params.locks} --out {output} 2> {log}"
 
 
@@ -115,14 +113,12 @@ rule publish:
     params:
         readme="README.md",
         reference="workflow/resources/reference/ledger.csv",
-        captions="workflow/report",
         guide="figures/README.md",
     message:
         "Keeping the ledger in git and in the README"
     shell:
-        "(sonicvacuum publish --ledger {input.ledger} --readme {params.readme} --reference {params.reference}"
-        " && sonicvacuum captions --out {params.captions} --claims {input.claims}"
-        " --readme {params.guide}) 2> {log}"
+        "sonicvacuum publish --ledger {input.ledger} --claims {input.claims} --readme {params.readme}"
+        " --guide {params.guide} --reference {params.reference} 2> {log}"
 
 
 # Figure tables and ledger made anew in clean folders, compared with those in git.

@@ -22,7 +22,6 @@ VERBS = {
     "ledger": "ledger",
     "audit": "ledger",
     "draw": "draw",
-    "captions": "draw",
     "report": "report",
     "publish": "report",
     "timings": "report",

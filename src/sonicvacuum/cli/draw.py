@@ -1,10 +1,9 @@
-"""`sonicvacuum draw`, `captions`: a figure's numbers, the figure made of them, the text below it."""
+"""`sonicvacuum draw`: a figure's numbers, then the figure made of them."""
 
 from pathlib import Path
 
 import click
 
-from sonicvacuum.cli import existing
 from sonicvacuum.cli.card import read_card
 
 _FOLDER = click.Path(exists=True, file_okay=False)
@@ -26,21 +25,3 @@ def draw(figure, cards, histories, out):
         for name in names
     }
     figures.make(figure, studies, out)
-
-
-@click.command()
-@click.option("--out", required=True, type=click.Path(file_okay=False), help="Folder for figN.rst.")
-@click.option("--claims", required=True, type=existing(), help="Table of the paper's claims.")
-@click.option(
-    "--readme", required=True, type=click.Path(dir_okay=False), help="Guide to the figures (Markdown)."
-)
-def captions(out, claims, readme):
-    """Write the caption of every figure to a file of its own, and the guide that maps figures to claims."""
-    from sonicvacuum import figures
-    from sonicvacuum.files import replacing
-
-    for name in figures.names():
-        with replacing(Path(out) / f"{name}.rst") as stream:
-            stream.write(figures.caption(name) + "\n")
-    with replacing(readme) as stream:
-        stream.write(figures.readme(claims))

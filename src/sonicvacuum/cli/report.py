@@ -1,5 +1,7 @@
 """`sonicvacuum report`, `publish`, `timings`: the page, what of it is kept in git, and how long it took."""
 
+from pathlib import Path
+
 import click
 
 from sonicvacuum.cli import existing
@@ -15,33 +17,39 @@ _FILE = existing()
 @click.option("--metrics", required=True, type=_FILE)
 @click.option("--claims", required=True, type=_FILE)
 @click.option("--figure", "figures", multiple=True, type=_FILE, help="SVG of a figure; repeat.")
-@click.option("--caption", "captions", multiple=True, type=_FILE, help="Caption of each figure, same order.")
 @click.option("--card", "cards", multiple=True, type=_FILE, help="Resolved card; repeat.")
 @click.option("--lock", "locks", multiple=True, type=_FILE, help="Lock file of the environment; repeat.")
 @click.option("--out", required=True, type=click.Path(dir_okay=False), help="Page (HTML) to write.")
-def report(ledger, assumptions, metrics, claims, figures, captions, cards, locks, out):
+def report(ledger, assumptions, metrics, claims, figures, cards, locks, out):
     """Write the self-contained page with figures, ledger, audit and provenance."""
+    from sonicvacuum.figures import caption
     from sonicvacuum.report.page import build
 
-    if len(figures) != len(captions):
-        raise click.UsageError(f"{len(figures)} figures but {len(captions)} captions; give one for each")
+    captioned = [(figure, caption(Path(figure).stem)) for figure in figures]
     read = [read_card(card) for card in cards]
-    text = build(ledger, assumptions, metrics, claims, figures, captions, read, locks)
+    text = build(ledger, assumptions, metrics, claims, captioned, read, locks)
     with replacing(out) as stream:
         stream.write(text)
 
 
 @click.command()
 @click.option("--ledger", required=True, type=_FILE)
+@click.option("--claims", required=True, type=_FILE, help="Table of the paper's claims.")
 @click.option("--readme", required=True, type=_FILE, help="README whose result table is renewed.")
+@click.option(
+    "--guide", required=True, type=click.Path(dir_okay=False), help="Guide to the figures (Markdown)."
+)
 @click.option(
     "--reference", required=True, type=click.Path(dir_okay=False), help="Where the ledger is kept in git."
 )
-def publish(ledger, readme, reference):
-    """Keep the ledger as the reference of later checks and renew the README's result table."""
+def publish(ledger, claims, readme, guide, reference):
+    """Keep the ledger as the reference of later checks; renew the README's table and the figures' guide."""
+    from sonicvacuum import figures
     from sonicvacuum.report.publish import publish as write
 
     write(ledger, readme, reference)
+    with replacing(guide) as stream:
+        stream.write(figures.readme(claims))
 
 
 @click.command()

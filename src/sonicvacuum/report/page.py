@@ -10,13 +10,12 @@ from sonicvacuum.card import Card
 from sonicvacuum.report import provenance, tables
 
 
-def build(ledger_path, assumptions_path, metrics_path, claims_path, figures, captions, cards, locks) -> str:
+def build(ledger_path, assumptions_path, metrics_path, claims_path, figures, cards, locks) -> str:
     """The page as HTML text, figures inside.
 
     Args:
         ledger_path, assumptions_path, metrics_path, claims_path: CSV files that the pipeline wrote or reads.
-        figures: SVG files, named figN.svg.
-        captions: text files (reStructuredText, plain sentences), one for each figure.
+        figures: pairs of an SVG file, named figN.svg, and its caption in plain text.
         cards: resolved `Card`s.
         locks: lock files of the environment.
 
@@ -41,7 +40,7 @@ def build(ledger_path, assumptions_path, metrics_path, claims_path, figures, cap
         disagreements=tables.disagreements(ledger).to_dict("records"),
         assumptions=tables.read(assumptions_path, tables.ASSUMPTIONS).to_dict("records"),
         headline=_headline(metrics),
-        figures=[_figure(svg, text) for svg, text in zip(figures, captions, strict=True)],
+        figures=[_figure(svg, caption) for svg, caption in figures],
         cards=[_card_row(card, metrics) for card in cards],
         versions=provenance.versions(),
         source=provenance.source_digest(),
@@ -76,7 +75,7 @@ def _figure(svg, caption):
         "name": name,
         "number": name.removeprefix("fig"),
         "svg": Markup(text),
-        "caption": _with_subscripts(Path(caption).read_text(encoding="utf-8")),
+        "caption": _with_subscripts(caption),
     }
 
 
