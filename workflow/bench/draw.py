@@ -1,0 +1,16 @@
+"""Draw the benchmark's figures from its tables: python workflow/bench/draw.py FOLDER."""
+
+import sys
+from pathlib import Path
+
+import pandas
+
+from sonicvacuum.figures import bench, style
+
+folder = Path(sys.argv[1])
+tables = {name: pandas.read_csv(folder / f"bench_{name}.csv") for name in ("accuracy", "length", "lanes")}
+for name, figure in (
+    ("accuracy", bench.draw_accuracy(tables["accuracy"])),
+    ("cost", bench.draw_cost(tables["length"], tables["lanes"])),
+):
+    style.save(figure, folder / f"bench_{name}.svg", folder / f"bench_{name}.png")

@@ -1,0 +1,21 @@
+"""The engine against other codes: `make bench`, which first installs them; not part of the default target."""
+
+
+rule bench:
+    input:
+        sources("physics"),
+        bench=Path("workflow/bench").glob("*.[pc]*"),
+        drawing="src/sonicvacuum/figures/bench.py",
+    output:
+        "results/bench.csv",
+        "results/bench.md",
+        expand("results/bench_{table}.csv", table=["accuracy", "length", "lanes", "effects", "scaling"]),
+        expand("results/bench_{figure}.{kind}", figure=["accuracy", "cost"], kind=["svg", "png"]),
+    log:
+        "results/logs/bench.log",
+    conda:
+        ENVIRONMENT
+    message:
+        "Measuring all codes in turns; this takes some minutes and wants an idle machine"
+    shell:
+        "(python workflow/bench/measure.py --out results && python workflow/bench/draw.py results) 2>&1 | tee {log}"
