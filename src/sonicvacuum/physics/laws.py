@@ -18,6 +18,7 @@ number per contact (or body) and chain, worked out beforehand from the chain and
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import accumulate
 
 import numpy as np
 
@@ -126,8 +127,8 @@ class LawSet:
     @cached_property
     def first_coefficient(self) -> dict[str, int]:
         """Position of each term's first coefficient in the coefficient table."""
-        starts = np.cumsum([0, *(t.coefficients for t in self.terms)])
-        return {t.name: int(start) for t, start in zip(self.terms, starts[:-1], strict=True)}
+        starts = accumulate((t.coefficients for t in self.terms), initial=0)
+        return {t.name: start for t, start in zip(self.terms, starts, strict=False)}
 
     @property
     def coefficients(self) -> int:

@@ -4,6 +4,7 @@ Chooses each chain's step, deals chains into groups of lanes, steps only as many
 reaches, and keeps the audit (energy and momentum balance).
 """
 
+import math
 import os
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -126,7 +127,7 @@ def _check_request(chain, contacts, duration, interval, step, refine, method, th
 
 def _zeros(*shape):
     """Zeros aligned to the 64 bytes of a cache line and a register."""
-    size = int(np.prod(shape))
+    size = math.prod(shape)
     buffer = np.zeros(size + 8)
     start = -(buffer.ctypes.data // 8) % 8
     return buffer[start : start + size].reshape(shape)
@@ -243,9 +244,10 @@ class _Batch:
                 end,
             )
 
-        prepare(advance, self.composition.name, share(0, groups))
+        everything = share(0, groups)
+        prepare(advance, self.composition.name, everything)
         if threads == 1 or groups == 1:
-            advance(*share(0, groups))
+            advance(*everything)
         else:
             bounds = np.linspace(0, groups, min(SHARES * threads, groups) + 1).astype(int).tolist()
             with ThreadPoolExecutor(threads) as pool:

@@ -17,7 +17,7 @@ from functools import cached_property
 
 from llvmlite import ir
 from numba import types
-from numba.extending import NativeValue, intrinsic, models, register_model, typeof_impl, unbox
+from numba.extending import NativeValue, intrinsic, models, register_model, unbox
 
 from sonicvacuum.physics import lanes
 from sonicvacuum.physics.lanes import FASTMATH, LANES, lane
@@ -84,6 +84,10 @@ class Composition:
         """Numbers per body."""
         return self.first_increment if self.laws.splits else self.first_blend + self.memories
 
+    @cached_property
+    def _numba_type_(self):
+        return _types.setdefault(self.name, CompositionType(self))
+
     def __hash__(self):
         return hash(self.name)
 
@@ -109,9 +113,8 @@ def _bare_type(name):
     return CompositionType(_BareComposition(name))
 
 
-@typeof_impl.register(Composition)
-def _typeof_composition(composition, context):
-    return CompositionType(composition)
+# Name → type: asking for the type of an argument is part of every call.
+_types = {}
 
 
 @register_model(CompositionType)
