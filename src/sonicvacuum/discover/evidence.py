@@ -61,26 +61,29 @@ def occam_shape(fit: Fit, k: int) -> float:
     return math.log(min(1.0, max(share, 1e-6)))
 
 
-def occam(fit: Fit, gain: float) -> float:
+def occam(fit: Fit, gain: float, shapes: bool = True) -> float:
     """Log of the product of the Occam factors of all parameters of a fit; places aside."""
     total = 0.0
     for k, c in enumerate(fit.hypothesis.coordinates):
-        shape = not c.parameter.switches
-        total += occam_shape(fit, k) if shape else occam_strength(gain, c.two_sided)
+        if c.parameter.switches:
+            total += occam_strength(gain, c.two_sided)
+        elif shapes:
+            total += occam_shape(fit, k)
     return total
 
 
-def log_bayes(fit: Fit, gain: float, places: np.ndarray | None = None) -> float:
+def log_bayes(fit: Fit, gain: float, alike: np.ndarray | None = None) -> float:
     """Log Bayes factor of a fit against the nominal model.
 
     Args:
         fit: best fit.
         gain: its Δχ².
-        places: (n,) Δχ² of the effect at each place it may have, the best one's included.
+        alike: (n,) Δχ² of the effect at each place and shape it may have, the best one's included; their
+            likelihoods are averaged. None: a shape has the Occam factor of Laplace's approximation.
     """
-    total = 0.5 * max(gain, 0.0) + occam(fit, gain)
-    if places is not None and len(places):
-        total += math.log(np.exp(0.5 * (places - places.max())).mean())
+    total = 0.5 * (gain if gain < -1.0 else max(gain, 0.0)) + occam(fit, gain, alike is None)
+    if alike is not None:
+        total += math.log(np.exp(0.5 * (alike - alike.max())).mean())
     return total
 
 

@@ -108,6 +108,7 @@ class Forward:
         nu: np.ndarray,
         places: np.ndarray | None = None,
         precise: bool = False,
+        steps: np.ndarray | None = None,
     ) -> list[np.ndarray]:
         """Whitened predictions and their derivatives.
 
@@ -116,6 +117,7 @@ class Forward:
             u: (L, p) coordinates of their free parameters.
             nu: (L, q) nuisances over their standard errors.
             places: (L, components) where they sit; None: as the hypothesis says.
+            steps: (L, p) finite-difference steps of the coordinates; None: their default.
             precise: slopes to second order (twice the simulations), so that collinear ones come out
                 collinear.
 
@@ -124,23 +126,25 @@ class Forward:
             gains (as `Layout.local`).
         """
         u, nu = np.atleast_2d(u), np.atleast_2d(nu)
-        once = self._assemble(hypothesis, u, nu, places, 1.0)
+        once = self._assemble(hypothesis, u, nu, places, 1.0, steps)
         if not precise:
             return once
-        twice = self._assemble(hypothesis, u, nu, places, 2.0)
+        twice = self._assemble(hypothesis, u, nu, places, 2.0, steps)
         for one, two in zip(once, twice, strict=True):
             one[:, 1:] = 2.0 * one[:, 1:] - two[:, 1:]
         return once
 
-    def _assemble(self, hypothesis, u, nu, places, stretch):
+    def _assemble(self, hypothesis, u, nu, places, stretch, steps):
         """Stack base, parameter, modulus and speed lanes, simulate them at once, take differences."""
         lanes, p = u.shape
         sets = p + 3
         many_u, many_nu = np.repeat(u, sets, axis=0), np.repeat(nu, sets, axis=0)
-        steps = stretch * np.array([c.step for c in hypothesis.coordinates])
+        if steps is None:
+            steps = np.broadcast_to([c.step for c in hypothesis.coordinates], u.shape)
+        steps = stretch * steps
         for k in range(p):
-            towards = np.where(u[:, k] + steps[k] > hypothesis.coordinates[k].high, -1.0, 1.0)
-            many_u[1 + k :: sets, k] += steps[k] * towards
+            towards = np.where(u[:, k] + steps[:, k] > hypothesis.coordinates[k].high, -1.0, 1.0)
+            many_u[1 + k :: sets, k] += steps[:, k] * towards
         sigma = self.nuisance_sigma
         runs = len(self.experiment.runs)
         h = stretch * self.step
@@ -161,8 +165,28 @@ class Forward:
             speed = (value[:, p + 2 :] - base) * (sigma[run] / h)
             trigger = -rate[:, None] * sigma[self.layout.trigger(run)]
             gains = self._gain_columns(run, base[:, 0])
+            self._like_nuisances(hypothesis, run, places, slopes, young, speed, gains)
             result.append(np.concatenate([base, slopes, young, speed, trigger, gains], axis=1))
         return result
+
+    def _like_nuisances(self, hypothesis, run, places, slopes, young, speed, gains):
+        """Take the slopes of parameters that act exactly as a nuisance does from its column.
+
+        Differences of simulations would hide that the two are one direction.
+        """
+        sigma, at = self.nuisance_sigma, 0
+        for k, component in enumerate(hypothesis.components):
+            for c in component.free:
+                name = (component.effect.id, c.parameter.name)
+                if name == ("dynamic-modulus", "modulus_ratio") and sigma[self.layout.modulus]:
+                    slopes[:, at] = young[:, 0] / sigma[self.layout.modulus]
+                elif name == ("striker-error", "speed_ratio") and sigma[run]:
+                    slopes[:, at] = speed[:, 0] / sigma[run]
+                elif name[0] == "sensor-gain" and np.all(self.experiment.gain_rel_sigma > 0.0):
+                    own = np.full(len(slopes), component.place) if places is None else places[:, k]
+                    scale = self.experiment.gain_rel_sigma[own][:, None]
+                    slopes[:, at] = gains[np.arange(len(slopes)), own] / scale
+                at += 1
 
     def _gain_columns(self, run, value):
         """(L, S, M) change of the data of a run with the gain of each gauge, times its standard error."""

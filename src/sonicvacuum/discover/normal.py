@@ -70,11 +70,11 @@ class Normal:
         self.hessian[:, lanes] = other.hessian
 
 
-def linearise(forward: Forward, hypothesis: Hypothesis, u, nu, places=None) -> Normal:
+def linearise(forward: Forward, hypothesis: Hypothesis, u, nu, places=None, steps=None) -> Normal:
     """Normal equations at (L, p) coordinates and (L, q) nuisances; lanes that cannot be simulated have χ² =
     inf.
     """
-    columns = forward.columns(hypothesis, u, nu, places)
+    columns = forward.columns(hypothesis, u, nu, places, steps=steps)
     return from_slopes(forward, np.shape(u)[1], u, nu, columns)
 
 

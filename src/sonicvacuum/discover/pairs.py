@@ -55,7 +55,7 @@ def _refit(forward, null: Fit, setup: Setup, first: Candidate, scores, second: s
     added = effect(second)
     best = scores.directions[scores.best()[second]].strength
     free = next(v for v in variants(added, setup) if v[0].parameter.name == best)
-    u, places, _ = singles.starts(forward, first.fit, scores, added, free, False)
+    u, places, nu = singles.starts(forward, first.fit, scores, added, free, False)
     if not len(u):
         return None
     u = np.column_stack([np.repeat(first.fit.u[None], len(u), axis=0), u])
@@ -64,7 +64,7 @@ def _refit(forward, null: Fit, setup: Setup, first: Candidate, scores, second: s
         places = np.zeros((len(u), 1), dtype=int)
     places = np.column_stack([np.full(len(u), own), places])
     hypothesis = joined(first.fit.hypothesis, Component(added, free), setup)
-    one = fit(forward, hypothesis, u, first.fit.nu, places, keep=3, iterations=ITERATIONS)
+    one = fit(forward, hypothesis, u, nu, places, keep=5, iterations=ITERATIONS)
     one = one if one.settled else polish(forward, one, ITERATIONS)
     if not np.isfinite(one.objective):
         return None

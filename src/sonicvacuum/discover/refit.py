@@ -18,6 +18,7 @@ SETTLED = 1e-3
 # Longest step: in a coordinate of an effect, in a nuisance (standard errors).
 LONGEST_U, LONGEST_NU = 1.2, 6.0
 _HELD = 1e12
+_AIM = 4.0
 
 
 @dataclass(frozen=True)
@@ -142,7 +143,8 @@ def descend(forward, hypothesis, now: Normal, places, iterations):
         gradient, hessian = part.total(weight)
         step = _step(part, hypothesis, gradient, hessian, damping[at])
         u, nu = _moved(part, hypothesis, step)
-        new = linearise(forward, hypothesis, u, nu, None if places is None else places[at])
+        here = None if places is None else places[at]
+        new = linearise(forward, hypothesis, u, nu, here, _differences(part))
         gained = part.weighted(weight) - new.weighted(weight)
         better = gained > 0.0
         now.replaced(at[better], new.take(better))
@@ -151,6 +153,12 @@ def descend(forward, hypothesis, now: Normal, places, iterations):
         settled[at] = done & ((weight == 1.0) | ~better)
         damping[at] = np.where(better, damping[at] * 0.1, damping[at] * 8.0).clip(1e-9, 1e9)
     return now, settled
+
+
+def _differences(part):
+    """(L, p) steps of finite differences that change all data together by a few standard errors."""
+    slopes = np.sqrt(np.einsum("lnn->ln", part.hessian.sum(axis=0))[:, : part.free])
+    return np.clip(_AIM / np.maximum(slopes, 1e-9), 1e-5, 0.05)
 
 
 def _promise(gradient, hessian, step):

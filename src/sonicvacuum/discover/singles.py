@@ -13,10 +13,10 @@ from sonicvacuum.effects import CATALOGUE, Effect, Setup
 
 # Beyond this misfit of the nominal model (in χ²) its slopes may point the wrong way: whole grids are
 # searched.
-NONLINEAR = 150.0
+NONLINEAR = 1500.0
 # Effects whose predicted gain is this far behind the best are not refitted while slopes can be trusted.
 HOPELESS = 30.0
-PLACES_TRIED = 4
+PLACES_TRIED = 5
 ITERATIONS = 14
 
 
@@ -62,7 +62,8 @@ def candidate(forward, null: Fit, scores: Screen, effect: Effect, setup: Setup, 
         if not np.isfinite(one.objective):
             continue
         gain = null.objective - one.objective
-        logs.append(log_bayes(one, gain, by_place(scores, effect, gain)))
+        alike = None if nonlinear and not effect.places else by_direction(scores, effect, gain)
+        logs.append(log_bayes(one, gain, alike))
         if best is None or logs[-1] > best[1]:
             best = (one, logs[-1], gain)
     if best is None:
@@ -73,14 +74,12 @@ def candidate(forward, null: Fit, scores: Screen, effect: Effect, setup: Setup, 
     return Candidate(effect.id, one, gain, total, place_weights(scores, effect, one), flags)
 
 
-def by_place(scores: Screen, effect: Effect, gain: float):
-    """(n,) Δχ² at each place as the screen predicts it, shifted so that the best has `gain`."""
-    if not effect.places:
-        return None
+def by_direction(scores: Screen, effect: Effect, gain: float):
+    """(n,) Δχ² at each place and shape as the screen predicts it, shifted so that the best has `gain`."""
     squares = np.array(
         [np.square(z) for d, z in zip(scores.directions, scores.z, strict=True) if d.effect == effect.id]
     )
-    return np.maximum(squares - squares.max() + gain, 0.0)
+    return np.maximum(squares - squares.max() + gain, 0.0) if len(squares) > 1 else None
 
 
 def place_weights(scores, effect, one):
@@ -97,16 +96,13 @@ def place_weights(scores, effect, one):
 def starts(forward, null: Fit, scores: Screen, effect: Effect, free, nonlinear: bool):
     """Coordinates (L, p), places (L, 1) or None and nuisances (L, q) from which one effect is fitted."""
     rows = _from_screen(scores, effect, free)
-    count = len(rows)
     if nonlinear:
-        rows += _grid(scores, effect, free)
+        rows += [(*row, np.zeros(forward.layout.size)) for row in _grid(scores, effect, free)]
     u = np.array([r[0] for r in rows]).reshape(len(rows), len(free))
     for k, c in enumerate(free):
         u[:, k] = u[:, k].clip(c.low + 1e-9, c.high - 1e-9)
     places = np.array([[r[1] or 0] for r in rows]) if effect.places else None
-    nu = np.zeros((len(rows), forward.layout.size))
-    nu[:count] = null.nu
-    return u, places, nu
+    return u, places, np.array([r[2] for r in rows]).reshape(len(rows), forward.layout.size)
 
 
 def _from_screen(scores, effect, free):
@@ -117,7 +113,7 @@ def _from_screen(scores, effect, free):
     for k in at:
         d, shape = scores.directions[k], dict(scores.directions[k].shape)
         size = scores.strength[k] if scores.z[k] else 1.0 / max(scores.length[k], 1e-9)
-        rows.append(([_start(c, d, shape, size) for c in free], d.place))
+        rows.append(([_start(c, d, shape, size) for c in free], d.place, scores.moved(k)[1]))
     return rows
 
 

@@ -1,0 +1,167 @@
+"""The pictures of one verdict, each drawn from the tables that `sonicvacuum discover` wrote beside it.
+
+where: disagreement of the nominal model by run, gauge and feature. traces: measured and predicted, with
+    running
+means of the residuals over their own standard error (band: two of them). candidates: how probable each
+explanation is. gap: misfit of each round, falling to the noise.
+"""
+
+import csv
+import json
+from pathlib import Path
+
+import numpy as np
+
+from sonicvacuum.figures.style import BAND, DOUBLE, GREY, SINGLE, canvas, context, panel, save
+
+BLUE, ORANGE, GREEN = "#0072B2", "#D55E00", "#009E73"
+# Scores beyond this are drawn in the full colour.
+LIMIT = 10.0
+_MOST = 8
+
+
+def draw(folder: Path) -> list[Path]:
+    """Draw all pictures that the tables in the folder give; the files written (SVG, each with its PNG)."""
+    folder = Path(folder)
+    verdict = json.loads((folder / "verdict.json").read_text(encoding="utf-8"))
+    pictures = {
+        "where": lambda: where(rows(folder / "where.csv")),
+        "traces": lambda: traces(rows(folder / "traces.csv"), verdict["named"]),
+        "candidates": lambda: candidates(verdict["probabilities"]),
+        "gap": lambda: gap(rows(folder / "gap.csv")),
+    }
+    written = []
+    with context():
+        for name, make in pictures.items():
+            figure = make()
+            if figure is not None:
+                save(figure, folder / f"{name}.svg", folder / f"{name}.png")
+                written.append(folder / f"{name}.svg")
+    return written
+
+
+def rows(path: Path) -> list[dict[str, str]]:
+    """Rows of a table, by column."""
+    with open(path, encoding="utf-8", newline="") as stream:
+        return list(csv.DictReader(stream))
+
+
+def where(cells: list[dict[str, str]]):
+    """Map of scores: features down, runs and gauges across; None without traces."""
+    cells = [c for c in cells if c["sensor"]]
+    if not cells:
+        return None
+    places = list(dict.fromkeys((c["run"], c["sensor"]) for c in cells))
+    features = list(dict.fromkeys(c["feature"] for c in cells))
+    table = np.full((len(features), len(places)), np.nan)
+    for c in cells:
+        table[features.index(c["feature"]), places.index((c["run"], c["sensor"]))] = float(c["z_before"])
+    wide = min(DOUBLE, 45.0 + 9.0 * len(places))
+    figure = canvas(wide, 24.0 + 6.0 * len(features) + 5.0)
+    axes = panel(figure, (22.0, 24.0, wide - 46.0, 6.0 * len(features)))
+    image = axes.imshow(table, cmap="PuOr", vmin=-LIMIT, vmax=LIMIT, aspect="auto")
+    for (i, j), z in np.ndenumerate(table):
+        if abs(z) >= 3.0 and len(places) <= 16:
+            shade = "white" if abs(z) > 7.0 else "black"
+            axes.text(j, i, f"{z:.0f}", ha="center", va="center", fontsize=6, color=shade)
+    axes.set_xticks(range(len(places)), [f"{r} {s}" for r, s in places], rotation=60, ha="right")
+    axes.set_yticks(range(len(features)), features)
+    axes.tick_params(length=0)
+    bar = figure.colorbar(
+        image, cax=panel(figure, (wide - 20.0, 24.0, 3.0, 6.0 * len(features))), extend="both"
+    )
+    bar.set_label("score $z$ of the residual")
+    return figure
+
+
+def traces(table: list[dict[str, str]], named: list[str]):
+    """Measured and predicted traces with residuals below, for the first and the last run; None without
+    traces.
+    """
+    runs = list(dict.fromkeys(r["run"] for r in table))
+    if not runs:
+        return None
+    chosen = list(dict.fromkeys((runs[0], runs[-1])))
+    sensors = list(dict.fromkeys(r["sensor"] for r in table))[:4]
+    high = 34.0
+    figure = canvas(DOUBLE, 16.0 + high * len(sensors))
+    wide = (DOUBLE - 18.0 - 14.0 * (len(chosen) - 1) - 4.0) / len(chosen)
+    for j, run in enumerate(chosen):
+        for i, sensor in enumerate(sensors):
+            part = [r for r in table if r["run"] == run and r["sensor"] == sensor]
+            left, bottom = 16.0 + j * (wide + 14.0), 11.0 + high * (len(sensors) - 1 - i)
+            _signal(panel(figure, (left, bottom + 12.0, wide, high - 16.0)), part, f"{run}, {sensor}")
+            _residual(panel(figure, (left, bottom, wide, 10.5)), part, i == len(sensors) - 1)
+    handles, labels = figure.axes[0].get_legend_handles_labels()
+    labels = [label.replace("extended", " + ".join(named) or "nominal") for label in labels]
+    figure.legend(handles, labels, loc="upper right", ncols=3, fontsize=7, borderaxespad=0.1)
+    return figure
+
+
+def _columns(part):
+    names = ("time_us", "measured_N", "nominal_N", "extended_N", "sigma_N")
+    return [np.array([float(r[name]) for r in part]) for name in names]
+
+
+def _signal(axes, part, text):
+    time, measured, nominal, extended, _ = _columns(part)
+    axes.plot(time, measured, ".", color=GREY, ms=1.0, label="measured", rasterized=True)
+    axes.plot(time, nominal, color=ORANGE, lw=0.9, ls=(0, (3.5, 1.2)), label="nominal")
+    axes.plot(time, extended, color=BLUE, lw=0.9, label="extended")
+    axes.set_ylabel("force (N)")
+    axes.set_xticklabels([])
+    axes.text(0.02, 0.9, text, transform=axes.transAxes, ha="left", va="top", fontsize=7)
+
+
+def _residual(axes, part, last):
+    time, measured, nominal, extended, sigma = _columns(part)
+    count = max(1, len(time) // 60)
+    axes.axhspan(-2.0, 2.0, color=BAND, lw=0)
+    for model, color, style in ((nominal, ORANGE, (0, (3.5, 1.2))), (extended, BLUE, "-")):
+        mean, middle = running((measured - model) / sigma, count), running(time, count)
+        axes.plot(middle, mean * np.sqrt(count), color=color, lw=0.9, ls=style)
+    axes.set_ylabel("resid.", fontsize=7)
+    if last:
+        axes.set_xlabel("time (µs)")
+    else:
+        axes.set_xticklabels([])
+
+
+def running(values: np.ndarray, count: int) -> np.ndarray:
+    """Means of so many neighbours; times √count their white noise is that of one value."""
+    return np.convolve(values, np.full(count, 1.0 / count), mode="valid")
+
+
+def candidates(probabilities: dict[str, float]):
+    """Bars of the most probable explanations."""
+    best = sorted(probabilities.items(), key=lambda item: -item[1])[:_MOST][::-1]
+    figure = canvas(SINGLE, 13.0 + 5.0 * len(best))
+    axes = panel(figure, (30.0, 10.0, SINGLE - 40.0, 5.0 * len(best)))
+    names, values = zip(*best, strict=True)
+    axes.barh(names, values, color=[GREY if n in ("none", "unknown") else BLUE for n in names], height=0.65)
+    for k, value in enumerate(values):
+        axes.text(value + 0.015, k, f"{value:.2f}", va="center", fontsize=7)
+    axes.set_xlim(0.0, 1.0)
+    axes.set_xlabel("probability")
+    axes.tick_params(axis="y", length=0)
+    return figure
+
+
+def gap(table: list[dict[str, str]]):
+    """Excess misfit after each round, per datum."""
+    steps = [r for r in table if r["run"].startswith("round ")]
+    if not steps:
+        return None
+    values = [float(r["after"]) for r in steps]
+    figure = canvas(SINGLE, 58.0)
+    axes = panel(figure, (17.0, 19.0, SINGLE - 22.0, 36.0))
+    axes.axhline(1.0, color=GREEN, lw=0.9, ls=(0, (5, 1.2, 1, 1.2)))
+    axes.text(len(values) - 0.55, 1.0, "noise", color=GREEN, fontsize=7, ha="right", va="bottom")
+    axes.plot(range(len(values)), values, "o-", color=BLUE, lw=1.0, ms=4)
+    if max(values) > 5.0:
+        axes.set_yscale("log")
+    axes.set_xticks(range(len(values)), [r["run"].split(": ")[1].replace("+", " +\n") for r in steps])
+    axes.set_xlim(-0.5, len(values) - 0.5)
+    axes.set_ylabel("$\\chi^2$ per datum")
+    axes.set_xlabel("best model of each round")
+    return figure
