@@ -20,12 +20,12 @@ rule hide:
     output:
         records=directory(f"{BLIND}/records/{{batch}}"),
         truth=directory(f"{BLIND}/truth/{{batch}}"),
-    params:
-        batches=lambda wildcards: BATCHES[wildcards.study],
     log:
         "results/logs/hide/{study}-{batch}.log",
     benchmark:
         "results/benchmarks/hide/{study}-{batch}.tsv"
+    params:
+        batches=lambda wildcards: BATCHES[wildcards.study],
     message:
         "Hiding effects in batch {wildcards.batch} of the {wildcards.study} study"
     shell:
@@ -51,7 +51,9 @@ rule discover_hidden:
 
 rule score:
     input:
-        truth=lambda wildcards: expand(f"{BLIND}/truth/{{batch}}", study=wildcards.study, batch=batches(wildcards)),
+        truth=lambda wildcards: expand(
+            f"{BLIND}/truth/{{batch}}", study=wildcards.study, batch=batches(wildcards)
+        ),
         verdicts=lambda wildcards: expand(
             f"{BLIND}/verdicts/{{batch}}", study=wildcards.study, batch=batches(wildcards)
         ),
@@ -59,12 +61,12 @@ rule score:
     output:
         score=f"{BLIND}/score.csv",
         summary=f"{BLIND}/summary.csv",
-    params:
-        folder=lambda wildcards: f"results/blind/{wildcards.study}",
     log:
         "results/logs/score/{study}.log",
     benchmark:
         "results/benchmarks/score/{study}.tsv"
+    params:
+        folder=lambda wildcards: f"results/blind/{wildcards.study}",
     message:
         "Scoring the {wildcards.study} study"
     shell:

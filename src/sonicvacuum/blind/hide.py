@@ -15,7 +15,7 @@ from sonicvacuum.blind import catalogue, design, foreign
 from sonicvacuum.blind.design import Design
 from sonicvacuum.blind.record import as_record
 from sonicvacuum.blind.signature import Errors, Frame, predict
-from sonicvacuum.blind.strength import ceiling, leftover, nearest, rivals, scale
+from sonicvacuum.blind.strength import Rival, ceiling, leftover, nearest, rivals, scale
 from sonicvacuum.files import replacing
 
 KINDS = ("null", "single", "pair", "foreign")
@@ -226,6 +226,9 @@ def _truth(spec, case, errors, noise, random):
     # In the linear approximation, effects of a pair add up.
     seen = sum((h.seen for h in case.hidden), np.zeros(len(frame.base) + frame.slopes.shape[1]))
     directions = rivals(frame) if case.hidden else []
+    if spec.kind in ("single", "pair"):
+        # Shapes and strengths of the catalogue's directions lie on a grid; what is hidden need not.
+        directions += [Rival(h.id, h.place, h.seen / h.d_prime) for h in case.hidden]
     near = nearest(directions, seen, case.hidden[0].id) if directions else ("none", 0.0)
     return {
         "format": 1,

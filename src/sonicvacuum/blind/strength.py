@@ -1,5 +1,6 @@
 """Scaling what is hidden to a wanted d′, and what an ideal rule could make of it."""
 
+import itertools
 import math
 from dataclasses import dataclass
 
@@ -13,6 +14,10 @@ CLOSE = 0.005  # relative, of the d′ reached to the one wanted
 DRAWS = 2000
 # Strengths are taken as equally likely up to this d′.
 LARGEST = 30.0
+# A direction of less than this share of the wanted d′ is beyond what the record can show.
+NOTHING = 1e-3
+# Where the record's errors explain all but 1/ABSORBED of a change, what they leave is its curvature.
+ABSORBED = 8.0
 
 
 @dataclass(frozen=True)
@@ -58,85 +63,80 @@ def scale(frame: Frame, entry: Entry, target: float, sign: int, shape, place, me
 
 @dataclass(frozen=True)
 class Rival:
-    """A unit vector in data space that a catalogue effect could cause, and whether with both signs."""
+    """A unit vector in data space: what an effect of the catalogue does at one place, shape and sign.
+
+    The two signs are two directions: behind the pulse contacts stand open, and a bead slightly too heavy leaves
+    them otherwise than one too light, so that signatures of even small departures are no mirror images.
+    """
 
     id: str
     place: str | int | None
     direction: np.ndarray
-    two_sided: bool
 
 
-def rivals(frame: Frame, change: float = 5e-3) -> list[Rival]:
-    """Directions of all effects, places and shapes, from steps that change the readings by about `change`.
-
-    Args:
-        frame: the record.
-        change: largest difference over the largest reading (or scalar, relatively), after one rescaling.
-    """
-    found = []
+def rivals(frame: Frame, size: float = 4.0) -> list[Rival]:
+    """Directions of all effects, places, shapes and signs, from steps whose d′ is near `size`."""
+    reference, found = frame.design.reference, []
     for entry in ENTRIES:
-        if not entry.fits(frame.design.reference):
+        if not entry.fits(reference):
             continue
-        for shape in entry.shapes(frame.design.reference):
-            size = None
-            for place in entry.where(frame.design.reference):
-                size, seen = _direction(frame, entry, shape, place, change, size)
+        for shape, sign in itertools.product(entry.shapes(reference), entry.signs):
+            strength = min(entry.start, entry.most)
+            for place in entry.where(reference):
+
+                def change(s, entry=entry, sign=sign, shape=shape, place=place):
+                    return hidden(entry, sign * s, shape, place, reference)
+
+                strength, seen = _direction(frame, change, strength, entry.most, size)
                 length = np.linalg.norm(seen)
-                if length > 1e-6:
-                    found.append(Rival(entry.id, place, seen / length, len(entry.signs) == 2))
+                if length > NOTHING * size:
+                    found.append(Rival(entry.id, place, seen / length))
     return found
 
 
-def _direction(frame, entry, shape, place, change, size):
-    """(strength, signature) near a given relative change; places share the strength found first."""
-    reference = frame.design.reference
-    sized = size is not None
-    size = size or min(entry.start, entry.most)
-    difference = frame.change(hidden(entry, size, shape, place, reference))
-    if not sized:
-        share = np.max(np.abs(difference)) / np.max(np.abs(frame.base))
-        better = min(size * np.clip(change / max(share, 1e-12), 1e-3, 1e3), entry.most)
-        if not 0.3 < better / size < 3.0:
-            size = better
-            difference = frame.change(hidden(entry, size, shape, place, reference))
-    return size, frame.seen(difference)
+def _direction(frame, change, strength, most, size):
+    """Strength and signature with a d′ within a factor of two of `size` where one rescaling finds it."""
+    seen = _step(frame, change(strength))
+    wanted = size / max(np.linalg.norm(seen), 1e-3 * size)
+    better = float(min(strength * wanted, most))
+    if 0.5 < better / strength < 2.0:
+        return strength, seen
+    return better, _step(frame, change(better))
+
+
+def _step(frame, change):
+    """Signature of a small change: linear in the errors unless these explain nearly all of it."""
+    difference = frame.change(change)
+    seen = frame.seen(difference)
+    return seen if np.linalg.norm(difference) < ABSORBED * np.linalg.norm(seen) else frame.signature(change)
 
 
 def leftover(directions: list[Rival], seen: np.ndarray) -> float:
     """d′ left when the best single effect of the catalogue has explained what it can."""
-    return float(np.sqrt(max(np.dot(seen, seen) - _explained(directions, seen).max(), 0.0)))
+    return float(np.sqrt(max(np.dot(seen, seen) - explained(directions, seen).max(), 0.0)))
 
 
-def _explained(directions, seen):
-    z = np.array([r.direction @ seen for r in directions])
-    both = np.array([r.two_sided for r in directions])
-    return np.where(both, z, np.maximum(z, 0.0)) ** 2
+def explained(directions: list[Rival], seen: np.ndarray) -> np.ndarray:
+    """(directions,) d′² that each direction explains."""
+    return np.maximum([r.direction @ seen for r in directions], 0.0) ** 2
 
 
 def nearest(directions: list[Rival], seen: np.ndarray, but: str) -> tuple[str, float]:
     """The other effect that explains a signature best, and the d′ it leaves."""
     others = [r for r in directions if r.id != but]
-    gain = _explained(others, seen)
+    gain = explained(others, seen)
     k = int(np.argmax(gain))
     return others[k].id, float(np.sqrt(max(np.dot(seen, seen) - gain[k], 0.0)))
 
 
-def log_evidence(z: np.ndarray, two_sided: np.ndarray) -> np.ndarray:
+def log_evidence(z: np.ndarray) -> np.ndarray:
     """ln of the mean likelihood ratio to no effect, strengths equally likely from 0 to `LARGEST`.
 
-    ∫ exp(a z − a²/2) da / LARGEST = √(2π) exp(z²/2) (Φ(L − z) − Φ(−z)) / L; two-sided: half of it for each
-    sign.
+    ∫ exp(a z − a²/2) da / L = √(2π) exp(z²/2) (Φ(L − z) − Φ(−z)) / L with L = `LARGEST`.
 
     Args:
-        z: (…, directions) data along unit directions.
-        two_sided: (directions,) whether both signs are possible.
+        z: data along unit directions, any shape.
     """
-    one = _half(z)
-    both = np.logaddexp(one, _half(-z)) - math.log(2.0)
-    return np.where(two_sided, both, one)
-
-
-def _half(z):
     # Φ(L − z) − Φ(−z) = Φ(z) − Φ(z − L): the form whose terms are the smaller keeps the digits.
     small = z < 0.5 * LARGEST
     large = special.log_ndtr(np.where(small, z, LARGEST - z))
@@ -151,21 +151,19 @@ def ceiling(
     """How often an ideal rule names each effect when data hold the signature `seen` and noise.
 
     The rule knows all directions, takes effects (and none) as equally likely, shares an effect's probability
-    equally among its places and shapes, and names the most probable.
+    equally among its places, shapes and signs, and names the most probable.
 
     Returns:
         Verdict ("none" or an id) → share of `draws` data sets, in descending order.
     """
-    directions = [*directions, Rival("", None, seen / max(np.linalg.norm(seen), 1e-12), False)]
     basis = np.stack([r.direction for r in directions])
     # Noise enters only through its components along the directions.
     q, r = np.linalg.qr(basis.T)
-    z = basis @ seen + random.standard_normal((draws, q.shape[1])) @ r
-    log = log_evidence(z[:, :-1], np.array([d.two_sided for d in directions[:-1]]))
-    ids = sorted({d.id for d in directions[:-1]})
+    log = log_evidence(basis @ seen + random.standard_normal((draws, q.shape[1])) @ r)
+    ids = sorted({d.id for d in directions})
     total = [np.zeros(draws)]
     for id in ids:
-        own = [k for k, d in enumerate(directions[:-1]) if d.id == id]
+        own = [k for k, d in enumerate(directions) if d.id == id]
         total.append(special.logsumexp(log[:, own], axis=1) - math.log(len(own)))
     winner = np.argmax(np.stack(total), axis=0)
     shares = {name: float(np.mean(winner == k)) for k, name in enumerate(["none", *ids])}
