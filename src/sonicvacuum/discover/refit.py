@@ -13,6 +13,7 @@ from sonicvacuum.discover.hypothesis import Hypothesis
 from sonicvacuum.discover.normal import Normal, linearise
 
 ITERATIONS = 30
+LAST = 2
 # A fit has settled when an accepted step gains less than this in χ².
 SETTLED = 1e-3
 # Longest step: in a coordinate of an effect, in a nuisance (standard errors).
@@ -103,13 +104,22 @@ def fit(
     order = np.argsort(now.objective, kind="stable")
     best = int(order[0])
     found = hypothesis if places is None else hypothesis.with_places(places[best])
-    return Fit(found, now.take([best]), bool(settled[best]), now.objective[order[1:]])
+    last = _finished(forward, found, now.take([best]))
+    return Fit(found, last, bool(settled[best]), now.objective[order[1:]])
 
 
 def polish(forward: Forward, one: Fit, iterations: int = ITERATIONS) -> Fit:
     """The same fit, followed further."""
     now, settled = descend(forward, one.hypothesis, one.normal.take([0]), None, iterations)
-    return Fit(one.hypothesis, now, bool(settled[0]), one.others)
+    return Fit(one.hypothesis, _finished(forward, one.hypothesis, now), bool(settled[0]), one.others)
+
+
+def _finished(forward, hypothesis, now):
+    """The last steps with slopes to second order: those to first order point a little beside the minimum."""
+    if not np.isfinite(now.objective[0]) or now.free == 0:
+        return now
+    precise = linearise(forward, hypothesis, now.u, now.nu, None, _differences(now), precise=True)
+    return descend(forward, hypothesis, precise, None, LAST, precise=True)[0]
 
 
 def _promising(forward, hypothesis, u, nu, places, keep):
@@ -122,7 +132,7 @@ def _promising(forward, hypothesis, u, nu, places, keep):
     return np.sort(np.argsort(chi2, kind="stable")[:keep])
 
 
-def descend(forward, hypothesis, now: Normal, places, iterations):
+def descend(forward, hypothesis, now: Normal, places, iterations, precise=False):
     """Follow all lanes to their minimum; the normal equations there and which have settled.
 
     While a lane is far from the data, its nuisances are held by as much more as its χ² per datum exceeds 1:
@@ -144,7 +154,7 @@ def descend(forward, hypothesis, now: Normal, places, iterations):
         step = _step(part, hypothesis, gradient, hessian, damping[at])
         u, nu = _moved(part, hypothesis, step)
         here = None if places is None else places[at]
-        new = linearise(forward, hypothesis, u, nu, here, _differences(part))
+        new = linearise(forward, hypothesis, u, nu, here, _differences(part), precise)
         gained = part.weighted(weight) - new.weighted(weight)
         better = gained > 0.0
         now.replaced(at[better], new.take(better))

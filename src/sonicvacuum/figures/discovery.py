@@ -109,6 +109,7 @@ def _signal(axes, part, text):
     axes.plot(time, nominal, color=ORANGE, lw=0.9, ls=(0, (3.5, 1.2)), label="nominal")
     axes.plot(time, extended, color=BLUE, lw=0.9, label="extended")
     axes.set_ylabel("force (N)")
+    axes.set_xlim(time[0], time[-1])
     axes.set_xticklabels([])
     axes.text(0.02, 0.9, text, transform=axes.transAxes, ha="left", va="top", fontsize=7)
 
@@ -121,6 +122,7 @@ def _residual(axes, part, last):
         mean, middle = running((measured - model) / sigma, count), running(time, count)
         axes.plot(middle, mean * np.sqrt(count), color=color, lw=0.9, ls=style)
     axes.set_ylabel("resid.", fontsize=7)
+    axes.set_xlim(time[0], time[-1])
     if last:
         axes.set_xlabel("time (µs)")
     else:

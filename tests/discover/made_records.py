@@ -1,0 +1,69 @@
+"""Small records for the tests of inference, made by the simulator itself: truth and model agree, so that
+what the statistics say can be checked. (Data from an independent integrator are the blind study's.)
+"""
+
+import numpy as np
+
+from sonicvacuum.discover.forward import Forward
+from sonicvacuum.discover.hypothesis import Hypothesis
+from sonicvacuum.discover.problem import experiment
+from sonicvacuum.effects import effect
+from sonicvacuum.records import Record, Signals
+from sonicvacuum.records.reader import parse
+
+SIGMA = 0.02
+BEADS = 10
+
+
+def block(speeds, orientation="horizontal"):
+    """A chain of ten coated beads with two gauges and the wall."""
+    gauges = [
+        {"id": f"g{b}", "kind": "embedded", "bead": b, "sigma_N": SIGMA, "gain_rel_sigma": 0.02}
+        for b in (4, 7)
+    ]
+    wall = {"id": "wall", "kind": "wall", "sigma_N": 2.0 * SIGMA, "gain_rel_sigma": 0.02}
+    striker = {"shape": "flat", "material": "alumina", "mass_g": 0.47, "speed_rel_sigma": 0.01}
+    return {
+        "format": 1,
+        "title": "made",
+        "chain": {
+            "beads": BEADS,
+            "orientation": orientation,
+            "bead": {"diameter_mm": 4.86, "mass_g": 0.44, "material": "parylene-c"},
+            "wall": {"material": "stainless-steel"},
+        },
+        "materials": {"parylene-c": {"modulus_rel_sigma": 0.05}},
+        "sensors": [*gauges, wall],
+        "trigger_sigma_us": 1.0,
+        "runs": [
+            {"id": f"v{k}", "striker": {**striker, "speed_m_s": v}, "signals": f"v{k}.csv"}
+            for k, v in enumerate(speeds)
+        ],
+    }
+
+
+def made(effects=(), seed=0, speeds=(0.3, 0.9), noise=1.0):
+    """A record with hidden effects ((id, parameters), ...), nuisances and white noise drawn; the
+    nuisances.
+    """
+    content = parse(block(speeds))
+    rng = np.random.default_rng(np.random.SeedSequence(seed))
+    time = np.arange(0.0, 700.0, 1.0)
+    ids = [s.id for s in content.sensors]
+    empty = {r.id: Signals(time, {i: np.zeros(len(time)) for i in ids}) for r in content.runs}
+    forward = Forward(experiment(Record(content, empty, "made")))
+    nu = noise * rng.normal(size=(1, forward.layout.size))
+
+    def change(setup, index):
+        for name, given in effects:
+            setup = effect(name).apply(setup, **{k: np.full(setup.chain.lanes, v) for k, v in given.items()})
+        return setup
+
+    found = forward.sampled(Hypothesis(), np.zeros((1, 0)), nu, change=change)
+    sigma = np.array([s.sigma_N for s in content.sensors])[:, None]
+    signals = {}
+    for run, (value, _) in zip(content.runs, found, strict=True):
+        clean = value[0].reshape(len(ids), -1) * forward.experiment.sigma[:, None]
+        noisy = clean + noise * sigma * rng.normal(size=clean.shape)
+        signals[run.id] = Signals(time, dict(zip(ids, noisy, strict=True)))
+    return Record(content, signals, "made"), nu[0]

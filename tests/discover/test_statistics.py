@@ -1,0 +1,103 @@
+"""The algebra of inference, held against exact results: interpolation, whitening, projection, held-out
+fits.
+"""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from sonicvacuum.discover import evidence, gauges, heldout
+from sonicvacuum.discover.experiment import lag_one
+from sonicvacuum.discover.hypothesis import Hypothesis
+from sonicvacuum.discover.normal import Normal
+from sonicvacuum.discover.parameters import coordinate
+from sonicvacuum.discover.refit import Fit
+from sonicvacuum.effects import CATALOGUE
+
+
+@given(st.floats(-3e-6, 3e-6))
+def test_readings_between_samples_are_exact_for_polynomials_of_degree_five(shift):
+    interval = 1e-6
+    coefficients = np.array([0.3, -1.0, 0.5, 0.02, -0.004, 1e-4])
+    law = np.polynomial.Polynomial(coefficients)
+    simulated = law(np.arange(80))[None, None]
+    time = interval * np.arange(20.0, 60.0, 2.0)
+    value, rate = gauges.shifted(simulated, interval, time, np.array([shift]))
+    place = (time - shift) / interval
+    # Six points fix a polynomial of degree five; rounding of numbers up to 1e5 is left.
+    np.testing.assert_allclose(value[0, 0], law(place), rtol=1e-9, atol=1e-6)
+    np.testing.assert_allclose(rate[0, 0] * interval, law.deriv()(place), rtol=1e-8, atol=1e-6)
+
+
+def test_nothing_is_read_before_the_impact():
+    value, rate = gauges.shifted(np.ones((1, 1, 50)), 1e-6, np.arange(-20.0, 20.0) * 1e-6, np.zeros(1))
+    assert not value[0, 0, :15].any()
+    assert not rate[0, 0, :15].any()
+    assert value[0, 0, -1] == pytest.approx(1.0, abs=1e-12)  # weights add up to one
+
+
+def test_correlation_of_neighbours_is_found():
+    rng = np.random.default_rng(np.random.SeedSequence(1))
+    noise = np.zeros(20000)
+    for k in range(1, len(noise)):
+        noise[k] = 0.6 * noise[k - 1] + rng.normal()
+    assert lag_one(noise) == pytest.approx(0.6, abs=0.03)  # five standard errors of √(1 − ρ²)/√n
+
+
+def linear_problem(runs=3, size=40, free=1, nuisances=4, seed=3):
+    """A random linear model with one parameter and some nuisances, as normal equations at zero."""
+    rng = np.random.default_rng(np.random.SeedSequence(seed))
+    columns = rng.normal(size=(runs, size, free + nuisances))
+    data = columns @ np.r_[0.8, rng.normal(size=nuisances)] + rng.normal(size=(runs, size))
+    normal = Normal(
+        np.zeros((1, free)),
+        np.zeros((1, nuisances)),
+        np.einsum("rs,rs->r", data, data)[:, None],
+        np.einsum("rsn,rs->rn", columns, data)[:, None],
+        np.einsum("rsn,rsm->rnm", columns, columns)[:, None],
+    )
+    return columns, data, normal
+
+
+def test_leaving_a_run_out_is_what_a_fit_without_it_leaves():
+    columns, data, normal = linear_problem(nuisances=1)
+    # Without nuisance data of its own the run left out keeps what the others say: make the nuisance's column
+    # zero there.
+    columns[0, :, 1] = 0.0
+    normal.gradient[0, 0, 1] = 0.0
+    normal.hessian[0, 0, 1, :] = normal.hessian[0, 0, :, 1] = 0.0
+    others = np.concatenate([columns[1], columns[2], [[0.0, 1.0]]])
+    known = np.r_[data[1], data[2], 0.0]
+    solved = np.linalg.lstsq(others, known, rcond=None)[0]
+    expected = np.sum((data[0] - columns[0] @ solved) ** 2)
+    found = heldout.held_out(Fit(Hypothesis(), normal), np.array([40, 40, 40]))
+    assert found.chi2[0] == pytest.approx(expected, rel=1e-9)  # algebra, rounding only
+
+
+def test_marquardt_and_linear_algebra_agree_on_the_objective():
+    _, _, normal = linear_problem()
+    assert normal.objective == pytest.approx(normal.chi2.sum())
+    assert normal.weighted(np.array([3.0])) == pytest.approx(normal.chi2.sum())
+
+
+@given(st.floats(1e-12, 0.3), st.floats(1e-12, 0.3))
+def test_a_worse_residual_makes_unknown_more_likely(p, q):
+    low, high = sorted((p, q))
+    assert evidence.unknown_odds(low) >= evidence.unknown_odds(high)
+
+
+def test_probabilities_add_up_to_one():
+    found = evidence.probabilities([], 0.5)
+    assert sum(found.values()) == pytest.approx(1.0, abs=1e-12)
+    assert found["none"] > found["unknown"]
+
+
+@pytest.mark.parametrize("effect", CATALOGUE, ids=lambda e: e.id)
+def test_coordinates_and_values_are_each_others_inverse(effect, setup):
+    for parameter in effect.parameters:
+        c = coordinate(parameter, setup)
+        for share in (0.1, 0.5, 0.9):
+            u = c.low + share * (c.high - c.low)
+            assert c.inverse(float(c.value(u))) == pytest.approx(u, rel=1e-9, abs=1e-9)  # rounding only
+            assert parameter.low * (1.0 - 1e-9) - 1e-9 <= c.value(u) <= parameter.high * (1.0 + 1e-9)
