@@ -24,6 +24,7 @@ include: "workflow/rules/observe.smk"
 include: "workflow/rules/figures.smk"
 include: "workflow/rules/report.smk"
 include: "workflow/rules/bench.smk"
+include: "workflow/rules/blind.smk"
 
 
 report: "workflow/report/workflow.rst"

@@ -24,6 +24,8 @@ rule hide:
         "results/logs/hide/{study}-{batch}.log",
     benchmark:
         "results/benchmarks/hide/{study}-{batch}.tsv"
+    conda:
+        ENVIRONMENT
     params:
         batches=lambda wildcards: BATCHES[wildcards.study],
     message:
@@ -43,6 +45,8 @@ rule discover_hidden:
         "results/logs/discover_hidden/{study}-{batch}.log",
     benchmark:
         "results/benchmarks/discover_hidden/{study}-{batch}.tsv"
+    conda:
+        ENVIRONMENT
     message:
         "Discovering what is hidden in batch {wildcards.batch} of the {wildcards.study} study"
     shell:
@@ -52,10 +56,10 @@ rule discover_hidden:
 rule score:
     input:
         truth=lambda wildcards: expand(
-            f"{BLIND}/truth/{{batch}}", study=wildcards.study, batch=batches(wildcards)
+            f"{BLIND}/truth/{{batch}}", study=wildcards.study, batch=range(BATCHES[wildcards.study])
         ),
         verdicts=lambda wildcards: expand(
-            f"{BLIND}/verdicts/{{batch}}", study=wildcards.study, batch=batches(wildcards)
+            f"{BLIND}/verdicts/{{batch}}", study=wildcards.study, batch=range(BATCHES[wildcards.study])
         ),
         sources=sources("card", "blind"),
     output:
@@ -65,6 +69,8 @@ rule score:
         "results/logs/score/{study}.log",
     benchmark:
         "results/benchmarks/score/{study}.tsv"
+    conda:
+        ENVIRONMENT
     params:
         folder=lambda wildcards: f"results/blind/{wildcards.study}",
     message:
@@ -82,8 +88,3 @@ rule blind_small:
 rule blind_full:
     input:
         "results/blind/full/summary.csv",
-
-
-def batches(wildcards):
-    """Numbers of a study's batches."""
-    return range(BATCHES[wildcards.study])

@@ -39,6 +39,8 @@ LAYERS = {
     "ledger": ["paper", "cli/ledger.py"],
     "figures": ["figures", "observe", "paper", "cli/draw.py"],
     "report": ["report", "cli/report.py"],
+    "discover": ["observe", "records", "discover", "cli/discover.py"],
+    "blind": ["observe", "records", "blind", "cli/blind.py"],
 }
 LOCKS = ["requirements.lock", "requirements-build.lock"]
 
