@@ -17,7 +17,7 @@ from sonicvacuum.effects import CATALOGUE, Effect, Setup
 
 # The first trial strength (typical departures), and the change of all data, in standard errors, that is
 # aimed at.
-TRIAL, AIM = 0.03, 100.0
+TRIAL, AIM = 0.03, 6.0
 WEAKEST, STRONGEST = 1e-5, 0.5
 
 

@@ -70,12 +70,12 @@ class Normal:
         self.hessian[:, lanes] = other.hessian
 
 
-def linearise(forward: Forward, hypothesis: Hypothesis, u, nu, places=None, steps=None,
-precise=False)
-->
-Normal:
-    """Normal equations at (L, p) coordinates and (L, q) nuisances; lanes that cannot
-    be simulated have χ² = inf.
+def linearise(
+    forward: Forward, hypothesis: Hypothesis, u, nu, places=None, steps=None, precise: bool = False
+) -> Normal:
+    """Normal equations at (L, p) coordinates and (L, q) nuisances.
+
+    Lanes that cannot be simulated have χ² = inf.
     """
     columns = forward.columns(hypothesis, u, nu, places, precise, steps)
     return from_slopes(forward, np.shape(u)[1], u, nu, columns)
