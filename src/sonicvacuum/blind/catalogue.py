@@ -148,7 +148,7 @@ ENTRIES = (
         lambda plan, place, gamma, alpha: plan.with_law(power_damping=gamma, power_of_rate=alpha),
         0.005,
         2.0,
-        shapes=lambda plan: (1.25, 1.5, 1.75, 2.0, 2.3),
+        shapes=lambda plan: (1.2, 1.35, 1.5, 1.65, 1.8, 1.95, 2.1, 2.2, 2.3, 2.4, 2.5),
         draw=lambda random, plan: random.uniform(1.3, 2.4),
     ),
     Entry(
@@ -159,9 +159,7 @@ ENTRIES = (
         ),
         0.02,
         5.0,
-        shapes=lambda plan: tuple(
-            plan.contact_time / MICRO * f for f in (0.3, 0.6, 1.2, 2.4, 5.0, 10.0, 20.0, 40.0)
-        ),
+        shapes=lambda plan: tuple(plan.contact_time / MICRO * f for f in np.geomspace(0.3, 45.0, 12)),
         draw=lambda random, plan: plan.contact_time / MICRO * math.exp(random.uniform(*np.log([0.5, 20.0]))),
     ),
     Entry(

@@ -65,8 +65,8 @@ def scale(frame: Frame, entry: Entry, target: float, sign: int, shape, place, me
 class Rival:
     """A unit vector in data space: what an effect of the catalogue does at one place, shape and sign.
 
-    The two signs are two directions: behind the pulse contacts stand open, and a bead slightly too heavy leaves
-    them otherwise than one too light, so that signatures of even small departures are no mirror images.
+    The two signs are two directions: behind the pulse contacts stand open, and a bead slightly too heavy
+    leaves them otherwise than one too light, so that signatures of small departures are no mirror images.
     """
 
     id: str
