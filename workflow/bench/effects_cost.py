@@ -11,7 +11,7 @@ from sonicvacuum.effects import CATALOGUE, Setup
 from sonicvacuum.physics import run
 from sonicvacuum.physics.lanes import LANES, power_3_2
 from sonicvacuum.physics.laws import LawSet
-from sonicvacuum.physics.methods import BLANES_MOAN, CARPENTER_KENNEDY, VERLET
+from sonicvacuum.physics.methods import BLANES_MOAN, CARPENTER_KENNEDY
 from sonicvacuum.physics.run import simulate
 from sonicvacuum.physics.table import INVERSE_MASS, OPTIONS, REST, Composition, U, V, get, put
 
@@ -86,12 +86,13 @@ def _bare_kernel(c, table, step, steps):
                 speed = ahead_speed
 
 
-def composed_over_bare():
-    """Time of the engine's stepper over that of one without choices: same table, beads and steps."""
+def composed_over_bare(method):
+    """Time of the engine's stepper over that of one without choices: same table, beads and passes."""
     p = PROBLEMS["P3"]
+    stages = len(method.second)
     front, run.FRONT = run.FRONT, -1.0  # all beads from the start
     try:
-        batch = run._Batch(p.chain, LawSet(), 22, (12,), 2, p.duration, STEP, 1.0, False)
+        batch = run._Batch(p.chain, LawSet(), 22, (12,), 2, p.duration, stages * STEP, 1.0, False)
     finally:
         run.FRONT = front
     table, clock, cursor = batch.table.copy(), batch.clock.copy(), batch.cursor.copy()
@@ -99,7 +100,7 @@ def composed_over_bare():
 
     def composed():
         batch.table[:], batch.clock[:], batch.cursor[:] = table, clock, cursor
-        batch.run(VERLET, 1)
+        batch.run(method, 1)
 
     def bare():
         batch.table[:] = table

@@ -25,6 +25,7 @@ import numpy as np
 import peers
 from problems import AGREEMENT, INTERVAL, P1_MOMENT, P1_PEAK, PROBLEMS, STEP, Problem, errors, peaks
 
+from sonicvacuum.physics.methods import BLANES_MOAN, VERLET
 from sonicvacuum.physics.run import simulate
 
 COLUMNS = [
@@ -241,7 +242,10 @@ def measure_scaling(folder):
     same = bool(np.array_equal(found[1][1], found[2][1]))
     cold, warm = measure_start(folder)
     rows = [
-        ["composed stepper over one without choices", effects_cost.composed_over_bare(), ""],
+        *(
+            [f"composed stepper over one without choices, {m.name}", effects_cost.composed_over_bare(m), ""]
+            for m in (VERLET, BLANES_MOAN)
+        ),
         ["speed-up of two threads", found[1][0] / found[2][0], ""],
         ["same bytes with two threads", same, ""],
         ["first result, empty cache", cold, "s"],
