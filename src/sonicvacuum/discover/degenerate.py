@@ -87,5 +87,6 @@ def _limit(name, reach, estimate, direction, setup):
         towards = -1.0 if off + p.scale > p.high else 1.0
         value, best = off + towards * reach * p.scale, off + towards * estimate * p.scale
         testable = p.low <= value <= p.high
-    value = float(np.clip(value, min(p.low, off), max(p.high, off) if np.isfinite(off) else p.high))
+    highest = max(p.high, off)
+    value = float(np.clip(value, min(p.low, off), highest))
     return Limit(name, p.name, value, float(best), bool(testable), direction.place)

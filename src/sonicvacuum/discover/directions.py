@@ -150,17 +150,9 @@ def simulate(forward: Forward, hypothesis: Hypothesis, u, nu, family: Family):
     used.
     """
     count = len(family.directions)
-    many_u, many_nu = np.repeat(u[None], count + 1, axis=0), np.repeat(nu[None], count + 1, axis=0)
 
     def at(strengths):
-        strengths = np.append(strengths, 0.0)
-
-        def change(setup, index):
-            setup = hypothesis.change(many_u)(setup, index)
-            return family.change(setup, np.minimum(index, count - 1), strengths[index])
-
-        found = [value for value, _ in forward.sampled(hypothesis, many_u, many_nu, None, change=change)]
-        return [(v[:-1] - v[-1]) for v in found]
+        return finite(forward, hypothesis, u, nu, family, strengths)
 
     trial = np.full(count, family.trial)
     changes = at(trial)
@@ -171,3 +163,17 @@ def simulate(forward: Forward, hypothesis: Hypothesis, u, nu, family: Family):
     once = at(strengths) if np.any(far) else changes
     twice = at(2.0 * strengths)
     return [(2.0 * a - 0.5 * b) / strengths[:, None] for a, b in zip(once, twice, strict=True)], strengths
+
+
+def finite(forward: Forward, hypothesis: Hypothesis, u, nu, family: Family, strengths=None):
+    """For each run, the changes (K, M) of the whitened data when each direction takes its strength (1)."""
+    count = len(family.directions)
+    many_u, many_nu = np.repeat(u[None], count + 1, axis=0), np.repeat(nu[None], count + 1, axis=0)
+    strengths = np.append(np.ones(count) if strengths is None else strengths, 0.0)
+
+    def change(setup, index):
+        setup = hypothesis.change(many_u)(setup, index)
+        return family.change(setup, np.minimum(index, count - 1), strengths[index])
+
+    found = [value for value, _ in forward.sampled(hypothesis, many_u, many_nu, None, change=change)]
+    return [(v[:-1] - v[-1]) for v in found]

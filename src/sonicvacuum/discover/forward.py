@@ -260,7 +260,7 @@ class Forward:
         beads = setup.chain.beads
         wanted = {*gauges.contacts_needed(setup.sensors, beads), *scalars.contacts_wanted(self.experiment)}
         wanted = sorted(wanted)
-        history = simulate(setup.chain, wanted, batch.duration, batch.interval, threads=self.threads)
+        history = _simulated(setup.chain, wanted, batch, self.threads)
         self.simulations += setup.chain.lanes
         forces = {c: history.of(c) for c in wanted}
         if setup.sensors:
@@ -268,6 +268,24 @@ class Forward:
         else:
             read = np.zeros((setup.chain.lanes, 0, len(history.time)))
         return Seen(read, history, setup)
+
+
+def _simulated(chain, wanted, batch, threads):
+    """The history of a batch; chains whose motion does not stay finite have forces that are no numbers."""
+    try:
+        return simulate(chain, wanted, batch.duration, batch.interval, threads=threads)
+    except FloatingPointError:
+        if chain.lanes == 1:
+            rest = replace(chain, speed=chain.speed * 1e-3, actions=())
+            calm = simulate(rest, wanted, batch.duration, batch.interval)
+            return replace(calm, force=np.full_like(calm.force, np.nan))
+    half = chain.lanes // 2
+    parts = [
+        _simulated(chain.take(np.arange(*share)), wanted, batch, threads)
+        for share in ((0, half), (half, chain.lanes))
+    ]
+    force = np.concatenate([p.force for p in parts], axis=2)
+    return replace(parts[0], force=force, striker_speed=np.concatenate([p.striker_speed for p in parts]))
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sonicvacuum.discover import directions, screen, singles
+from sonicvacuum.discover import directions, screen, secants, singles
 from sonicvacuum.discover.evidence import Candidate, log_bayes
 from sonicvacuum.discover.forward import Forward
 from sonicvacuum.discover.hypothesis import Component, Hypothesis, is_law, variants
@@ -42,7 +42,9 @@ def search(forward: Forward, null: Fit, candidates: list[Candidate]) -> list[Pai
         scores = screen.screen(forward, first.fit, families)
         for second, k in scores.best().items():
             both = frozenset((first.effect, second))
-            expected = first.gain + float(np.square(scores.z[k]))
+            finite = secants.search(forward, first.fit, effect(second), setup, 1)
+            more = max([float(np.square(scores.z[k])), *(one.gain for one in finite)])
+            expected = first.gain + more
             if both not in asked or expected > asked[both][0]:
                 asked[both] = (expected, first, scores, second)
     ranked = sorted(asked.values(), key=lambda a: -a[0])[:REFITTED]
@@ -64,7 +66,7 @@ def _refit(forward, null: Fit, setup: Setup, first: Candidate, scores, second: s
         places = np.zeros((len(u), 1), dtype=int)
     places = np.column_stack([np.full(len(u), own), places])
     hypothesis = joined(first.fit.hypothesis, Component(added, free), setup)
-    one = fit(forward, hypothesis, u, nu, places, keep=5, iterations=ITERATIONS)
+    one = fit(forward, hypothesis, u, nu, places, keep=8, iterations=ITERATIONS)
     one = one if one.settled else polish(forward, one, ITERATIONS)
     if not np.isfinite(one.objective):
         return None

@@ -13,6 +13,8 @@ from sonicvacuum.effects import Effect, Parameter, Setup
 
 # Strength below which an effect counts as off, and the fraction of it at which slopes at off are taken.
 SMALL = 1e-3
+# A bound towards off bounds nothing: precise data see an effect that is weaker by as much.
+TOWARDS_OFF = 100.0
 
 
 @dataclass(frozen=True)
@@ -64,7 +66,8 @@ class Coordinate:
     def starts(self) -> np.ndarray:
         """Values of u at which a search may start, over the whole range."""
         if self.kind in ("log", "inverse"):
-            return np.linspace(self.low, self.high, 14)[1:-1]
+            weakest = self.low + (math.log(TOWARDS_OFF) if self.parameter.switches else 0.0)
+            return np.linspace(weakest, self.high, 14)[1:-1]
         if self.kind == "ratio":
             sizes = np.array([0.03, 0.1, 0.25, 0.45, 0.7, 1.0, 1.35, 1.75, 2.2, 2.8])
             return np.array([s for s in np.concatenate([-sizes, sizes]) if self.low < s < self.high])
@@ -81,14 +84,12 @@ def coordinate(parameter: Parameter, setup: Setup) -> Coordinate:
         return _shape(parameter)
     off = float(np.ravel(off)[0])
     if math.isinf(off):
-        return Coordinate(
-            parameter, "inverse", scale, off, math.log(scale / high), math.log(scale / low), False
-        )
-    if off == 0.0 and low >= 0.0 and high > 1.0 * off and parameter.name != "fraction":
-        least = low if low > 0.0 else SMALL * scale
-        return Coordinate(
-            parameter, "log", scale, off, math.log(least / scale), math.log(high / scale), False
-        )
+        weakest, strongest = math.log(scale / high / TOWARDS_OFF), math.log(scale / low)
+        return Coordinate(parameter, "inverse", scale, off, weakest, strongest, False)
+    if off == 0.0 and low >= 0.0 and parameter.name != "fraction":
+        least = low / TOWARDS_OFF if low > 0.0 else SMALL * scale
+        bounds = (math.log(least / scale), math.log(high / scale))
+        return Coordinate(parameter, "log", scale, off, *bounds, False)
     if off > 0.0 and low > 0.0 and parameter.prior.startswith("log"):
         return Coordinate(parameter, "ratio", off, off, math.log(low / off), math.log(high / off), True)
     bounds = ((low - off) / scale, (high - off) / scale)

@@ -14,6 +14,8 @@ from sonicvacuum.discover.refit import Fit, fit, polish
 # Of the largest score of the whole catalogue in pure noise.
 FALSE_ALARM = 0.01
 LEAST_LOG10_BAYES = 1.0
+# Of the alarm at the nominal model: with nothing to name, only a sure misfit is called unknown.
+NULL_ALARM = 1e-3
 # Candidates followed to their minimum after the first search.
 POLISHED = 4
 COARSE = 6
@@ -79,7 +81,7 @@ def investigate(experiment: Experiment, threads: int = 1) -> Investigation:
     alarms, tried = {}, []
     if best is None:
         alarms["none"] = unknown.alarm(forward, null)
-        named, final = (["unknown"] if alarms["none"].raised else []), null
+        named, final = (["unknown"] if alarms["none"].p < NULL_ALARM else []), null
         reasons = ["no single effect passes the threshold"]
         p = alarms["none"].p
     else:

@@ -83,12 +83,13 @@ class Screen:
         """(K,) estimated departures in typical ones."""
         return np.divide(self.z, self.length, out=np.zeros_like(self.z), where=self.length > 0.0)
 
-    def moved(self, k: int) -> tuple[np.ndarray, np.ndarray]:
+    def moved(self, k: int, strength: float | None = None) -> tuple[np.ndarray, np.ndarray]:
         """(p,) coordinates and (q,) nuisances of the model, as they follow when direction k takes its
         estimate.
         """
         gradient, hessian = self.normal.total()
-        pull = gradient[0] - self.cross.sum(axis=0)[:, k] * self.strength[k]
+        strength = self.strength[k] if strength is None else strength
+        pull = gradient[0] - self.cross.sum(axis=0)[:, k] * strength
         step = np.linalg.lstsq(hessian[0], pull, rcond=1e-12)[0]
         free = self.normal.free
         return self.fit.u + step[:free], self.fit.nu + step[free:]

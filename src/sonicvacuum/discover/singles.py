@@ -4,6 +4,7 @@ large.
 
 import numpy as np
 
+from sonicvacuum.discover import secants
 from sonicvacuum.discover.evidence import Candidate, log_bayes
 from sonicvacuum.discover.forward import Forward
 from sonicvacuum.discover.hypothesis import Component, Hypothesis, variants
@@ -17,6 +18,8 @@ NONLINEAR = 1500.0
 # Effects whose predicted gain is this far behind the best are not refitted while slopes can be trusted.
 HOPELESS = 30.0
 PLACES_TRIED = 5
+# Below this largest z² nothing can be named, and slopes suffice.
+CLEAR = 9.0
 ITERATIONS = 14
 
 
@@ -32,8 +35,10 @@ def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
     nonlinear = max(best.values(), default=0.0) > NONLINEAR
     enough = -np.inf if nonlinear else max(best.values(), default=0.0) - HOPELESS
     found = []
+    clear = max(best.values(), default=0.0) > CLEAR
     for effect in CATALOGUE:
-        if nonlinear or best.get(effect.id, 0.0) > max(enough, 0.5):
+        anywhere = clear and effect.places in secants.PLACES
+        if nonlinear or anywhere or best.get(effect.id, 0.0) > max(enough, 0.5):
             found.append(candidate(forward, null, scores, effect, setup, nonlinear))
     found = [c for c in found if c is not None]
     return sorted(found, key=lambda c: -c.log_bayes)
@@ -96,6 +101,9 @@ def place_weights(scores, effect, one):
 def starts(forward, null: Fit, scores: Screen, effect: Effect, free, nonlinear: bool):
     """Coordinates (L, p), places (L, 1) or None and nuisances (L, q) from which one effect is fitted."""
     rows = _from_screen(scores, effect, free)
+    if len(free) == 1 and float(np.square(scores.z).max()) > CLEAR:
+        found = secants.search(forward, null, effect, setup_of(forward))
+        rows += [([one.u], one.place, one.nu) for one in found]
     if nonlinear:
         rows += [(*row, np.zeros(forward.layout.size)) for row in _grid(scores, effect, free)]
     u = np.array([r[0] for r in rows]).reshape(len(rows), len(free))

@@ -21,8 +21,9 @@ from sonicvacuum.discover.forward import Forward
 from sonicvacuum.discover.hypothesis import FLEXIBLE, with_common_laws
 from sonicvacuum.discover.refit import Fit
 
-# The residual counts as explained while the alarm's p is above this.
-ALARM = 1e-3
+# The residual of a model counts as explained while the alarm's p is above this; `unknown` is then the
+# likelier.
+ALARM = 4e-3
 # Cosines between signatures that are resolved as different.
 _RANK = 1e-3
 _BINS = np.arange(-2.0, 9.0, 1.0)
