@@ -162,7 +162,10 @@ def simulate(forward: Forward, hypothesis: Hypothesis, u, nu, family: Family):
     strengths = np.where(far, strengths, trial)
     once = at(strengths) if np.any(far) else changes
     twice = at(2.0 * strengths)
-    return [(2.0 * a - 0.5 * b) / strengths[:, None] for a, b in zip(once, twice, strict=True)], strengths
+    slopes = [(2.0 * a - 0.5 * b) / strengths[:, None] for a, b in zip(once, twice, strict=True)]
+    for run, slope in enumerate(slopes):
+        slope[:, forward.counts(run)] = 0.0
+    return slopes, strengths
 
 
 def finite(forward: Forward, hypothesis: Hypothesis, u, nu, family: Family, strengths=None):

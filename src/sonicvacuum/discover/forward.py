@@ -93,6 +93,12 @@ class Forward:
     def _whitened(self):
         return [self.experiment.whitened(run) for run in range(len(self.experiment.runs))]
 
+    def counts(self, run: int) -> np.ndarray:
+        """Places of the data of a run that are whole numbers: they jump, and have no slopes."""
+        scalars_ = self.experiment.runs[run].scalars
+        first = self.experiment.size(run) - len(scalars_)
+        return np.array([first + k for k, s in enumerate(scalars_) if s.quantity == "pulse_count"], dtype=int)
+
     @cached_property
     def nuisance_sigma(self) -> np.ndarray:
         """(q,) standard errors: relative for speeds, gains and modulus, s for triggers; 0: known exactly."""
@@ -166,6 +172,8 @@ class Forward:
             trigger = -rate[:, None] * sigma[self.layout.trigger(run)]
             gains = self._gain_columns(run, base[:, 0])
             self._like_nuisances(hypothesis, run, places, slopes, young, speed, gains)
+            for columns in (slopes, young, speed):
+                columns[..., self.counts(run)] = 0.0
             result.append(np.concatenate([base, slopes, young, speed, trigger, gains], axis=1))
         return result
 

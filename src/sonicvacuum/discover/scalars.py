@@ -62,6 +62,14 @@ def predict(experiment, run: int, lanes: slice, seen, signals: np.ndarray) -> np
 
 
 def _value(experiment, scalar, seen, lane, passage):
+    """One scalar of one lane; no number where its motion does not stay finite."""
+    try:
+        return _measured(experiment, scalar, seen, lane, passage)
+    except (FloatingPointError, ValueError):
+        return np.nan
+
+
+def _measured(experiment, scalar, seen, lane, passage):
     history = seen.history
     if scalar.quantity == "contact_duration":
         return contact_duration(history.time, history.of(0)[:, lane]).value

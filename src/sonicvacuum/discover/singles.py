@@ -32,7 +32,8 @@ def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
     """Candidates, best first."""
     setup = setup_of(forward)
     best = {e: float(np.square(scores.z[k])) for e, k in scores.best().items()}
-    nonlinear = max(best.values(), default=0.0) > NONLINEAR
+    coarse_data = not any(r.has_signals for r in forward.experiment.runs)
+    nonlinear = max(best.values(), default=0.0) > (CLEAR if coarse_data else NONLINEAR)
     enough = -np.inf if nonlinear else max(best.values(), default=0.0) - HOPELESS
     found = []
     clear = max(best.values(), default=0.0) > CLEAR
