@@ -130,7 +130,8 @@ def test_a_table_with_other_columns_is_refused(tmp_path):
 def test_publishing_replaces_the_summary_and_nothing_else(tmp_path):
     ledger, readme, reference = (tmp_path / name for name in ("l.csv", "R.md", "ref.csv"))
     pd.DataFrame(LEDGER, columns=tables.LEDGER).to_csv(ledger, index=False)
-    readme.write_text(f"before\n{publish.BEGIN}\nstale\n{publish.END}\nafter\n")
+    begin, end = publish.BEGIN.format("results"), publish.END.format("results")
+    readme.write_text(f"before\n{begin}\nstale\n{end}\nafter\n")
     publish.publish(ledger, readme, reference)
     text = readme.read_text()
     assert text.startswith("before\n") and text.endswith("\nafter\n") and "stale" not in text
@@ -142,14 +143,14 @@ def test_publishing_replaces_the_summary_and_nothing_else(tmp_path):
 
 def test_a_readme_without_markers_is_refused():
     with pytest.raises(InputError, match="markers are missing"):
-        publish.with_summary("nothing here", "text")
+        publish.with_part("nothing here", "results", "text")
 
 
 def test_the_readme_in_git_shows_the_ledger_in_git(pytestconfig):
     root = pytestconfig.rootpath
     ledger = tables.read(root / "workflow/resources/reference/ledger.csv", tables.LEDGER)
     readme = (root / "README.md").read_text()
-    assert publish.with_summary(readme, publish.summary(ledger)) == readme
+    assert publish.with_part(readme, "results", publish.summary(ledger)) == readme
 
 
 def test_the_headlines_are_claims(pytestconfig):

@@ -114,11 +114,13 @@ rule publish:
         readme="README.md",
         reference="workflow/resources/reference/ledger.csv",
         guide="figures/README.md",
+        # Made by `make bench` only, on purpose.
+        benchmark="--benchmark results/bench.md" if Path("results/bench.md").exists() else "",
     message:
         "Keeping the ledger in git and in the README"
     shell:
         "sonicvacuum publish --ledger {input.ledger} --claims {input.claims} --readme {params.readme}"
-        " --guide {params.guide} --reference {params.reference} 2> {log}"
+        " --guide {params.guide} --reference {params.reference} {params.benchmark} 2> {log}"
 
 
 # Figure tables and ledger made anew in clean folders, compared with those in git.

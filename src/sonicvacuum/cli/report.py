@@ -42,12 +42,13 @@ def report(ledger, assumptions, metrics, claims, figures, cards, locks, out):
 @click.option(
     "--reference", required=True, type=click.Path(dir_okay=False), help="Where the ledger is kept in git."
 )
-def publish(ledger, claims, readme, guide, reference):
+@click.option("--benchmark", type=_FILE, help="Table of the benchmark (Markdown), where one was made.")
+def publish(ledger, claims, readme, guide, reference, benchmark):
     """Keep the ledger as the reference of later checks; renew the README's table and the figures' guide."""
     from sonicvacuum import figures
     from sonicvacuum.report.publish import publish as write
 
-    write(ledger, readme, reference)
+    write(ledger, readme, reference, benchmark)
     with replacing(guide) as stream:
         stream.write(figures.readme(claims))
 

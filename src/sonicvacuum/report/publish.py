@@ -7,8 +7,8 @@ import pandas as pd
 from sonicvacuum.files import InputError, read_text, replacing
 from sonicvacuum.report import tables
 
-BEGIN = "<!-- results: made by `snakemake publish`, do not edit -->"
-END = "<!-- end of results -->"
+BEGIN = "<!-- {}: made by `snakemake publish`, do not edit -->"
+END = "<!-- end of {} -->"
 # The rows of the ledger that a reader looks for first.
 HEADLINES = (
     "fig3a-speed",
@@ -45,22 +45,25 @@ def _row(claim, row):
     return f"| {claim} | {row['quantity']}{unit} | " + " | ".join(numbers) + f" | {row['verdict']} |"
 
 
-def with_summary(readme: str, text: str) -> str:
-    """The README with the text between its two markers replaced.
+def with_part(readme: str, name: str, text: str) -> str:
+    """The README with the text between the two markers of a part replaced.
 
     Raises:
         InputError: where the markers are missing.
     """
-    if BEGIN not in readme or END not in readme:
-        raise InputError(f"README.md: the markers are missing; put {BEGIN} and {END} around the result table")
-    pattern = re.compile(re.escape(BEGIN) + ".*?" + re.escape(END), re.DOTALL)
-    return pattern.sub(lambda _: f"{BEGIN}\n{text}\n{END}", readme)
+    begin, end = BEGIN.format(name), END.format(name)
+    if begin not in readme or end not in readme:
+        raise InputError(f"README.md: the markers are missing; put {begin} and {end} around its {name}")
+    pattern = re.compile(re.escape(begin) + ".*?" + re.escape(end), re.DOTALL)
+    return pattern.sub(lambda _: f"{begin}\n{text.strip()}\n{end}", readme)
 
 
-def publish(ledger_path, readme_path, reference_path) -> None:
-    """Copy the ledger to its place in git and renew the README's summary."""
+def publish(ledger_path, readme_path, reference_path, benchmark_path=None) -> None:
+    """Copy the ledger to its place in git; renew the README's summary, and its benchmark if one is given."""
     ledger = tables.read(ledger_path, tables.LEDGER)
-    renewed = with_summary(read_text(readme_path), summary(ledger))
+    renewed = with_part(read_text(readme_path), "results", summary(ledger))
+    if benchmark_path is not None:
+        renewed = with_part(renewed, "benchmark", read_text(benchmark_path))
     with replacing(reference_path) as stream:
         stream.write(read_text(ledger_path))
     with replacing(readme_path) as stream:
