@@ -241,13 +241,12 @@ class Forward:
         measured = scalars.predict(e, run, lanes_of, seen, signals)
         lanes = len(nu)
         empty = np.zeros((lanes, len(e.gauges), 0))
-        value, rate = empty, empty
+        value, rate = empty, empty[:: rate_of or lanes]
         if data.has_signals:
             shift = nu[:, layout.trigger(run)] * self.nuisance_sigma[layout.trigger(run)]
-            value, rate = gauges.shifted(signals, batch.interval, data.time, shift)
+            value, rate = gauges.shifted(signals, batch.interval, data.time, shift, rate_of or lanes)
         flat = e.whiten(run, value, measured)
-        kept = rate[:: rate_of or lanes]
-        return flat, e.whiten(run, kept, np.zeros((len(kept), measured.shape[1])))
+        return flat, e.whiten(run, rate, np.zeros((len(rate), measured.shape[1])))
 
     def nominal(self, batch, nu) -> Setup:
         """Setup of all lanes of a batch (lane-major, run-minor) with the nuisances in force."""

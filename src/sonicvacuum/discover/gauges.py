@@ -47,19 +47,24 @@ def lagrange(fraction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
     Lagrange polynomials; exact for polynomials of degree 5.
     """
-    x = np.asarray(fraction, dtype=float)[:, None]
-    weights, slopes = np.empty((len(x), POINTS)), np.empty((len(x), POINTS))
+    powers = np.vander(np.asarray(fraction, dtype=float), POINTS, increasing=True)
+    return powers @ _VALUE, powers @ _SLOPE
+
+
+def _coefficients():
+    """(POINTS, POINTS) coefficients, by ascending power, of each neighbour's polynomial and its derivative."""
+    value, slope = np.zeros((2, POINTS, POINTS))
     for k, node in enumerate(_OFFSETS):
         others = np.delete(_OFFSETS, k)
-        parts = (x - others) / (node - others)
-        weights[:, k] = parts.prod(axis=1)
-        slopes[:, k] = sum(
-            np.delete(parts, j, axis=1).prod(axis=1) / (node - other) for j, other in enumerate(others)
-        )
-    return weights, slopes
+        one = np.polynomial.Polynomial.fromroots(others) / np.prod(node - others)
+        value[:, k], slope[:-1, k] = one.coef, one.deriv().coef
+    return value, slope
 
 
-def shifted(simulated: np.ndarray, interval: float, time: np.ndarray, shift: np.ndarray):
+_VALUE, _SLOPE = _coefficients()
+
+
+def shifted(simulated: np.ndarray, interval: float, time: np.ndarray, shift: np.ndarray, rate_of: int = 1):
     """Readings at recorded times, and their time derivative.
 
     Args:
@@ -67,28 +72,35 @@ def shifted(simulated: np.ndarray, interval: float, time: np.ndarray, shift: np.
         interval: between simulated samples in s.
         time: (T,) recorded times in s, their interval a multiple of the simulated one.
         shift: (L,) trigger shift in s; recorded time = true time + shift.
+        rate_of: the derivative of every so many lanes, from the first on.
 
     Returns:
-        Two (L, S, T) arrays, N and N/s.
+        Arrays (L, S, T) in N and (L / rate_of, S, T) in N/s.
     """
     stride = round((time[-1] - time[0]) / (len(time) - 1) / interval)
     place = (time[0] - shift) / interval
     whole = np.floor(place).astype(int)
     weights, slopes = lagrange(place - whole)
-    value = np.zeros((*simulated.shape[:2], len(time)))
-    rate = np.zeros_like(value)
-    for lane, first in enumerate(whole):
-        window = _window(simulated[lane], first + _OFFSETS[0], stride * (len(time) - 1) + POINTS)
+    reach = stride * (len(time) - 1) + 1
+    lanes, rated = np.arange(len(shift)), np.arange(0, len(shift), rate_of)
+    value = np.zeros((len(lanes), simulated.shape[1], len(time)))
+    rate = np.zeros((len(rated), *value.shape[1:]))
+    for first in np.unique(whole):
+        at, of = lanes[whole == first], np.flatnonzero(whole[rated] == first)
+        window = _window(simulated[at], first + _OFFSETS[0], reach + POINTS - 1)
+        rates = np.isin(at, rated)
         for k in range(POINTS):
-            part = window[:, k : k + stride * (len(time) - 1) + 1 : stride]
-            value[lane] += weights[lane, k] * part
-            rate[lane] += slopes[lane, k] * part
+            part = window[..., k : k + reach : stride]
+            value[at] += weights[at, k, None, None] * part
+            rate[of] += slopes[rated[of], k, None, None] * part[rates]
     return value, rate / interval
 
 
-def _window(signal, first, count):
-    """`count` samples of (S, T') from `first`, zero before the first one, the last one held after the end."""
+def _window(signals, first, count):
+    """`count` samples of (L, S, T') from `first`, zero before the first one, the last one held after the
+    end.
+    """
     index = np.arange(first, first + count)
-    part = signal[:, np.clip(index, 0, signal.shape[1] - 1)]
-    part[:, index < 0] = 0.0
+    part = signals[..., np.clip(index, 0, signals.shape[-1] - 1)]
+    part[..., index < 0] = 0.0
     return part

@@ -2,8 +2,9 @@
 
 Numba's own cache looks at the file of one function only: an edit of any function that it calls goes
 unseen, and processes that write together may mix their files up. Here each compiled signature is one
-file, named by a digest of the signature and the processor, in a folder named by a digest of the whole
-package's source and of the versions of all that takes part. Nothing is ever overwritten with something else.
+file, named by a digest of the signature and the processor, in a folder named by a digest of the source of
+`sonicvacuum.physics` and of the versions of all that takes part. Force laws from elsewhere (effects) stand in
+the signature with a digest of their own formulas. Nothing is ever overwritten with something else.
 
 The folder lies in the user's cache folder, or in $SONICVACUUM_CACHE_DIR. Where it cannot be written,
 code is compiled afresh by each process.
@@ -25,7 +26,7 @@ import numpy as np
 from numba.core.caching import CompileResultCacheImpl, _Cache
 from numba.core.serialize import dumps
 
-_PACKAGE = Path(__file__).resolve().parents[1]
+_PACKAGE = Path(__file__).resolve().parent
 _KEPT_FOLDERS = 8
 # Longer than any compilation: a process that still holds the lock then is taken for dead.
 _PATIENCE = 60.0
