@@ -52,7 +52,7 @@ def lagrange(fraction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _coefficients():
-    """(POINTS, POINTS) coefficients, by ascending power, of each neighbour's polynomial and its derivative."""
+    """(POINTS, POINTS) coefficients, by ascending power, of each neighbour's polynomial and its slope."""
     value, slope = np.zeros((2, POINTS, POINTS))
     for k, node in enumerate(_OFFSETS):
         others = np.delete(_OFFSETS, k)
