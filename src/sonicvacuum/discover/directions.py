@@ -145,24 +145,31 @@ def like_nuisance(forward: Forward, family: Family, base: list[np.ndarray], free
     return None
 
 
-def simulate(forward: Forward, hypothesis: Hypothesis, u, nu, family: Family):
+def simulate(forward: Forward, hypothesis: Hypothesis, u, nu, family: Family, rough: bool = False):
     """For each run, the slopes (K, M) of the whitened data with the strengths of a family; (K,) strengths
     used.
+
+    `rough`: from one difference instead of two, enough for a ranking. Strengths that served a family before
+    are where it starts.
     """
     count = len(family.directions)
 
     def at(strengths):
         return finite(forward, hypothesis, u, nu, family, strengths)
 
-    trial = np.full(count, family.trial)
+    trial = forward.strengths.get(family.directions, np.full(count, family.trial))
     changes = at(trial)
     size = np.sqrt(sum(np.square(c).sum(axis=1) for c in changes))
     strengths = np.clip(trial * AIM / np.maximum(size, 1e-9), family.least, STRONGEST)
     far = (strengths < 0.3 * trial) | (strengths > 3.0 * trial)
     strengths = np.where(far, strengths, trial)
+    forward.strengths[family.directions] = strengths
     once = at(strengths) if np.any(far) else changes
-    twice = at(2.0 * strengths)
-    slopes = [(2.0 * a - 0.5 * b) / strengths[:, None] for a, b in zip(once, twice, strict=True)]
+    if rough:
+        slopes = [a / strengths[:, None] for a in once]
+    else:
+        twice = at(2.0 * strengths)
+        slopes = [(2.0 * a - 0.5 * b) / strengths[:, None] for a, b in zip(once, twice, strict=True)]
     for run, slope in enumerate(slopes):
         slope[:, forward.counts(run)] = 0.0
     return slopes, strengths

@@ -60,11 +60,17 @@ class Layout:
 
 
 class Forward:
-    """Predictions of an experiment; counts the chains it simulates in `simulations`."""
+    """Predictions of an experiment.
+
+    Attributes:
+        simulations: chains simulated so far.
+        strengths: directions of a family → strengths at which its slopes were taken last.
+    """
 
     def __init__(self, experiment: Experiment, threads: int = 1):
         self.experiment, self.threads, self.simulations = experiment, threads, 0
         self.layout = Layout(len(experiment.runs), len(experiment.gauges))
+        self.strengths: dict[tuple, np.ndarray] = {}
         self._coarse = None
 
     @property

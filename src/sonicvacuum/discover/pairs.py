@@ -1,8 +1,9 @@
-"""Two effects together: which second effect the residual of each good single fit asks for, then both fitted
-jointly.
+"""Two effects together: which pairs the nominal screen sees, which second effect the residual of each good
+single fit asks for, then both fitted jointly.
 
-The beam is wide (several singles, all effects beside each) because taking the best single first and adding
-to it often starts from the wrong one.
+Taking the best single first and adding to it often starts from the wrong one, so that several singles are
+followed, and all pairs of the nominal screen, whose joint gains are algebra. Once a pair is found, pairs that
+share one effect with it are tried as well.
 """
 
 from dataclasses import dataclass
@@ -16,9 +17,15 @@ from sonicvacuum.discover.hypothesis import Component, Hypothesis, is_law, varia
 from sonicvacuum.discover.refit import Fit, fit, polish
 from sonicvacuum.effects import Setup, effect
 
-BEAM = 5
-REFITTED = 6
+# Singles that pairs start from.
+BEAM = 4
+# Pairs refitted from the nominal screen, from single fits, and in each round of exchanges.
+LINEAR, BESIDE, EXCHANGED, ROUNDS = 3, 3, 3, 2
+# Pairs whose predicted gain is this far behind the best are not tried as exchanges.
+BEHIND = 30.0
 ITERATIONS = 12
+# Signatures closer to parallel than this span no plane.
+_PARALLEL = 1e-3
 
 
 @dataclass(frozen=True)
@@ -31,48 +38,147 @@ class Pair:
     log_bayes: float
 
 
-def search(forward: Forward, null: Fit, candidates: list[Candidate]) -> list[Pair]:
-    """The best pairs, best first."""
+@dataclass(frozen=True)
+class Start:
+    """Where the joint fit of two effects starts, and the Δχ² that it should gain.
+
+    `u` (L, p), `nu` (L, q) and `places` (L, 2) are L starts.
+    """
+
+    gain: float
+    hypothesis: Hypothesis
+    u: np.ndarray
+    nu: np.ndarray
+    places: np.ndarray
+
+    @property
+    def effects(self) -> frozenset:
+        """Ids of both."""
+        return frozenset(self.hypothesis.ids)
+
+
+def search(forward: Forward, null: Fit, scores: screen.Screen, candidates: list[Candidate]) -> list[Pair]:
+    """The best pairs, best first; `scores` is the screen of the nominal model, `candidates` the singles."""
     setup = singles.setup_of(forward)
-    asked: dict[frozenset, tuple[float, Candidate, screen.Screen, str]] = {}
-    for first in candidates[:BEAM]:
-        if first.gain <= 0.0:
+    seen = linear(scores, setup)
+    asked = [s for c in candidates[:BEAM] if c.gain > 0.0 for s in beside(forward, null, c.fit, setup)]
+    found: dict[frozenset, Pair] = {}
+    _refit(forward, null, setup, _best(asked, found, BESIDE), found)
+    _refit(forward, null, setup, _best(seen, found, LINEAR), found)
+    for _ in range(ROUNDS):
+        best = max(found.values(), key=lambda p: p.log_bayes, default=None)
+        if best is None:
+            break
+        near = [s for part in (seen, asked) for s in _near(part, best)]
+        _refit(forward, null, setup, _best(near, found, EXCHANGED), found)
+        if max(found.values(), key=lambda p: p.log_bayes) is best:
+            break
+    return sorted(found.values(), key=lambda p: -p.log_bayes)
+
+
+def _near(starts, best: Pair):
+    """Starts of pairs that share an effect with the best pair and are not far behind the best."""
+    least = max((s.gain for s in starts), default=0.0) - BEHIND
+    return [s for s in starts if s.gain > least and len(s.effects & set(best.effects)) == 1]
+
+
+def _best(starts, found, most):
+    """The most promising start of each pair that has not been fitted, `most` of them."""
+    best: dict[frozenset, Start] = {}
+    for s in sorted(starts, key=lambda s: -s.gain):
+        if s.effects not in found:
+            best.setdefault(s.effects, s)
+    return list(best.values())[:most]
+
+
+def linear(scores: screen.Screen, setup: Setup, most: int = 12) -> list[Start]:
+    """Pairs by what they should gain if all effects acted in proportion, best first."""
+    at = np.flatnonzero(scores.length > 0.0)
+    gain, strength = _planes(scores, at)
+    names = np.array([scores.directions[k].effect for k in at])
+    best: dict[tuple[str, str], tuple[int, int]] = {}
+    for i, j in zip(*np.nonzero(np.triu(gain > 0.0, 1)), strict=True):
+        key = (str(names[i]), str(names[j]))
+        if key not in best or gain[i, j] > gain[best[key]]:
+            best[key] = (i, j)
+    ranked = sorted(best.values(), key=lambda ij: -gain[ij])[:most]
+    return [
+        _from_plane(scores, setup, (at[i], at[j]), (strength[i, j], strength[j, i]), gain[i, j])
+        for i, j in ranked
+    ]
+
+
+def _planes(scores, at):
+    """(K, K) joint gain of two directions, −∞ where they span no plane or one would have the wrong sign; and
+    the first one's estimate beside the second.
+    """
+    length = scores.length[at]
+    z, rho = scores.projected[0][at] / length, scores.correlation[np.ix_(at, at)]
+    effects = np.array([scores.directions[k].effect for k in at])
+    one_sided = np.array([not scores.directions[k].two_sided for k in at])
+    plane = 1.0 - np.square(rho)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        first = (z[:, None] - rho * z[None, :]) / plane
+        gain = z[:, None] * first + z[None, :] * first.T
+    wrong = (plane < _PARALLEL) | (effects[:, None] == effects[None, :])
+    wrong |= (one_sided[:, None] & (first < 0.0)) | (one_sided[None, :] & (first.T < 0.0))
+    return np.where(wrong, -np.inf, gain), first / length[:, None]
+
+
+def _from_plane(scores, setup, ks, strengths, gain):
+    """The start at the estimates of two directions."""
+    components, u, places = [], [], []
+    for k, strength in zip(ks, strengths, strict=True):
+        d = scores.directions[k]
+        free = _variant(d, setup)
+        components.append(Component(effect(d.effect), free))
+        u += [
+            float(np.clip(x, c.low + 1e-9, c.high - 1e-9))
+            for c, x in zip(free, singles.coordinates(free, d, strength), strict=True)
+        ]
+        places.append(d.place or 0)
+    nu = scores.moved(list(ks), np.array(strengths))[1]
+    hypothesis = joined(Hypothesis((components[0],)), components[1], setup)
+    return Start(float(gain), hypothesis, np.array([u]), nu[None], np.array([places]))
+
+
+def _variant(direction, setup):
+    """The free parameters of an effect whose strength is that of a direction."""
+    return next(
+        v for v in variants(effect(direction.effect), setup) if v[0].parameter.name == direction.strength
+    )
+
+
+def beside(forward: Forward, null: Fit, first: Fit, setup: Setup) -> list[Start]:
+    """Every effect beside a first one as fitted."""
+    scores = screen.screen(forward, first, directions.catalogue(setup, first.hypothesis.ids), rough=True)
+    gained = null.objective - first.objective
+    own = first.hypothesis.components[0].place or 0
+    result = []
+    for second, k in scores.best().items():
+        finite = secants.search(forward, first, effect(second), setup, 2, sparse=True)
+        more = max([float(np.square(scores.z[k])), *(one.gain for one in finite)])
+        free = _variant(scores.directions[k], setup)
+        u, places, nu = singles.starts(forward, first, scores, effect(second), free, False, finite)
+        if not len(u):
             continue
-        families = directions.catalogue(setup, first.fit.hypothesis.ids)
-        scores = screen.screen(forward, first.fit, families)
-        for second, k in scores.best().items():
-            both = frozenset((first.effect, second))
-            finite = secants.search(forward, first.fit, effect(second), setup, 1)
-            more = max([float(np.square(scores.z[k])), *(one.gain for one in finite)])
-            expected = first.gain + more
-            if both not in asked or expected > asked[both][0]:
-                asked[both] = (expected, first, scores, second)
-    ranked = sorted(asked.values(), key=lambda a: -a[0])[:REFITTED]
-    found = [p for a in ranked if (p := _refit(forward, null, setup, *a[1:]))]
-    return sorted(found, key=lambda p: -p.log_bayes)
+        u = np.column_stack([np.repeat(first.u[None], len(u), axis=0), u])
+        places = np.zeros((len(u), 1), dtype=int) if places is None else places
+        places = np.column_stack([np.full(len(u), own), places])
+        hypothesis = joined(first.hypothesis, Component(effect(second), free), setup)
+        result.append(Start(gained + more, hypothesis, u, nu, places))
+    return result
 
 
-def _refit(forward, null: Fit, setup: Setup, first: Candidate, scores, second: str):
-    """Both effects fitted jointly, from where the single fit and its screen point."""
-    added = effect(second)
-    best = scores.directions[scores.best()[second]].strength
-    free = next(v for v in variants(added, setup) if v[0].parameter.name == best)
-    u, places, nu = singles.starts(forward, first.fit, scores, added, free, False)
-    if not len(u):
-        return None
-    u = np.column_stack([np.repeat(first.fit.u[None], len(u), axis=0), u])
-    own = first.fit.hypothesis.components[0].place or 0
-    if places is None:
-        places = np.zeros((len(u), 1), dtype=int)
-    places = np.column_stack([np.full(len(u), own), places])
-    hypothesis = joined(first.fit.hypothesis, Component(added, free), setup)
-    one = fit(forward, hypothesis, u, nu, places, keep=8, iterations=ITERATIONS)
-    one = one if one.settled else polish(forward, one, ITERATIONS)
-    if not np.isfinite(one.objective):
-        return None
-    gain = null.objective - one.objective
-    order = (first.effect, second) if first.gain > 0.0 else (second, first.effect)
-    return Pair(order, one, gain, log_bayes(one, gain) - _places(scores, first, added, setup))
+def _refit(forward, null: Fit, setup: Setup, starts: list[Start], found: dict[frozenset, Pair]):
+    """Fit pairs and add them to `found`."""
+    for s in starts:
+        one = fit(forward, s.hypothesis, s.u, s.nu, s.places, keep=3, iterations=ITERATIONS)
+        one = one if one.settled else polish(forward, one, ITERATIONS)
+        if np.isfinite(one.objective):
+            gain = null.objective - one.objective
+            names = s.hypothesis.ids
+            found[s.effects] = Pair(names, one, gain, log_bayes(one, gain) - _places(names, setup))
 
 
 def joined(hypothesis: Hypothesis, component: Component, setup: Setup) -> Hypothesis:
@@ -82,7 +188,7 @@ def joined(hypothesis: Hypothesis, component: Component, setup: Setup) -> Hypoth
     return Hypothesis(more.components, hypothesis.common or laws)
 
 
-def _places(scores, first, added, setup):
+def _places(names, setup):
     """Log of the number of places that both effects could have had."""
-    counts = [len(e.candidates(setup)) for e in (effect(first.effect), added) if e.places]
+    counts = [len(e.candidates(setup)) for e in map(effect, names) if e.places]
     return float(sum(np.log(max(1, c)) for c in counts))

@@ -85,7 +85,7 @@ def investigate(experiment: Experiment, threads: int = 1) -> Investigation:
         reasons = ["no single effect passes the threshold"]
         p = alarms["none"].p
     else:
-        named, final, alarms, tried, reasons = _decide(forward, null, best, found, setup)
+        named, final, alarms, tried, reasons = _decide(forward, null, best, found, setup, scores)
         p = alarms["single"].p
     odds = evidence.probabilities(found, p)
     return Investigation(forward, null, scores, threshold, found, odds, alarms, tried, named, final, reasons)
@@ -109,7 +109,7 @@ def _polished(forward, null, found):
     return sorted(result, key=lambda c: -c.log_bayes)
 
 
-def _decide(forward, null, best: Candidate, found, setup):
+def _decide(forward, null, best: Candidate, found, setup, nominal_scores):
     """Name the best single, a pair, or unknown."""
     scores = screen.screen(forward, best.fit, directions.catalogue(setup, (best.effect,)))
     alarms = {"single": unknown.alarm(forward, best.fit, scores)}
@@ -118,7 +118,7 @@ def _decide(forward, null, best: Candidate, found, setup):
             return [best.effect], best.fit, alarms, [], [f"{best.effect} leaves nothing significant"]
         return [], null, alarms, [], [f"{best.effect} does not predict unseen runs better"]
     needed = scores.threshold(FALSE_ALARM)
-    tried = pairs.search(forward, null, found)
+    tried = pairs.search(forward, null, nominal_scores, found)
     for pair in tried[:2]:
         alarm = unknown.alarm(forward, pair.fit)
         alarms.setdefault("pair", alarm)
@@ -127,4 +127,4 @@ def _decide(forward, null, best: Candidate, found, setup):
             alarms["pair"] = alarm
             return list(pair.effects), pair.fit, alarms, tried, ["a pair leaves nothing significant"]
     reason = f"misfit left in {alarms['single'].group}: no effect nor pair explains it"
-    return ["unknown"], best.fit, alarms, tried, [reason]
+    return ["unknown"], null, alarms, tried, [reason]

@@ -21,7 +21,7 @@ from sonicvacuum.discover.refit import Fit
 
 # Signatures that keep less than this of their length after projection are left out.
 RESOLVED = 1e-7
-NULLS = 20000
+NULLS = 6000
 SEED = 20061
 
 
@@ -83,13 +83,14 @@ class Screen:
         """(K,) estimated departures in typical ones."""
         return np.divide(self.z, self.length, out=np.zeros_like(self.z), where=self.length > 0.0)
 
-    def moved(self, k: int, strength: float | None = None) -> tuple[np.ndarray, np.ndarray]:
+    def moved(self, k, strength=None) -> tuple[np.ndarray, np.ndarray]:
         """(p,) coordinates and (q,) nuisances of the model, as they follow when direction k takes its
-        estimate.
+        estimate, or the directions k the strengths given.
         """
         gradient, hessian = self.normal.total()
         strength = self.strength[k] if strength is None else strength
-        pull = gradient[0] - self.cross.sum(axis=0)[:, k] * strength
+        cross = self.cross.sum(axis=0)[:, np.atleast_1d(k)]
+        pull = gradient[0] - cross @ np.atleast_1d(strength)
         step = np.linalg.lstsq(hessian[0], pull, rcond=1e-12)[0]
         free = self.normal.free
         return self.fit.u + step[:free], self.fit.nu + step[free:]
@@ -112,13 +113,13 @@ class Screen:
         return result
 
 
-def screen(forward: Forward, fit: Fit, families: list[ways.Family]) -> Screen:
-    """Scores of families of directions at a fitted model."""
-    base = forward.columns(fit.hypothesis, fit.u[None], fit.nu[None], precise=True)
+def screen(forward: Forward, fit: Fit, families: list[ways.Family], rough: bool = False) -> Screen:
+    """Scores of families of directions at a fitted model; `rough` ones take half the simulations."""
+    base = forward.columns(fit.hypothesis, fit.u[None], fit.nu[None], precise=not rough)
     parts = []
     for family in families:
         alike = ways.like_nuisance(forward, family, base, fit.normal.free)
-        parts.append(alike or ways.simulate(forward, fit.hypothesis, fit.u, fit.nu, family)[0])
+        parts.append(alike or ways.simulate(forward, fit.hypothesis, fit.u, fit.nu, family, rough)[0])
     slopes = [np.concatenate([p[run] for p in parts]) for run in range(len(base))]
     directions = tuple(d for f in families for d in f.directions)
     return from_columns(forward, fit, directions, base, slopes)

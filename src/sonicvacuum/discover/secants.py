@@ -34,15 +34,18 @@ class Secant:
     nu: np.ndarray
 
 
-def search(forward: Forward, fit: Fit, effect: Effect, setup: Setup, most: int = 5) -> list[Secant]:
+def search(
+    forward: Forward, fit: Fit, effect: Effect, setup: Setup, most: int = 5, sparse: bool = False
+) -> list[Secant]:
     """The most promising trials of an effect beside a fitted model, best first; none for effects without
-    bead.
+    bead. `sparse`: every other strength.
     """
     places = effect.candidates(setup) if effect.places in PLACES else ()
     if not places:
         return []
     c = coordinate(next(p for p in effect.parameters if p.switches), setup)
-    sizes = np.array([*RATIOS, *(-r for r in RATIOS)]) if c.two_sided else np.log(STRENGTHS)
+    ratios, strengths = RATIOS[sparse :: 1 + sparse], STRENGTHS[sparse :: 1 + sparse]
+    sizes = np.array([*ratios, *(-r for r in ratios)]) if c.two_sided else np.log(strengths)
     trials = [(place, float(u)) for place in places for u in sizes if c.low < u < c.high]
     seen = _screened(forward, fit, effect, c, trials)
     gain = 2.0 * seen.projected[0] - np.diag(seen.projected[1])

@@ -133,24 +133,24 @@ def write(result: Result, folder: Path) -> None:
 
 
 def candidates(result: Result):
-    """Header and rows: singles, then pairs."""
-    header = ["effects", "delta_chi2", "log10_bayes", "probability", "parameters", "flags"]
+    """Header and rows: singles, then pairs.
+
+    `cosine` is that between the residual of the nominal model and the effect's signature (singles).
+    """
+    header = ["effects", "delta_chi2", "log10_bayes", "probability", "parameters", "flags", "cosine"]
+    found, nan = result.found, math.nan
+    best, size = found.scores.best(), math.sqrt(max(float(found.null.normal.chi2.sum()), 1e-300))
     rows = []
-    for c in result.found.candidates:
-        p = result.verdict.probabilities.get(c.effect, math.nan)
-        rows.append((c.effect, c.gain, c.log_bayes / math.log(10.0), p, _values(c.fit), " ".join(c.flags)))
-    for pair in result.found.pairs:
-        rows.append(
-            (
-                "+".join(pair.effects),
-                pair.gain,
-                pair.log_bayes / math.log(10.0),
-                math.nan,
-                _values(pair.fit),
-                "",
-            )
-        )
+    for c in found.candidates:
+        p = result.verdict.probabilities.get(c.effect, nan)
+        cosine = abs(float(found.scores.z[best[c.effect]])) / size if c.effect in best else nan
+        rows.append((c.effect, *_evidence(c), p, _values(c.fit), " ".join(c.flags), cosine))
+    rows += [("+".join(p.effects), *_evidence(p), nan, _values(p.fit), "", nan) for p in found.pairs]
     return header, rows
+
+
+def _evidence(one):
+    return one.gain, one.log_bayes / math.log(10.0)
 
 
 def _values(fit):

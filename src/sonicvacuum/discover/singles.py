@@ -99,12 +99,15 @@ def place_weights(scores, effect, one):
     return tuple((scores.directions[k].place, float(w)) for k, w in zip(at, weights, strict=True) if w > 0.01)
 
 
-def starts(forward, null: Fit, scores: Screen, effect: Effect, free, nonlinear: bool):
-    """Coordinates (L, p), places (L, 1) or None and nuisances (L, q) from which one effect is fitted."""
+def starts(forward, null: Fit, scores: Screen, effect: Effect, free, nonlinear: bool, finite=None):
+    """Coordinates (L, p), places (L, 1) or None and nuisances (L, q) from which one effect is fitted.
+
+    `finite` are trials of finite strength, searched where not given.
+    """
     rows = _from_screen(scores, effect, free)
-    if len(free) == 1 and float(np.square(scores.z).max()) > CLEAR:
-        found = secants.search(forward, null, effect, setup_of(forward))
-        rows += [([one.u], one.place, one.nu) for one in found]
+    if finite is None and len(free) == 1 and float(np.square(scores.z).max()) > CLEAR:
+        finite = secants.search(forward, null, effect, setup_of(forward))
+    rows += [([one.u], one.place, one.nu) for one in finite or ()]
     if nonlinear:
         rows += [(*row, np.zeros(forward.layout.size)) for row in _grid(scores, effect, free)]
     u = np.array([r[0] for r in rows]).reshape(len(rows), len(free))
@@ -120,10 +123,16 @@ def _from_screen(scores, effect, free):
     at = sorted(at, key=lambda k: -abs(scores.z[k]))[:PLACES_TRIED]
     rows = []
     for k in at:
-        d, shape = scores.directions[k], dict(scores.directions[k].shape)
+        d = scores.directions[k]
         size = scores.strength[k] if scores.z[k] else 1.0 / max(scores.length[k], 1e-9)
-        rows.append(([_start(c, d, shape, size) for c in free], d.place, scores.moved(k)[1]))
+        rows.append((coordinates(free, d, size), d.place, scores.moved(k)[1]))
     return rows
+
+
+def coordinates(free, direction, size: float) -> list[float]:
+    """Coordinates of an effect's parameters for a direction taken `size` typical departures far."""
+    shape = dict(direction.shape)
+    return [_start(c, direction, shape, size) for c in free]
 
 
 def _start(c, direction, shape, size):

@@ -2,10 +2,9 @@
 name?
 
 The residual is projected on groups of directions: the catalogue, a flexible contact law and drag, stiffness
-    and mass
-of each contact and bead, distortions of each gauge, gain and delay of each gauge in each run, and time bins
-around the pulse. Each group gives a χ² of as many degrees of freedom as it resolves; the smallest p counts,
-times their number.
+and mass of each contact and bead, their smooth and alternating profiles along the chain, distortions of each
+gauge, gain and delay of each gauge in each run, and time bins around the pulse. Each group gives a χ² of as
+many degrees of freedom as it resolves; the smallest p counts, times their number.
 """
 
 from dataclasses import dataclass, replace
@@ -109,20 +108,27 @@ def _largest(catalogue):
 
 
 def families(forward: Forward, fit: Fit) -> list[Family]:
-    """The flexible law, and stiffness of each contact and mass of each bead."""
-    beads = forward.experiment.beads
-    present = fit.hypothesis.ids
-    laws = [Direction("law", f"a{k}", two_sided=True) for k in range(flexible.CONTACT + flexible.DRAG)]
+    """The flexible law; stiffness of each contact and mass of each bead, one by one and as profiles."""
+    found = [_law(fit.hypothesis.ids)]
+    return [*found, _places(forward.experiment.beads), _profiles()] if forward.experiment.beads else found
 
-    def law(setup, index, strengths):
+
+def _law(present):
+    directions = [Direction("law", f"a{k}", two_sided=True) for k in range(flexible.CONTACT + flexible.DRAG)]
+
+    def change(setup, index, strengths):
         contact, drag = flexible.changes(index, strengths)
         changed = flexible.add(setup, contact, drag)
         return with_common_laws(changed, (*present, FLEXIBLE))
 
+    return Family(tuple(directions), change, 0.01)
+
+
+def _places(beads):
     places = [Direction("place", "stiffness", place=c, two_sided=True) for c in range(beads + 1)]
     places += [Direction("place", "mass", place=b, two_sided=True) for b in range(1, beads + 1)]
 
-    def place(setup, index, strengths):
+    def change(setup, index, strengths):
         chain = setup.chain
         for k, d in enumerate(places):
             here = np.where(index == k, 1.0 + strengths, 1.0)
@@ -130,8 +136,33 @@ def families(forward: Forward, fit: Fit) -> list[Family]:
                 chain = chain.with_departure(d.strength, d.place, here)
         return replace(setup, chain=chain)
 
-    found = [Family(tuple(laws), law, 0.01)]
-    return [*found, Family(tuple(places), place, 0.02)] if beads else found
+    return Family(tuple(places), change, 0.02)
+
+
+# Departures along the chain, x from −1 at the striker to 1 at the wall, k counted from there.
+_PROFILES = {
+    "linear": lambda x, k: x,
+    "quadratic": lambda x, k: x**2 - 1.0 / 3.0,
+    "alternating": lambda x, k: 1.0 - 2.0 * (k % 2),
+}
+
+
+def _profiles():
+    kinds = [(what, name) for what in ("stiffness", "mass") for name in _PROFILES]
+    directions = tuple(Direction("profile", f"{what} {name}", two_sided=True) for what, name in kinds)
+
+    def change(setup, index, strengths):
+        chain, beads = setup.chain, setup.chain.beads
+        for at in range(beads + 1):
+            x = 2.0 * at / max(1, beads) - 1.0
+            size = np.array([_PROFILES[name](x, at) for _, name in kinds])[index]
+            stiff = np.array([what == "stiffness" for what, _ in kinds])[index]
+            chain = chain.with_departure("stiffness", at, np.where(stiff, 1.0 + strengths * size, 1.0))
+            if at:
+                chain = chain.with_departure("mass", at, np.where(stiff, 1.0, 1.0 + strengths * size))
+        return replace(setup, chain=chain)
+
+    return Family(directions, change, 0.01)
 
 
 def distortions(forward: Forward, fit: Fit):
