@@ -12,13 +12,14 @@ from sonicvacuum.cli import existing
 @click.command()
 @click.argument("records", nargs=-1, required=True, type=click.Path())
 @click.option("--out", required=True, type=click.Path(file_okay=False), help="Folder to write.")
+@click.option("--together", is_flag=True, help="RECORDS are of one chain and its gauges: one verdict on all.")
 @click.option("--figures/--no-figures", default=True, show_default=True, help="Draw the pictures.")
 @click.option(
     "--threads",
     type=click.IntRange(1),
     help="Threads; all processors by default. Results do not depend on it.",
 )
-def discover(records, out, figures, threads):
+def discover(records, out, together, figures, threads):
     """Find what is missing from the nominal model of measured data in the folders RECORDS.
 
     One record is written to OUT; of several each has its own folder OUT/<folder name>.
@@ -27,15 +28,15 @@ def discover(records, out, figures, threads):
     from sonicvacuum.physics.run import available_threads
     from sonicvacuum.records import read
 
-    folders = _folders(records, Path(out))
-    for path, folder in folders.items():
-        result = session.discover(read(path), threads or available_threads())
+    groups = {Path(out): records} if together else {f: (p,) for p, f in _folders(records, Path(out)).items()}
+    for folder, paths in groups.items():
+        result = session.discover(*(read(p) for p in paths), threads=threads or available_threads())
         session.write(result, folder)
         if figures:
             from sonicvacuum.figures.discovery import draw
 
             draw(folder)
-        click.echo(f"{path}: {_sentence(result.verdict)}")
+        click.echo(f"{', '.join(paths)}: {_sentence(result.verdict)}")
 
 
 def _folders(records, out):

@@ -8,14 +8,16 @@ an Occam factor, never above 1.
 
 Unknown. A model that leaves a residual with p-value p is worth at most 1/(−e p ln p) of what fits
 (Sellke, Bayarri & Berger, Am. Stat. 55, 62, 2001); that bound is the weight of `unknown` against the best of
-the rest.
+the rest. Last, all are calibrated (`calibration`).
 """
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
+from sonicvacuum.discover.calibration import Calibration, of_package
 from sonicvacuum.discover.refit import Fit
 from sonicvacuum.effects import IDS
 
@@ -94,18 +96,20 @@ def unknown_odds(p: float) -> float:
     return _UNKNOWN_ODDS * bound
 
 
-def probabilities(candidates: list[Candidate], alarm_p: float) -> dict[str, float]:
+def log_weights(log_bayes: Mapping[str, float]) -> dict[str, float]:
+    """Log of prior times evidence of none and of every effect in `log_bayes` (natural logs)."""
+    each = math.log((1.0 - PRIOR_NONE - PRIOR_UNKNOWN) / len(IDS))
+    return {"none": math.log(PRIOR_NONE)} | {name: each + value for name, value in log_bayes.items()}
+
+
+def probabilities(
+    candidates: list[Candidate], alarm_p: float, calibration: Calibration | None = None
+) -> dict[str, float]:
     """Probability of none, unknown and every single effect; they sum to 1.
 
-    `alarm_p` is the p-value of the residual of the most probable of them.
+    `alarm_p` is the p-value of the residual of the most probable of them; `calibration` that of the package
+    where not given.
     """
-    each = (1.0 - PRIOR_NONE - PRIOR_UNKNOWN) / len(IDS)
-    logs = {"none": math.log(PRIOR_NONE)}
-    logs |= {c.effect: math.log(each) + c.log_bayes for c in candidates}
-    best = max(logs.values())
-    logs["unknown"] = best + math.log(unknown_odds(alarm_p))
-    top = max(logs.values())
-    weights = {name: math.exp(value - top) for name, value in logs.items()}
-    total = sum(weights.values())
-    order = ["none", "unknown", *(i for i in IDS if i in weights)]
-    return {name: weights[name] / total for name in order}
+    logs = log_weights({c.effect: c.log_bayes for c in candidates})
+    found = (calibration or of_package()).probabilities(logs, math.log(unknown_odds(alarm_p)))
+    return {name: found[name] for name in ("none", "unknown", *IDS) if name in found}

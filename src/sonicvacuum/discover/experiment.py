@@ -82,12 +82,14 @@ class Batch:
         runs: indices of the runs.
         interval: time between simulated samples in s, a whole fraction of the runs' own.
         duration: simulated time in s.
+        gauges: where the gauges sat in these runs; None: as everywhere.
     """
 
     chain: Chain
     runs: tuple[int, ...]
     interval: float
     duration: float
+    gauges: tuple[Gauge, ...] | None = None
 
 
 @dataclass(frozen=True)
@@ -106,6 +108,7 @@ class Experiment:
         modulus_rel_sigma: of the bead material, relative.
         diameter: of a bead in m.
         record: the record it was made from, None in tests.
+        excluded: ids of effects that these data cannot be asked about.
         integrated: compare running integrals of the traces instead: a coarse view in which a late pulse is
             still felt, for searches that start far from the data.
     """
@@ -121,6 +124,7 @@ class Experiment:
     modulus_rel_sigma: float
     diameter: float
     record: object = None
+    excluded: tuple[str, ...] = ()
     integrated: bool = False
 
     @property

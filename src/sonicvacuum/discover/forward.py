@@ -266,7 +266,7 @@ class Forward:
             for name in ("bead", "striker", "wall")
             if (body := getattr(chain, name)).name == chain.bead.name
         }
-        return Setup(replace(chain, speed=speed, **bodies), self.experiment.gauges)
+        return Setup(replace(chain, speed=speed, **bodies), batch.gauges or self.experiment.gauges)
 
     def simulate(self, batch, setup: Setup):
         """Readings (lanes, S, T') on the simulated grid, with what the scalars need besides."""

@@ -151,7 +151,8 @@ def _variant(direction, setup):
 
 def beside(forward: Forward, null: Fit, first: Fit, setup: Setup) -> list[Start]:
     """Every effect beside a first one as fitted."""
-    scores = screen.screen(forward, first, directions.catalogue(setup, first.hypothesis.ids), rough=True)
+    present = (*first.hypothesis.ids, *forward.experiment.excluded)
+    scores = screen.screen(forward, first, directions.catalogue(setup, present), rough=True)
     gained = null.objective - first.objective
     own = first.hypothesis.components[0].place or 0
     result = []

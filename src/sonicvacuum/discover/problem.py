@@ -6,6 +6,8 @@ larger, or correlated from sample to sample, it is taken instead.
 """
 
 import math
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -18,6 +20,7 @@ from sonicvacuum.discover.experiment import (
     Scalar,
     lag_one,
 )
+from sonicvacuum.files import InputError
 from sonicvacuum.records.assemble import assemble, chain_of, duration_of, interval_of
 from sonicvacuum.records.record import Record
 
@@ -33,7 +36,7 @@ _SURE = 4.0
 def experiment(record: Record) -> Experiment:
     """The data set of a record."""
     runs = tuple(_run(record, run) for run in record.runs)
-    sigma, correlation = noise(record)
+    sigma, correlation = noise((record,))
     named = record.modulus_rel_sigma(record.surface.name)
     return Experiment(
         name=record.name or record.title,
@@ -48,6 +51,49 @@ def experiment(record: Record) -> Experiment:
         diameter=record.diameter_m,
         record=record,
     )
+
+
+def together(records: Sequence[Record]) -> Experiment:
+    """The data set of records of one laboratory: the same beads, materials and gauges with their gains.
+
+    Gauges may sit elsewhere, static force and orientation may differ from record to record; where orientation
+    does, nothing can be said of gravity.
+
+    Raises:
+        InputError: where records have different beads or gauges, or scalars beside the first record's.
+    """
+    first, *others = [experiment(r) for r in records]
+    for record, other in zip(records[1:], others, strict=True):
+        _check_alike(records[0], record, other)
+    for record, other in zip(records[1:], others, strict=True):
+        first = _joined(first, record, other)
+    turned = len({r.gravity_m_s2 for r in records}) > 1
+    sigma, correlation = noise(records)
+    return replace(
+        first, sigma=sigma, correlation=correlation, excluded=("gravity",) if turned else first.excluded
+    )
+
+
+def _check_alike(record, other, seen: Experiment):
+    for what, one, two in (
+        ("beads", record.beads, other.beads),
+        ("bead", (record.diameter_m, record.bead_mass_kg), (other.diameter_m, other.bead_mass_kg)),
+        ("material", record.surface, other.surface),
+        ("sensors", [g.id for g in record.gauges], [g.id for g in other.gauges]),
+    ):
+        if one != two:
+            raise InputError(f"{other.name}: {what} is {two}, in {record.name} {one}; discover them apart")
+    if any(r.scalars for r in seen.runs):
+        raise InputError(f"{other.name}: observables; only the first of records taken together may have them")
+
+
+def _joined(first: Experiment, record, other: Experiment) -> Experiment:
+    """Two data sets in one; runs of the second are numbered on."""
+    known = {r.id for r in first.runs}
+    named = [replace(r, id=f"{record.name} {r.id}" if r.id in known else r.id) for r in other.runs]
+    start = len(first.runs)
+    moved = [replace(b, runs=tuple(start + k for k in b.runs), gauges=other.gauges) for b in other.batches]
+    return replace(first, runs=(*first.runs, *named), batches=(*first.batches, *moved))
 
 
 def _run(record, run):
@@ -81,14 +127,14 @@ def batches(record: Record) -> tuple[Batch, ...]:
     return tuple(result)
 
 
-def noise(record: Record) -> tuple[np.ndarray, np.ndarray]:
+def noise(records: Sequence[Record]) -> tuple[np.ndarray, np.ndarray]:
     """(S,) standard deviation of one sample in N and correlation of neighbours, stated or seen."""
-    found = [_noise_of(record, g) for g in record.gauges]
+    found = [_noise_of(records, g) for g in records[0].gauges]
     return np.array([f[0] for f in found]), np.array([f[1] for f in found])
 
 
-def _noise_of(record, gauge):
-    traces = [r.signals.readings[gauge.id] for r in record.runs if r.signals]
+def _noise_of(records, gauge):
+    traces = [r.signals.readings[gauge.id] for record in records for r in record.runs if r.signals]
     if not traces:
         return max(gauge.sigma, 1e-12), 0.0
     peak = max(float(np.abs(t).max()) for t in traces)

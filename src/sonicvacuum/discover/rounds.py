@@ -1,5 +1,6 @@
 """The order of the steps: nominal model, screen, singles, alarm, pairs, decision."""
 
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -9,6 +10,7 @@ from sonicvacuum.discover.evidence import Candidate
 from sonicvacuum.discover.experiment import Experiment
 from sonicvacuum.discover.forward import Forward
 from sonicvacuum.discover.hypothesis import Hypothesis
+from sonicvacuum.discover.pairs import Pair
 from sonicvacuum.discover.refit import Fit, fit, polish
 
 # Of the largest score of the whole catalogue in pure noise.
@@ -16,6 +18,9 @@ FALSE_ALARM = 0.01
 LEAST_LOG10_BAYES = 1.0
 # Of the alarm at the nominal model: with nothing to name, only a sure misfit is called unknown.
 NULL_ALARM = 1e-3
+# What is named must gain as much as the simplest shape outside the catalogue, within a χ² of noise and the
+# share by which linear predictions err.
+MARGIN, SHARE = 6.0, 0.05
 # Candidates followed to their minimum after the first search.
 POLISHED = 4
 COARSE = 6
@@ -32,11 +37,11 @@ class Investigation:
         threshold: Δχ² that a single effect has to gain.
         candidates: single effects, best first.
         probabilities: over none, unknown and single effects.
-        alarms: step → alarm raised on its residual ("none", "single", "pair").
-        pairs: pairs tried, best first.
         named: ids, `unknown` last where a misfit is left.
-        final: the fit that the verdict stands on.
+        final: the fit that the verdict stands on; the nominal one where no effect is named.
+        alarms: step ("none", "single", "pair") → p-value of what it leaves.
         reasons: what decided, one line each.
+        pairs: pairs tried, best first.
     """
 
     forward: Forward
@@ -45,11 +50,11 @@ class Investigation:
     threshold: float
     candidates: list[Candidate]
     probabilities: dict[str, float]
-    alarms: dict[str, unknown.Alarm]
-    pairs: list[pairs.Pair]
     named: list[str]
     final: Fit
+    alarms: dict[str, float]
     reasons: list[str] = field(default_factory=list)
+    pairs: list[Pair] = field(default_factory=list)
 
     @property
     def sizes(self) -> np.ndarray:
@@ -73,22 +78,90 @@ def investigate(experiment: Experiment, threads: int = 1) -> Investigation:
     """Find what is missing from the nominal model of a data set."""
     forward = Forward(experiment, threads)
     null = nominal(forward)
-    setup = singles.setup_of(forward)
-    scores = screen.screen(forward, null, directions.catalogue(setup))
+    scores = screen.screen(
+        forward, null, directions.catalogue(singles.setup_of(forward), experiment.excluded)
+    )
     threshold = scores.threshold(FALSE_ALARM)
     found = _polished(forward, null, singles.fit_all(forward, null, scores))
-    best = found[0] if found and significant(found[0], threshold) else None
-    alarms, tried = {}, []
-    if best is None:
-        alarms["none"] = unknown.alarm(forward, null)
-        named, final = (["unknown"] if alarms["none"].p < NULL_ALARM else []), null
-        reasons = ["no single effect passes the threshold"]
-        p = alarms["none"].p
+    if found and significant(found[0], threshold):
+        case = _Case(forward, null, scores, found)
+        decision = case.decide()
     else:
-        named, final, alarms, tried, reasons = _decide(forward, null, best, found, setup, scores)
-        p = alarms["single"].p
-    odds = evidence.probabilities(found, p)
-    return Investigation(forward, null, scores, threshold, found, odds, alarms, tried, named, final, reasons)
+        decision = _nothing(forward, null)
+    odds = evidence.probabilities(found, decision.alarms.get("single", decision.alarms.get("none")))
+    return Investigation(forward, null, scores, threshold, found, odds, **vars(decision))
+
+
+@dataclass(frozen=True)
+class Decision:
+    """What is named, and why; attributes as those of `Investigation`."""
+
+    named: list[str]
+    final: Fit
+    alarms: dict[str, float]
+    reasons: list[str]
+    pairs: list[Pair] = field(default_factory=list)
+
+
+def _nothing(forward, null) -> Decision:
+    """No effect can be named: none, or unknown where the nominal model leaves a sure misfit."""
+    p = unknown.alarm(forward, null).p
+    named = ["unknown"] if p < NULL_ALARM else []
+    return Decision(named, null, {"none": p}, ["no single effect passes the threshold"])
+
+
+@dataclass(frozen=True)
+class _Case:
+    """A data set in which the best single effect is significant."""
+
+    forward: Forward
+    null: Fit
+    scores: screen.Screen
+    found: list[Candidate]
+
+    def decide(self) -> Decision:
+        """Name the best single, a pair, or unknown."""
+        best = self.found[0]
+        beside = directions.catalogue(
+            singles.setup_of(self.forward), (best.effect, *self.forward.experiment.excluded)
+        )
+        scores = screen.screen(self.forward, best.fit, beside)
+        alarm = unknown.alarm(self.forward, best.fit, scores)
+        shape, most = unknown.simplest(self.forward, self.null)
+        behind = _behind(best.gain, most)
+        alarms = {"single": min(alarm.p, math.exp(-0.5 * behind))}
+        if alarm.raised:
+            return self._pair(scores.threshold(FALSE_ALARM), most, alarms, alarm.group)
+        if behind > 0.0:
+            return Decision(["unknown"], self.null, alarms, [f"{shape} explains more than {best.effect}"])
+        if heldout.better(self.null, best.fit):
+            return Decision([best.effect], best.fit, alarms, [f"{best.effect} leaves nothing significant"])
+        reason = f"{best.effect} does not predict unseen runs better"
+        return Decision([], self.null, alarms, [reason])
+
+    def _pair(self, needed, most, alarms, group) -> Decision:
+        """Name the first pair that leaves nothing and gains enough over the best single; else unknown."""
+        tried = pairs.search(self.forward, self.null, self.scores, self.found)
+        single = max(c.gain for c in self.found)
+        for pair in tried[:2]:
+            if pair.gain - single <= needed:
+                continue
+            alarm = unknown.alarm(self.forward, pair.fit)
+            alarms["pair"] = alarm.p
+            if not alarm.raised and _behind(pair.gain, most) == 0.0:
+                reason = "a pair leaves nothing significant"
+                return Decision(list(pair.effects), pair.fit, alarms, [reason], tried)
+        reason = f"misfit left in {group}: no effect nor pair explains it"
+        return Decision(["unknown"], self.null, alarms, [reason], tried)
+
+
+def _behind(gain: float, most: float) -> float:
+    """By how much an explanation's Δχ² falls short of that of the simplest shape outside the catalogue."""
+    return max(0.0, most - gain - MARGIN - SHARE * gain)
+
+
+def _catalogue(forward, *present):
+    return directions.catalogue(singles.setup_of(forward), (*present, *forward.experiment.excluded))
 
 
 def significant(candidate: Candidate, threshold: float) -> bool:
@@ -107,24 +180,3 @@ def _polished(forward, null, found):
             c = Candidate(c.effect, better, c.gain + more, c.log_bayes + 0.5 * more, c.places, flags)
         result.append(c)
     return sorted(result, key=lambda c: -c.log_bayes)
-
-
-def _decide(forward, null, best: Candidate, found, setup, nominal_scores):
-    """Name the best single, a pair, or unknown."""
-    scores = screen.screen(forward, best.fit, directions.catalogue(setup, (best.effect,)))
-    alarms = {"single": unknown.alarm(forward, best.fit, scores)}
-    if not alarms["single"].raised:
-        if heldout.better(null, best.fit):
-            return [best.effect], best.fit, alarms, [], [f"{best.effect} leaves nothing significant"]
-        return [], null, alarms, [], [f"{best.effect} does not predict unseen runs better"]
-    needed = scores.threshold(FALSE_ALARM)
-    tried = pairs.search(forward, null, nominal_scores, found)
-    for pair in tried[:2]:
-        alarm = unknown.alarm(forward, pair.fit)
-        alarms.setdefault("pair", alarm)
-        gained = pair.gain - max(c.gain for c in found)
-        if gained > needed and not alarm.raised:
-            alarms["pair"] = alarm
-            return list(pair.effects), pair.fit, alarms, tried, ["a pair leaves nothing significant"]
-    reason = f"misfit left in {alarms['single'].group}: no effect nor pair explains it"
-    return ["unknown"], null, alarms, tried, [reason]

@@ -17,7 +17,7 @@ from sonicvacuum.discover import (
     singles,
     verdict,
 )
-from sonicvacuum.discover.problem import experiment
+from sonicvacuum.discover.problem import together
 from sonicvacuum.discover.rounds import Investigation, investigate
 from sonicvacuum.discover.verdict import Verdict
 from sonicvacuum.files import InputError
@@ -36,10 +36,10 @@ class Result:
     verdict: Verdict
 
 
-def discover(record: Record, threads: int = 1) -> Result:
-    """The verdict on one record."""
+def discover(*records: Record, threads: int = 1) -> Result:
+    """The verdict on one record, or on records of one laboratory taken together."""
     clock = Clock()
-    found = investigate(experiment(record), threads)
+    found = investigate(together(records), threads)
     clock.mark("search")
     forward = found.forward
     places = locate.locate(forward, found.null)
@@ -50,7 +50,8 @@ def discover(record: Record, threads: int = 1) -> Result:
     if final is found.null:
         scores = found.scores
     else:
-        scores = screen.screen(forward, final, directions.catalogue(setup, final.hypothesis.ids))
+        present = (*final.hypothesis.ids, *forward.experiment.excluded)
+        scores = screen.screen(forward, final, directions.catalogue(setup, present))
     limits = degenerate.limits(scores, setup)
     alike = degenerate.confusable(found.named, found.candidates, found.pairs)
     before = heldout.held_out(found.null, found.sizes)
@@ -71,11 +72,11 @@ def discover(record: Record, threads: int = 1) -> Result:
         not_testable=sorted({one.effect for one in limits if not one.testable}),
         next_experiment=proposal,
         reasons=found.reasons,
-        alarms={step: alarm.p for step, alarm in found.alarms.items()},
+        alarms=found.alarms,
         timing_s=clock.seconds(),
         simulations=forward.chains,
     )
-    return Result(record, found, places, after, limits, result)
+    return Result(records[0], found, places, after, limits, result)
 
 
 class Clock:

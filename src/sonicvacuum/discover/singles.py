@@ -12,7 +12,7 @@ from sonicvacuum.discover.refit import Fit, fit
 from sonicvacuum.discover.screen import Screen
 from sonicvacuum.effects import CATALOGUE, Effect, Setup
 
-# Beyond this misfit of the nominal model (in χ²) its slopes may point the wrong way: whole grids are
+# Beyond this misfit of the nominal model (in χ²) its slopes may point the wrong way: whole ranges are
 # searched.
 NONLINEAR = 1500.0
 # Effects whose predicted gain is this far behind the best are not refitted while slopes can be trusted.
@@ -21,6 +21,7 @@ PLACES_TRIED = 5
 # Below this largest z² nothing can be named, and slopes suffice.
 CLEAR = 9.0
 ITERATIONS = 14
+COARSE = 6
 
 
 def setup_of(forward: Forward) -> Setup:
@@ -32,43 +33,41 @@ def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
     """Candidates, best first."""
     setup = setup_of(forward)
     best = {e: float(np.square(scores.z[k])) for e, k in scores.best().items()}
-    coarse_data = not any(r.has_signals for r in forward.experiment.runs)
-    nonlinear = max(best.values(), default=0.0) > (CLEAR if coarse_data else NONLINEAR)
-    enough = -np.inf if nonlinear else max(best.values(), default=0.0) - HOPELESS
+    largest = max(best.values(), default=0.0)
+    traced = any(r.has_signals for r in forward.experiment.runs)
+    nonlinear = largest > NONLINEAR
+    # Few scalars with large errors leave room for large departures, which slopes do not foresee.
+    loose = nonlinear or (not traced and largest > CLEAR)
+    enough = -np.inf if loose else largest - HOPELESS
     found = []
-    clear = max(best.values(), default=0.0) > CLEAR
-    for effect in CATALOGUE:
-        anywhere = clear and effect.places in secants.PLACES
-        if nonlinear or anywhere or best.get(effect.id, 0.0) > max(enough, 0.5):
-            found.append(candidate(forward, null, scores, effect, setup, nonlinear))
+    for effect in (e for e in CATALOGUE if e.id not in forward.experiment.excluded):
+        placed = effect.places in secants.PLACES
+        if loose or (placed and largest > CLEAR) or best.get(effect.id, 0.0) > max(enough, 0.5):
+            grid = nonlinear or (loose and not effect.places)
+            found.append(candidate(forward, null, scores, effect, setup, grid, COARSE * (grid and traced)))
     found = [c for c in found if c is not None]
     return sorted(found, key=lambda c: -c.log_bayes)
 
 
-def candidate(forward, null: Fit, scores: Screen, effect: Effect, setup: Setup, nonlinear: bool):
-    """The best fit of one effect over its places, shapes and sets of strengths; None where nothing fits."""
+def candidate(forward, null: Fit, scores: Screen, effect: Effect, setup: Setup, grid: bool, coarse: int):
+    """The best fit of one effect over its places, shapes and sets of strengths; None where nothing fits.
+
+    `grid` adds starts over the whole range, followed for `coarse` steps on integrals of the traces first.
+    """
     best = None
     logs = []
     options = variants(effect, setup)
     for free in options:
-        u, places, nu = starts(forward, null, scores, effect, free, nonlinear)
+        u, places, nu = starts(forward, null, scores, effect, free, grid)
         if not len(u):
             continue
         hypothesis = Hypothesis((Component(effect, free),))
-        one = fit(
-            forward,
-            hypothesis,
-            u,
-            nu,
-            places,
-            keep=5 if nonlinear else 3,
-            iterations=ITERATIONS,
-            coarse=6 * nonlinear,
-        )
+        keep = 5 if grid else 3
+        one = fit(forward, hypothesis, u, nu, places, keep=keep, iterations=ITERATIONS, coarse=coarse)
         if not np.isfinite(one.objective):
             continue
         gain = null.objective - one.objective
-        alike = None if nonlinear and not effect.places else by_direction(scores, effect, gain)
+        alike = None if grid and not effect.places else by_direction(scores, effect, gain)
         logs.append(log_bayes(one, gain, alike))
         if best is None or logs[-1] > best[1]:
             best = (one, logs[-1], gain)
@@ -99,7 +98,7 @@ def place_weights(scores, effect, one):
     return tuple((scores.directions[k].place, float(w)) for k, w in zip(at, weights, strict=True) if w > 0.01)
 
 
-def starts(forward, null: Fit, scores: Screen, effect: Effect, free, nonlinear: bool, finite=None):
+def starts(forward, null: Fit, scores: Screen, effect: Effect, free, grid: bool, finite=None):
     """Coordinates (L, p), places (L, 1) or None and nuisances (L, q) from which one effect is fitted.
 
     `finite` are trials of finite strength, searched where not given.
@@ -108,7 +107,7 @@ def starts(forward, null: Fit, scores: Screen, effect: Effect, free, nonlinear: 
     if finite is None and len(free) == 1 and float(np.square(scores.z).max()) > CLEAR:
         finite = secants.search(forward, null, effect, setup_of(forward))
     rows += [([one.u], one.place, one.nu) for one in finite or ()]
-    if nonlinear:
+    if grid:
         rows += [(*row, np.zeros(forward.layout.size)) for row in _grid(scores, effect, free)]
     u = np.array([r[0] for r in rows]).reshape(len(rows), len(free))
     for k, c in enumerate(free):

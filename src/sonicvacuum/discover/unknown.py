@@ -52,29 +52,44 @@ class Alarm:
 
 def alarm(forward: Forward, fit: Fit, catalogue: screen.Screen | None = None) -> Alarm:
     """Test what a fitted model leaves; `catalogue` is its screen, where at hand."""
-    base = forward.columns(fit.hypothesis, fit.u[None], fit.nu[None], precise=True)
-    directions, slopes = [], [[] for _ in base]
-
-    def take(new, columns):
-        directions.extend(new)
-        for run, c in enumerate(columns):
-            slopes[run].append(c)
-
-    bare = replace(fit.hypothesis, common=False)
-    for family in families(forward, fit):
-        take(family.directions, ways.simulate(forward, bare, fit.u, fit.nu, family)[0])
-    if any(r.has_signals for r in forward.experiment.runs):
-        for new, columns in distortions(forward, fit):
-            take(new, columns)
+    shapes = list(distortions(forward, fit)) if _traced(forward) else []
     scalars = scalar_directions(forward)
-    if scalars:
-        take(*scalars)
-    whole = screen.from_columns(forward, fit, tuple(directions), base, [np.concatenate(s) for s in slopes])
+    whole = _screened(forward, fit, families(forward, fit), [*shapes, scalars] if scalars else shapes)
     groups = _groups(whole)
     if catalogue is not None and len(catalogue.z):
         groups["catalogue"] = _largest(catalogue)
     worst = min(groups, key=lambda g: groups[g][2])
     return Alarm(groups, min(1.0, groups[worst][2] * len(groups)), worst, whole)
+
+
+def simplest(forward: Forward, null: Fit) -> tuple[str, float]:
+    """The one profile along the chain, or distortion of one gauge, that should gain most, and its Δχ².
+
+    An explanation out of the catalogue that gains less than one such shape is not the simplest.
+    """
+    if not forward.experiment.beads or not _traced(forward):
+        return "", 0.0
+    shapes = [s for s in distortions(forward, null) if s[0][0].effect == "gauge"]
+    seen = _screened(forward, null, [_profiles()], shapes)
+    k = int(np.argmax(np.abs(seen.z)))
+    d = seen.directions[k]
+    gauge = "" if d.place is None else f" of gauge {forward.experiment.gauges[d.place].id}"
+    return f"{d.effect} {d.strength}{gauge}", float(np.square(seen.z[k]))
+
+
+def _traced(forward):
+    return any(r.has_signals for r in forward.experiment.runs)
+
+
+def _screened(forward, fit, simulated, shapes) -> screen.Screen:
+    """The screen of families that are simulated and of (directions, columns of each run)."""
+    base = forward.columns(fit.hypothesis, fit.u[None], fit.nu[None], precise=True)
+    bare = replace(fit.hypothesis, common=False)
+    parts = [(f.directions, ways.simulate(forward, bare, fit.u, fit.nu, f)[0]) for f in simulated]
+    parts += shapes
+    directions = tuple(d for part in parts for d in part[0])
+    slopes = [np.concatenate([part[1][run] for part in parts]) for run in range(len(base))]
+    return screen.from_columns(forward, fit, directions, base, slopes)
 
 
 def _groups(whole):
