@@ -21,8 +21,8 @@ NULL_ALARM = 1e-3
 # What is named must gain as much as the simplest shape outside the catalogue, within a χ² of noise and the
 # share by which linear predictions err.
 MARGIN, SHARE = 6.0, 0.05
-# Candidates followed to their minimum after the first search.
-POLISHED = 4
+# Candidates whose Δχ² is this far behind the best are not followed to their minimum.
+NEAR = 15.0
 COARSE = 6
 
 
@@ -172,8 +172,9 @@ def significant(candidate: Candidate, threshold: float) -> bool:
 def _polished(forward, null, found):
     """The leading candidates followed to their minimum."""
     result = []
-    for k, c in enumerate(found):
-        if k < POLISHED and not c.fit.settled:
+    least = max((c.gain for c in found), default=0.0) - NEAR
+    for c in found:
+        if c.gain > least and not c.fit.settled:
             better = polish(forward, c.fit)
             more = null.objective - better.objective - c.gain
             flags = tuple(f for f in c.flags if f != "unsettled") + ("unsettled",) * (not better.settled)

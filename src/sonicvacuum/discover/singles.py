@@ -2,6 +2,8 @@
 large.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from sonicvacuum.discover import secants
@@ -20,7 +22,10 @@ HOPELESS = 30.0
 PLACES_TRIED = 5
 # Below this largest z² nothing can be named, and slopes suffice.
 CLEAR = 9.0
-ITERATIONS = 14
+# A departure that the screen puts beyond this many typical ones may lie where slopes do not reach.
+FAR = 0.1
+# Steps of the search; of the first one where all effects are followed and the best are polished later.
+ITERATIONS, FIRST = 14, 5
 COARSE = 6
 
 
@@ -31,43 +36,54 @@ def setup_of(forward: Forward) -> Setup:
 
 def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
     """Candidates, best first."""
-    setup = setup_of(forward)
-    best = {e: float(np.square(scores.z[k])) for e, k in scores.best().items()}
-    largest = max(best.values(), default=0.0)
+    best = scores.best()
+    gains = {e: float(np.square(scores.z[k])) for e, k in best.items()}
+    largest = max(gains.values(), default=0.0)
     traced = any(r.has_signals for r in forward.experiment.runs)
     nonlinear = largest > NONLINEAR
     # Few scalars with large errors leave room for large departures, which slopes do not foresee.
     loose = nonlinear or (not traced and largest > CLEAR)
     enough = -np.inf if loose else largest - HOPELESS
+    steps = FIRST if loose else ITERATIONS
     found = []
     for effect in (e for e in CATALOGUE if e.id not in forward.experiment.excluded):
         placed = effect.places in secants.PLACES
-        if loose or (placed and largest > CLEAR) or best.get(effect.id, 0.0) > max(enough, 0.5):
-            grid = nonlinear or (loose and not effect.places)
-            found.append(candidate(forward, null, scores, effect, setup, grid, COARSE * (grid and traced)))
+        far = effect.id in best and abs(scores.strength[best[effect.id]]) > FAR
+        grid = nonlinear or (loose and far and not effect.places)
+        if loose or (placed and largest > CLEAR) or gains.get(effect.id, 0.0) > max(enough, 0.5):
+            plan = Plan(grid, steps, COARSE if grid and traced else 0)
+            found.append(candidate(forward, null, scores, effect, plan))
     found = [c for c in found if c is not None]
     return sorted(found, key=lambda c: -c.log_bayes)
 
 
-def candidate(forward, null: Fit, scores: Screen, effect: Effect, setup: Setup, grid: bool, coarse: int):
-    """The best fit of one effect over its places, shapes and sets of strengths; None where nothing fits.
-
-    `grid` adds starts over the whole range, followed for `coarse` steps on integrals of the traces first.
+@dataclass(frozen=True)
+class Plan:
+    """How an effect is searched: `grid` adds starts over the whole range to those of the screen; all are
+    followed for so many `steps`, on integrals of the traces for `coarse` steps before.
     """
+
+    grid: bool
+    steps: int
+    coarse: int
+
+
+def candidate(forward, null: Fit, scores: Screen, effect: Effect, plan: Plan):
+    """The best fit of one effect over its places, shapes and sets of strengths; None where nothing fits."""
     best = None
     logs = []
-    options = variants(effect, setup)
+    options = variants(effect, setup_of(forward))
     for free in options:
-        u, places, nu = starts(forward, null, scores, effect, free, grid)
+        u, places, nu = starts(forward, null, scores, effect, free, plan.grid)
         if not len(u):
             continue
         hypothesis = Hypothesis((Component(effect, free),))
-        keep = 5 if grid else 3
-        one = fit(forward, hypothesis, u, nu, places, keep=keep, iterations=ITERATIONS, coarse=coarse)
+        keep = 5 if plan.grid else 3
+        one = fit(forward, hypothesis, u, nu, places, keep, plan.steps, plan.coarse)
         if not np.isfinite(one.objective):
             continue
         gain = null.objective - one.objective
-        alike = None if grid and not effect.places else by_direction(scores, effect, gain)
+        alike = None if plan.grid and not effect.places else by_direction(scores, effect, gain)
         logs.append(log_bayes(one, gain, alike))
         if best is None or logs[-1] > best[1]:
             best = (one, logs[-1], gain)

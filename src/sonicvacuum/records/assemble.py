@@ -18,8 +18,9 @@ from sonicvacuum.records.record import Record, Run
 
 # Simulated beyond the last instant asked for, in standard errors of the trigger: shifts need no new run.
 TRIGGER_ROOM = 6.0
-# Scalars without traces: time for the pulse to cross the chain and come back, with room for softer contacts.
-CROSSINGS = 5.0
+# Scalars without traces: time for the pulse to cross the chain, with room for softer contacts; and to come
+# back, where pulses are counted until then.
+CROSSINGS, COUNTING = 2.5, 5.0
 # A solitary wave passes one bead in about this many contact times (m²/(K² v))^{1/5} of the impact.
 _PASSAGE = 1.5
 # Sampling interval of a simulation in contact times 3.21 (m²/(K² v))^{1/5}. The rebound of one ball follows
@@ -74,7 +75,8 @@ def duration_of(record: Record, runs: list[Run], chain: Chain) -> float:
     """Time in s to simulate: the runs' traces and room for the trigger, or what their scalars need."""
     ends = [r.signals.time_s[-1] + TRIGGER_ROOM * record.trigger_sigma_s for r in runs if r.signals]
     if any(r.observables for r in runs):
-        ends.append(passage_of(chain))
+        counted = any(o.quantity == "pulse_count" for r in runs for o in r.observables)
+        ends.append(passage_of(chain, COUNTING if counted else CROSSINGS))
     return max(ends)
 
 
@@ -93,13 +95,13 @@ def sampling_of(chain: Chain) -> float:
     return fraction * 3.21 * float(contact_time(mass, stiffness, chain.speed).min())
 
 
-def passage_of(chain: Chain) -> float:
-    """Time in s in which the slowest pulse reaches the wall and its reflection the striker's end."""
+def passage_of(chain: Chain, crossings: float = COUNTING) -> float:
+    """Time in s in which the slowest pulse crosses the chain so many times; COUNTING for one ball."""
     contact = impact_scales(chain)[1]
     if chain.beads == 0:
-        return CROSSINGS * contact
+        return COUNTING * contact
     heavy = max(1.0, float((chain.striker_mass / chain.bead_mass).max()))
-    return CROSSINGS * (_PASSAGE / 3.21 * chain.beads + 2.0 * heavy) * contact
+    return crossings * (_PASSAGE / 3.21 * chain.beads + 2.0 * heavy) * contact
 
 
 def _elastic(material: CardMaterial) -> Elastic:
