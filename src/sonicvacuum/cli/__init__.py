@@ -30,6 +30,7 @@ VERBS = {
     "compare": "discover",
     "hide": "blind",
     "score": "blind",
+    "baselines": "baselines",
 }
 
 
