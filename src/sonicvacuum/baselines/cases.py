@@ -1,4 +1,4 @@
-"""Cases as the simpler rules see them: the tables that `discover` wrote of each, and its truth for scoring."""
+"""Cases as simpler rules see them: the tables that `discover` wrote of each, and the truth to score by."""
 
 import csv
 import math

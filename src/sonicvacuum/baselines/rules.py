@@ -43,6 +43,6 @@ def has_cosines(cases: list[Case]) -> bool:
 
 
 def _largest(values):
-    """Key of the largest value, none where no value is above zero; the first in the alphabet of equal ones."""
+    """Key of the largest value, none where none is above zero; of equal ones the first in the alphabet."""
     best = max(sorted(values), key=values.get, default=None)
     return best if best is not None and values[best] > 0.0 else NONE

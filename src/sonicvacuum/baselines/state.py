@@ -4,9 +4,9 @@ Brunton, Proctor & Kutz, PNAS 113, 3932 (2016); weak form: Reinbold, Gurevich & 
 010203 (2020); forward regression (FROLS): Billings, Nonlinear System Identification (2013), ch. 3.
 
 It is given what no gauge shows: displacement and velocity of every bead, with white noise of the gauges'
-relative level (over the largest compression and the largest velocity), masses, weights and the nominal stiffness
-without error, terms of the catalogue's very form, and one coefficient for all beads and runs. Smoothing before
-the regression did not help.
+relative level (over the largest compression and the largest velocity), masses, weights and the nominal
+stiffness without error, terms of the catalogue's very form, and one coefficient for all beads and runs.
+Smoothing before the regression did not help.
 """
 
 from dataclasses import dataclass
@@ -23,8 +23,8 @@ __all__ = ["EXPRESSIBLE", "name"]
 
 # Windows of the weak form for each bead and run; their half width in samples, about one pulse.
 WINDOWS, HALF_WIDTH, ORDER = 80, 24, 4
-# The Hertz term and one more, as one effect is hidden at most; a modulus beyond so many standard deviations of
-# its stated error is named.
+# The Hertz term and one more, as one effect is hidden at most; a modulus beyond so many standard deviations
+# of its stated error is named.
 MOST, CUT = 2, 2.5
 SEED = 20061
 

@@ -1,5 +1,7 @@
-"""The table of all rules on the same cases: exact names on singles, false alarms on nulls, wrong names on cases
-from outside the catalogue, with Wilson intervals. Pairs are left out: these rules name one effect or none.
+"""The table of all rules on the same cases, with Wilson intervals.
+
+Counted are exact names on singles, false alarms on nulls, wrong names on cases from outside the catalogue.
+Pairs are left out: these rules name one effect or none.
 """
 
 from collections.abc import Callable, Iterable, Mapping

@@ -1,9 +1,9 @@
 """Candidate terms of a bead's equation of motion, from the full motion: the catalogue's force laws at first
 order in their strengths.
 
-m u̇_i' = F_{i−1} − F_i + body forces, with F = K δ^{3/2} + Σ c_k f_k(δ, δ̇); the coefficients c_k are the same in
-all contacts and beads. Effects of gauges, of the striker, of the wall, of one bead or of the state at rest have
-no term here.
+m u_i'' = F_{i−1} − F_i + body forces, with F = K δ^{3/2} + Σ c_k f_k(δ, δ'); the coefficients c_k are the
+same in all contacts and beads. Effects of gauges, of the striker, of the wall, of one bead or of the state at
+rest have no term here.
 """
 
 import numpy as np

@@ -31,6 +31,7 @@ VERBS = {
     "hide": "blind",
     "score": "blind",
     "baselines": "baselines",
+    "draw-study": "baselines",
 }
 
 
@@ -45,7 +46,7 @@ class Verbs(click.Group):
         """The command of one verb, None for an unknown one."""
         if name not in VERBS:
             return None
-        return getattr(import_module(f"{__name__}.{VERBS[name]}"), name)
+        return getattr(import_module(f"{__name__}.{VERBS[name]}"), name.replace("-", "_"))
 
 
 @click.group(cls=Verbs, context_settings={"help_option_names": ["-h", "--help"]})

@@ -1,4 +1,4 @@
-"""`sonicvacuum baselines`: simpler rules on the cases of a blind study."""
+"""`sonicvacuum baselines`, `draw-study`: simpler rules on the cases of a blind study, and its pictures."""
 
 from pathlib import Path
 
@@ -41,3 +41,13 @@ def baselines(records, truth, verdicts, out, training, wanted, state_cases):
     for line in lines:
         text = f"{line.rule}, {line.measure}, {line.group}: {line.value:.3f}"
         click.echo(f"{text} [{line.low:.3f}, {line.high:.3f}] of {line.count}")
+
+
+@click.command()
+@click.argument("folder", type=_FOLDER)
+def draw_study(folder):
+    """Draw the tables of a blind study in FOLDER: confusion, accuracy, reliability, baselines."""
+    from sonicvacuum.figures.study import draw
+
+    for path in draw(Path(folder)):
+        click.echo(str(path))
