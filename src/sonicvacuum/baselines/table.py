@@ -11,16 +11,16 @@ import numpy as np
 
 from sonicvacuum.baselines import rules
 from sonicvacuum.baselines.cases import Case
+from sonicvacuum.baselines.names import ALARM, EXACT, NULLS, OUTSIDE, SINGLES, WRONG
+from sonicvacuum.blind import design
 from sonicvacuum.blind.breakdown import label_of_verdict
 from sonicvacuum.blind.score import NONE, UNKNOWN, Row
 from sonicvacuum.blind.shares import share, strength_bin
 from sonicvacuum.blind.study import STRENGTHS
 from sonicvacuum.files import InputError
 
-EXACT, ALARM, WRONG = "exact name", "named on null", "wrong name"
-ALL = "singles, all"
 # Leftover d′ from which a case from outside the catalogue counts.
-OUTSIDE = 7.5
+LEFTOVER = 7.5
 METHOD, IDEAL = "sonicvacuum", "ideal rule"
 QUIETER = 100.0
 RULES = ("best-chi2", "bic", "nearest-shape", "forest", "state")
@@ -62,12 +62,13 @@ def _groups(rows: list[Row]) -> Iterable[tuple[str, str, list[Row], Callable[[Ro
     for strength in STRENGTHS:
         chosen = [r for r in singles if r.design == "traces" and strength_bin(r) == strength]
         yield EXACT, f"traces, d' {strength:g}", chosen, _exact
-    for design in ("one-speed", "scalars", "ball"):
-        yield EXACT, design, [r for r in singles if r.design == design], _exact
-    yield EXACT, ALL, singles, _exact
-    yield ALARM, "nulls", [r for r in rows if r.kind == "null"], _named
-    outside = [r for r in rows if r.kind == "foreign" and r.leftover >= OUTSIDE]
-    yield WRONG, "outside the catalogue", outside, _named
+    for kind in design.KINDS:
+        if kind != "traces":
+            yield EXACT, kind, [r for r in singles if r.design == kind], _exact
+    yield EXACT, SINGLES, singles, _exact
+    yield ALARM, NULLS, [r for r in rows if r.kind == "null"], _named
+    outside = [r for r in rows if r.kind == "foreign" and r.leftover >= LEFTOVER]
+    yield WRONG, OUTSIDE, outside, _named
 
 
 def _exact(row, name):
@@ -148,7 +149,7 @@ def _forest(cases, training):
 def _state(cases, most):
     from sonicvacuum.baselines import state
 
-    fit = [c for c in cases if c.row.kind != "pair" and c.row.design in ("traces", "one-speed")]
+    fit = [c for c in cases if c.row.kind != "pair" and any(cell.sensor for cell in c.cells)]
     chosen = fit[:: max(1, -(-len(fit) // most))]
     some = "all cases" if len(chosen) == len(fit) else f"{len(chosen)} of {len(fit)} cases"
     can = [c for c in chosen if c.row.kind == "single" and c.row.effects in state.EXPRESSIBLE]

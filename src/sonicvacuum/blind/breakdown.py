@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sonicvacuum.blind import catalogue
+from sonicvacuum.blind import catalogue, design
 from sonicvacuum.blind.score import NONE, UNKNOWN, Row
 from sonicvacuum.blind.shares import quantile, share, strength_bin
 from sonicvacuum.blind.study import STRENGTHS
@@ -117,10 +117,9 @@ def confusion(rows: Iterable[Row]) -> list[Confusion]:
 def accuracy(rows: Iterable[Row]) -> list[Accuracy]:
     """Singles by design and strength, groups without cases left out."""
     singles = [r for r in rows if r.kind == "single"]
-    designs = [d for d in ("traces", "one-speed", "scalars", "ball") if any(r.design == d for r in singles)]
     groups = {
         (d, s): [r for r in singles if r.design == d and strength_bin(r) == s]
-        for d in designs
+        for d in design.KINDS
         for s in (0.0, *STRENGTHS)
     }
     return [_accuracy(*key, group) for key, group in groups.items() if group]

@@ -184,6 +184,30 @@ def _coverage(truth, verdict):
     return inside, total
 
 
+@dataclass(frozen=True)
+class Line:
+    """One line: a share or a median of so many cases, its 95 % interval, and what it is measured against.
+
+    Attributes:
+        measure, group: what, of which cases.
+        count: of the cases.
+        value, low, high: with 95 % interval.
+        ideal: the ideal rule's share of the same cases, NaN where there is none.
+        of_ideal: value over ideal.
+        goal: as set beforehand.
+    """
+
+    measure: str
+    group: str
+    count: int
+    value: float
+    low: float
+    high: float
+    ideal: float
+    of_ideal: float
+    goal: str
+
+
 def write_table(lines: list, kind: type, path) -> None:
     """Rows or lines as CSV, numbers to six digits."""
     with replacing(path) as stream:

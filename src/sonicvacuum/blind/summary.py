@@ -2,38 +2,13 @@
 
 import math
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 
 import numpy as np
 
 from sonicvacuum.blind.breakdown import KINDS, ideal_share, reliability
-from sonicvacuum.blind.score import Row
+from sonicvacuum.blind.score import Line, Row
 from sonicvacuum.blind.shares import quantile, share, strength_bin
 from sonicvacuum.blind.study import STRENGTHS
-
-
-@dataclass(frozen=True)
-class Line:
-    """One line: a share or a median of so many cases, its 95 % interval, and what it is measured against.
-
-    Attributes:
-        measure, group: what, of which cases.
-        count: of the cases.
-        value, low, high: with 95 % interval.
-        ideal: the ideal rule's share of the same cases, NaN where there is none.
-        of_ideal: value over ideal.
-        goal: as set beforehand.
-    """
-
-    measure: str
-    group: str
-    count: int
-    value: float
-    low: float
-    high: float
-    ideal: float
-    of_ideal: float
-    goal: str
 
 
 def summary(rows: Iterable[Row]) -> list[Line]:

@@ -32,6 +32,7 @@ VERBS = {
     "score": "blind",
     "baselines": "baselines",
     "draw-study": "baselines",
+    "publish-study": "baselines",
 }
 
 

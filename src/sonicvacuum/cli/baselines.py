@@ -1,8 +1,12 @@
-"""`sonicvacuum baselines`, `draw-study`: simpler rules on the cases of a blind study, and its pictures."""
+"""`sonicvacuum baselines`, `draw-study`, `publish-study`: simpler rules on the cases of a blind study, its
+pictures, and what of it is kept in git.
+"""
 
 from pathlib import Path
 
 import click
+
+from sonicvacuum.cli import existing
 
 _FOLDER = click.Path(exists=True, file_okay=False)
 _RULES = ("best-chi2", "bic", "nearest-shape", "forest", "state")
@@ -45,9 +49,28 @@ def baselines(records, truth, verdicts, out, training, wanted, state_cases):
 
 @click.command()
 @click.argument("folder", type=_FOLDER)
-def draw_study(folder):
+@click.option(
+    "--picture",
+    "wanted",
+    multiple=True,
+    type=click.Choice(["confusion", "accuracy", "reliability", "baselines"]),
+    help="Only these; repeat.",
+)
+def draw_study(folder, wanted):
     """Draw the tables of a blind study in FOLDER: confusion, accuracy, reliability, baselines."""
     from sonicvacuum.figures.study import draw
 
-    for path in draw(Path(folder)):
+    for path in draw(Path(folder), wanted):
         click.echo(str(path))
+
+
+@click.command()
+@click.option("--summary", required=True, type=existing(), help="Table of sonicvacuum score.")
+@click.option("--baselines", "rivals", required=True, type=existing(), help="Table of sonicvacuum baselines.")
+@click.option("--readme", required=True, type=existing(), help="README whose part on the study is renewed.")
+@click.option("--reference", required=True, type=_FOLDER, help="Where the tables are kept in git.")
+def publish_study(summary, rivals, readme, reference):
+    """Keep the tables of a blind study in git and in the README."""
+    from sonicvacuum.report.study import publish
+
+    publish(summary, rivals, readme, reference)

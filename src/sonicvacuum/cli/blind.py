@@ -71,13 +71,12 @@ def score(truth, verdicts, out, summary, tables):
     """Compare verdicts with the truth: one row for each case, and a table with 95 % intervals."""
     from sonicvacuum.blind import breakdown
     from sonicvacuum.blind import score as scoring
-    from sonicvacuum.blind.summary import Line
     from sonicvacuum.blind.summary import summary as summarise
 
     rows = scoring.score(truth, verdicts)
     lines = summarise(rows)
     scoring.write_table(rows, scoring.Row, out)
-    scoring.write_table(lines, Line, summary)
+    scoring.write_table(lines, scoring.Line, summary)
     if tables:
         for name, (kind, table) in breakdown.TABLES.items():
             scoring.write_table(table(rows), kind, Path(tables) / f"{name}.csv")

@@ -10,24 +10,12 @@ import numpy as np
 import pandas
 from matplotlib.figure import Figure
 
+from sonicvacuum.baselines.names import PANELS, RULES
 from sonicvacuum.figures import style
 from sonicvacuum.files import InputError
 
 BLUE, ORANGE, GREEN = "#0072B2", "#D55E00", "#009E73"
 DESIGNS = {"one-speed": "one speed", "scalars": "scalars only", "ball": "one ball"}
-RULES = {
-    "sonicvacuum": "this method",
-    "ideal rule": "ideal rule (computed)",
-    "best-chi2": "best χ²",
-    "bic": "BIC",
-    "nearest-shape": "nearest residual shape",
-    "forest, trained": "random forest, training cases",
-    "forest, cross-validated": "random forest, cross-validated",
-    "state": "SINDy, full motion",
-    "state, expressible": "SINDy, laws it can express",
-    "state, noise / 100": "SINDy, 1/100 of the noise",
-    "state, noise / 100, expressible": "SINDy, 1/100 noise, expressible",
-}
 CAPTIONS = {
     "confusion": style.paragraph("""
         What is hidden (rows, with the number of cases) and what is named (columns): number of cases, shade by
@@ -151,7 +139,11 @@ def _others(table):
     """The fullest bin of each other design."""
     rest = table[table.design != "traces"].sort_values("count", ascending=False, kind="stable")
     rest = rest.drop_duplicates("design")
-    return rest.set_index("design").reindex([d for d in DESIGNS if d in set(rest.design)]).reset_index()
+    return (
+        rest.set_index("design")
+        .reindex([d for d in dict.fromkeys([*DESIGNS, *table.design]) if d in set(rest.design)])
+        .reset_index()
+    )
 
 
 def _shares(axes, x, rows, factor):
@@ -201,13 +193,6 @@ def reliability(table: pandas.DataFrame) -> Figure:
             one.set_xlim(0.0, 1.0)
         axes.set_xticklabels([])
     return figure
-
-
-PANELS = (
-    ("exact name", "singles, all", "(a) Exact name", "of single effects"),
-    ("named on null", "nulls", "(b) False alarm", "of records without effect"),
-    ("wrong name", "outside the catalogue", "(c) Wrong name", "of foreign effects"),
-)
 
 
 def baselines(table: pandas.DataFrame) -> Figure:
