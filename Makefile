@@ -59,6 +59,7 @@ bench: .venv/benched  ## measure the engine against other codes, on one core
 	LD_LIBRARY_PATH="$(CURDIR)/.venv/lib" $(BIN)/snakemake --cores 1 bench
 
 study: .venv/studied  ## the full blind study with its baselines; takes hours
+	$(BIN)/pytest workflow/study
 	$(BIN)/snakemake --cores $(CORES) blind_full
 
 lock:  ## resolve the requirements anew; versions already locked stay unless UPGRADE=--upgrade

@@ -41,25 +41,28 @@ CAPTIONS = {
 }
 
 
-def draw(folder: Path) -> list[Path]:
-    """Draw what the tables in the folder give; the SVG files written, each with its PNG."""
+def draw(folder: Path, wanted=()) -> list[Path]:
+    """Draw the wanted pictures, or all whose tables are in the folder; the SVG files, each with its PNG.
+
+    Raises:
+        InputError: where a wanted table, or every table, is missing.
+    """
     folder, written = Path(folder), []
+    chosen = list(wanted) or [name for name in CAPTIONS if (folder / f"{name}.csv").exists()]
+    missing = [name for name in chosen or CAPTIONS if not (folder / f"{name}.csv").exists()]
+    if missing:
+        command = "baselines --out" if missing[0] == "baselines" else "score --tables"
+        raise InputError(f"{folder}: {missing[0]}.csv is missing; make it with sonicvacuum {command}")
     makers = {
         "confusion": confusion,
         "accuracy": accuracy,
         "reliability": reliability,
         "baselines": baselines,
     }
-    for name, make in makers.items():
-        table = folder / f"{name}.csv"
-        if table.exists():
-            figure = make(_read(table))
-            written.append(folder / f"{name}.svg")
-            style.save(figure, written[-1], folder / f"{name}.png")
-    if not written:
-        raise InputError(
-            f"{folder}: none of {', '.join(makers)}.csv; run sonicvacuum score --tables {folder}"
-        )
+    for name in chosen:
+        figure = makers[name](_read(folder / f"{name}.csv"))
+        written.append(folder / f"{name}.svg")
+        style.save(figure, written[-1], folder / f"{name}.png")
     return written
 
 
