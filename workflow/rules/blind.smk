@@ -12,7 +12,7 @@ DETAILS = ["confusion", "accuracy", "reliability", "coverage", "seconds"]
 # What only counts and compares: data and verdicts stay as they are when it changes.
 COUNTING = ["score", "shares", "summary", "breakdown"]
 LAYERS["counting"] = [f"blind/{module}.py" for module in COUNTING]
-LAYERS["baselines"] = ["baselines", "records", "blind", "cli/baselines.py"]
+LAYERS["baselines"] = ["baselines", "records", "blind", "discover/locate.py", "cli/baselines.py"]
 LAYERS["study pictures"] = ["figures/study.py", "figures/style.py", "baselines/names.py", "cli/baselines.py"]
 
 

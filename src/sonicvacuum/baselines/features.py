@@ -11,19 +11,9 @@ import math
 import numpy as np
 
 from sonicvacuum.baselines.cases import Case, Cell
+from sonicvacuum.discover.locate import FEATURES
 from sonicvacuum.files import read_yaml
 
-FEATURES = (
-    "precursor",
-    "amplitude",
-    "delay",
-    "width",
-    "asymmetry",
-    "tail",
-    "decay",
-    "reflection",
-    "baseline",
-)
 ROLES = ("first", "inner", "last")
 QUANTITIES = ("speed", "amplitude", "duration", "decay", "restitution", "contact_duration")
 OCCURRENCES = 3

@@ -191,7 +191,7 @@ def reliability(table: pandas.DataFrame) -> Figure:
                 below.text(at, count, f"{count:d}", ha="center", va="bottom", fontsize=6.5)
         below.set_ylim(0, 1.3 * table["count"].max())
         below.set_ylabel("cases")
-        below.set_xlabel("stated probability of the first explanation")
+        below.set_xlabel("stated probability of the top explanation")
         for one in (axes, below):
             one.set_xlim(0.0, 1.0)
         axes.set_xticklabels([])
