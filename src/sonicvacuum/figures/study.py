@@ -230,5 +230,6 @@ def _bars(axes, rows, rules):
     axes.set_xlim(0.0, 163.0)
     axes.spines["bottom"].set_bounds(0.0, 100.0)
     axes.set_xticks([0, 50, 100])
-    axes.invert_yaxis()
+    # Rules without cases would shrink the axis of their panel.
+    axes.set_ylim(len(rules) - 0.4, -0.6)
     axes.tick_params(axis="y", length=0)
