@@ -154,7 +154,10 @@ def _state(cases, most):
     some = "all cases" if len(chosen) == len(fit) else f"{len(chosen)} of {len(fit)} cases"
     can = [c for c in chosen if c.row.kind == "single" and c.row.effects in state.EXPRESSIBLE]
     found = []
-    for rule, noise, quieter in (("state", "the gauges'", 1.0), ("state, noise / 100", "1/100 of", QUIETER)):
+    for rule, noise, quieter in (
+        ("state", "the gauges'", 1.0),
+        ("state, noise / 100", "a hundredth of the gauges'", QUIETER),
+    ):
         names = {c.row.id: state.name(c, quieter) for c in chosen}
         note = f"full motion of all beads, {noise} relative noise; {some} with traces"
         found += lines(rule, names, chosen, note)
