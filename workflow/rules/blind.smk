@@ -10,16 +10,14 @@ BLIND = "results/blind/{study}"
 PICTURES = ["confusion", "accuracy", "reliability", "baselines"]
 DETAILS = ["confusion", "accuracy", "reliability", "coverage", "seconds"]
 # What only counts and compares: data and verdicts stay as they are when it changes.
-COUNTING = ["score", "shares", "summary", "breakdown"]
-LAYERS["counting"] = [f"blind/{module}.py" for module in COUNTING]
+COUNTING = {"score", "shares", "summary", "breakdown", "calibrate"}
 LAYERS["baselines"] = ["baselines", "records", "blind", "discover/locate.py", "cli/baselines.py"]
 LAYERS["study pictures"] = ["figures/study.py", "figures/style.py", "baselines/names.py", "cli/baselines.py"]
 
 
 def sources_of_data():
     """Sources that make the hidden-effect data; neither engine nor scores are among them."""
-    counting = set(sources("counting")) - set(LOCKS)
-    return [path for path in sources("card", "blind") if path not in counting]
+    return [path for path in sources("card", "blind") if Path(path).stem not in COUNTING]
 
 
 def batches(part):
