@@ -16,7 +16,7 @@ COMPILE := pip compile --quiet --universal --generate-hashes --no-emit-index-url
 	--custom-compile-command "make lock"
 
 .DELETE_ON_ERROR:
-.PHONY: all env test reproduce bench lock clean help
+.PHONY: all env test reproduce bench study lock clean help
 
 all: env  ## build the environment, then run the whole pipeline
 	$(BIN)/snakemake --cores $(CORES)
@@ -40,6 +40,10 @@ env: .venv/installed  ## build the locked environment in .venv
 	@$(LOCKED) requirements-bench.lock
 	@touch $@
 
+.venv/studied: .venv/installed requirements-study.lock
+	@$(LOCKED) requirements-study.lock
+	@touch $@
+
 test: env  ## check format, style, import contracts, and run the tests
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
@@ -54,13 +58,18 @@ reproduce: env  ## regenerate figures' numbers and ledger in a clean folder and 
 bench: .venv/benched  ## measure the engine against other codes, on one core
 	LD_LIBRARY_PATH="$(CURDIR)/.venv/lib" $(BIN)/snakemake --cores 1 bench
 
+study: .venv/studied  ## the full blind study with its baselines; takes hours
+	$(BIN)/pytest workflow/study
+	$(BIN)/snakemake --cores $(CORES) blind_full
+
 lock:  ## resolve the requirements anew; versions already locked stay unless UPGRADE=--upgrade
 	@tools=$$(mktemp -d) && trap 'rm -rf "$$tools"' EXIT && $(PYTHON) -m venv "$$tools" && \
 	"$$tools/bin/python" -m pip --quiet --quiet install uv==$(UV_VERSION) && \
 	lock() { "$$tools/bin/uv" $(COMPILE) $(UPGRADE) "$$@"; } && \
 	lock pyproject.toml --group dev --output-file requirements.lock && \
 	lock --group build --constraints requirements.lock --output-file requirements-build.lock && \
-	lock --group bench --constraints requirements.lock --output-file requirements-bench.lock
+	lock --group bench --constraints requirements.lock --output-file requirements-bench.lock && \
+	lock --group study --constraints requirements.lock --output-file requirements-study.lock
 
 clean:  ## remove the environment, the results and all caches
 	rm -rf .venv results .snakemake .pytest_cache .ruff_cache .import_linter_cache .hypothesis .benchmarks

@@ -7,7 +7,10 @@ import math
 import pytest
 from click.testing import CliRunner
 
-from sonicvacuum.blind.score import Row, calibration_bins, row, score, summary, wilson
+from sonicvacuum.blind import breakdown
+from sonicvacuum.blind.score import Row, row, score
+from sonicvacuum.blind.shares import quantile, wilson
+from sonicvacuum.blind.summary import summary
 from sonicvacuum.cli import cli
 from sonicvacuum.files import InputError
 
@@ -100,8 +103,8 @@ def test_wilson_interval():
 def test_calibration_counts_how_often_the_top_is_right():
     rows = [row(truth(str(k)), verdict()) for k in range(9)]
     rows.append(row(truth(kind="null", effects=()), verdict()))
-    stated, right, count = calibration_bins(rows)[-1]
-    assert (stated, right, count) == pytest.approx((0.98, 0.9, 10))
+    last = breakdown.reliability(rows)[-1]
+    assert (last.stated, last.value, last.count) == pytest.approx((0.98, 0.9, 10))
     line = next(one for one in summary(rows) if one.measure.startswith("calibration"))
     assert line.value == pytest.approx(0.08)
 
@@ -112,6 +115,59 @@ def test_summary_puts_cases_where_they_belong():
     assert [exact[f"traces, d' {s}"].count for s in ("5", "7.5", "10", "20")] == [2, 0, 1, 1]
     assert exact["traces, d' 5"].ideal == pytest.approx(0.9)
     assert exact["traces, d' 5"].value == 1.0
+    assert exact["traces, d' 5"].of_ideal == pytest.approx(1.0 / 0.9)
+
+
+def test_confusion_has_every_name_and_counts_every_single_case():
+    two = truth("b", effects=("tsuji", "gravity"), kind="pair")
+    rows = [
+        row(truth("a"), verdict()),
+        row(truth("c"), verdict(["gravity", "tsuji"])),
+        row(truth("d"), verdict(["tsuji", "unknown"])),
+        row(truth("e", kind="foreign", effects=("dimer",)), verdict(["tsuji"])),
+        row(truth("f", kind="null", effects=()), verdict([])),
+        row(two, verdict(["gravity", "tsuji"])),
+    ]
+    cells = {(c.hidden, c.named): c for c in breakdown.confusion(rows)}
+    assert len(cells) == 24 * 25
+    filled = {key: c.count for key, c in cells.items() if c.count}
+    assert filled == {
+        ("tsuji", "tsuji"): 1,
+        ("tsuji", "several"): 2,
+        ("unknown", "tsuji"): 1,
+        ("none", "none"): 1,
+    }
+    assert cells["tsuji", "several"].share == pytest.approx(2 / 3)
+
+
+def test_accuracy_by_design_and_strength():
+    rows = [row(truth(str(k), d_prime=d), verdict()) for k, d in enumerate((5.0, 5.4, 20.0))]
+    rows.append(row(truth("w", design="ball"), verdict(["gravity"], confusable=[["gravity", "tsuji"]])))
+    found = {(a.design, a.strength): a for a in breakdown.accuracy(rows)}
+    assert set(found) == {("traces", 5.0), ("traces", 20.0), ("ball", 10.0)}
+    assert found["traces", 5.0].d_prime == pytest.approx(5.2)
+    ball = found["ball", 10.0]
+    assert (ball.exact, ball.class_level, ball.ideal) == (0.0, 1.0, 0.9)
+    assert (ball.exact_low, ball.exact_high) == wilson(0, 1)
+
+
+def test_coverage_by_effect_and_seconds_by_kind():
+    far = {"tsuji": {"alpha": {"value": 0.12, "sigma": 0.01}}}
+    rows = [row(truth("a"), verdict()), row(truth("b"), verdict(parameters=far, timing_s={"total": 4.0}))]
+    found = {c.effect: c for c in breakdown.coverage(rows)}
+    assert (found["tsuji"].count, found["tsuji"].value) == (2, 0.5)
+    assert (found["all"].count, found["gravity"].count) == (2, 0)
+    times = {s.kind: s for s in breakdown.seconds(rows)}
+    # Linear between order statistics, numpy's default.
+    assert (times["single"].median, times["single"].percentile_90) == pytest.approx((3.0, 3.8))
+    assert times["null"].count == 0
+
+
+def test_interval_of_a_median():
+    """Of ten values the binomial interval of the median is from the third to the ninth; binom(10, 1/2) holds
+    1.07 % below 2 and 5.47 % up to 2, so 2 and 8 are its 2.5 % and 97.5 % points.
+    """
+    assert quantile(range(10), 0.5) == (10, 4.5, 2.0, 8.0)
 
 
 def put(folder, id, name, content):

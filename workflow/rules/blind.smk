@@ -1,22 +1,51 @@
 """Blind test of discover: hide effects in records, discover without the truth, score against it.
 
 Cases go through in batches, so that starting processes costs little. Truths lie beside the records, never in the
-folders that discover is given.
+folders that discover is given. Simpler rules see the same cases; two of them need what `make study` installs.
 """
 
 # Study → number of batches.
-BATCHES = {"small": 4, "full": 84}
+BATCHES = {"small": 4, "training": 12, "full": 84}
 BLIND = "results/blind/{study}"
+PICTURES = ["confusion", "accuracy", "reliability", "baselines"]
+DETAILS = ["confusion", "accuracy", "reliability", "coverage", "seconds"]
+# What only counts and compares: data and verdicts stay as they are when it changes.
+COUNTING = {"score", "shares", "summary", "breakdown", "calibrate"}
+LAYERS["baselines"] = ["baselines", "records", "blind", "discover/locate.py", "cli/baselines.py"]
+LAYERS["study pictures"] = ["figures/study.py", "figures/style.py", "baselines/names.py", "cli/baselines.py"]
+
+
+def sources_of_data():
+    """Sources that make the hidden-effect data; neither engine nor scores are among them."""
+    return [path for path in sources("card", "blind") if Path(path).stem not in COUNTING]
+
+
+def batches(part):
+    """Input function: the folders of all batches of a part (records, truth, verdicts) of a study."""
+    return lambda wildcards: expand(
+        f"{BLIND}/{part}/{{batch}}", study=wildcards.study, batch=range(BATCHES[wildcards.study])
+    )
+
+
+def training(wildcards):
+    """What the rules that learn need of the training family; the small study does without."""
+    if wildcards.study != "full":
+        return []
+    parts = ["records", "truth", "verdicts"]
+    return expand(
+        f"{BLIND}/{{part}}/{{batch}}", study="training", part=parts, batch=range(BATCHES["training"])
+    )
 
 
 wildcard_constraints:
-    study="small|full",
+    study="small|training|full",
     batch="[0-9]+",
+    picture="|".join(PICTURES),
 
 
 rule hide:
     input:
-        sources=sources("card", "physics", "blind"),
+        sources=sources_of_data(),
     output:
         records=directory(f"{BLIND}/records/{{batch}}"),
         truth=directory(f"{BLIND}/truth/{{batch}}"),
@@ -55,16 +84,13 @@ rule discover_hidden:
 
 rule score:
     input:
-        truth=lambda wildcards: expand(
-            f"{BLIND}/truth/{{batch}}", study=wildcards.study, batch=range(BATCHES[wildcards.study])
-        ),
-        verdicts=lambda wildcards: expand(
-            f"{BLIND}/verdicts/{{batch}}", study=wildcards.study, batch=range(BATCHES[wildcards.study])
-        ),
+        truth=batches("truth"),
+        verdicts=batches("verdicts"),
         sources=sources("card", "blind"),
     output:
-        score=f"{BLIND}/score.csv",
-        summary=f"{BLIND}/summary.csv",
+        f"{BLIND}/score.csv",
+        f"{BLIND}/summary.csv",
+        expand(f"{BLIND}/{{table}}.csv", table=DETAILS, allow_missing=True),
     log:
         "results/logs/score/{study}.log",
     benchmark:
@@ -72,19 +98,93 @@ rule score:
     conda:
         ENVIRONMENT
     params:
-        folder=lambda wildcards: f"results/blind/{wildcards.study}",
+        folder=BLIND,
     message:
         "Scoring the {wildcards.study} study"
     shell:
         "sonicvacuum score --truth {params.folder}/truth --verdicts {params.folder}/verdicts"
-        " --out {output.score} --summary {output.summary} > {log} 2>&1"
+        " --out {params.folder}/score.csv --summary {params.folder}/summary.csv --tables {params.folder}"
+        " > {log} 2>&1"
 
 
+rule baselines:
+    input:
+        records=batches("records"),
+        truth=batches("truth"),
+        verdicts=batches("verdicts"),
+        training=training,
+        lock="requirements-study.lock",
+        sources=sources("card", "baselines"),
+    output:
+        f"{BLIND}/baselines.csv",
+    log:
+        "results/logs/baselines/{study}.log",
+    benchmark:
+        "results/benchmarks/baselines/{study}.tsv"
+    conda:
+        ENVIRONMENT
+    params:
+        folder=BLIND,
+        training=lambda wildcards, input: "--training results/blind/training" if input.training else "",
+    message:
+        "Trying simpler rules on the {wildcards.study} study"
+    shell:
+        "sonicvacuum baselines --records {params.folder}/records --truth {params.folder}/truth"
+        " --verdicts {params.folder}/verdicts {params.training} --out {output} > {log} 2>&1"
+
+
+rule draw_study:
+    input:
+        table=f"{BLIND}/{{picture}}.csv",
+        sources=sources("card", "study pictures"),
+    output:
+        svg=f"{BLIND}/{{picture}}.svg",
+        png=f"{BLIND}/{{picture}}.png",
+    log:
+        "results/logs/draw_study/{study}-{picture}.log",
+    conda:
+        ENVIRONMENT
+    params:
+        folder=BLIND,
+    message:
+        "Drawing {wildcards.picture} of the {wildcards.study} study"
+    shell:
+        "sonicvacuum draw-study {params.folder} --picture {wildcards.picture} > {log} 2>&1"
+
+
+# The small study with what the default environment can draw; its baselines: blind_small_baselines.
 rule blind_small:
     input:
         "results/blind/small/summary.csv",
+        expand("results/blind/small/{picture}.svg", picture=PICTURES[:-1]),
+
+
+rule blind_small_baselines:
+    input:
+        "results/blind/small/baselines.svg",
 
 
 rule blind_full:
     input:
         "results/blind/full/summary.csv",
+        expand("results/blind/full/{picture}.svg", picture=PICTURES),
+
+
+# Run on purpose: the tables of this run become those that README and report quote.
+rule publish_study:
+    input:
+        summary="results/blind/full/summary.csv",
+        baselines="results/blind/full/baselines.csv",
+    log:
+        "results/logs/publish_study.log",
+    localrule: True
+    conda:
+        ENVIRONMENT
+    params:
+        readme="README.md",
+        reference="workflow/resources/reference",
+    message:
+        "Keeping the blind study in git and in the README"
+    shell:
+        "sonicvacuum publish-study --summary {input.summary} --baselines {input.baselines}"
+        " --readme {params.readme} --reference {params.reference} > {log} 2>&1"

@@ -1,22 +1,16 @@
-"""Verdicts against truths: one row for each case, and a table of shares with 95 % intervals."""
+"""Verdicts against truths: one row for each case; tables made of the rows: `summary` and `breakdown`."""
 
 import csv
 import json
 import math
-from collections.abc import Callable, Iterable
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 
-import numpy as np
-from scipy import stats
-
-from sonicvacuum.blind.study import STRENGTHS
 from sonicvacuum.files import InputError, replacing
 
 CONFIDENT = 0.9
 NINETY = 1.6448536269514722  # standard deviations on either side of a 90 % interval
 NONE, UNKNOWN = "none", "unknown"
-BINS = 10
 
 
 @dataclass(frozen=True)
@@ -192,7 +186,16 @@ def _coverage(truth, verdict):
 
 @dataclass(frozen=True)
 class Line:
-    """One line of the summary: a share of so many cases, its 95 % interval, the ideal rule's share."""
+    """One line: a share or a median of so many cases, its 95 % interval, and what it is measured against.
+
+    Attributes:
+        measure, group: what, of which cases.
+        count: of the cases.
+        value, low, high: with 95 % interval.
+        ideal: the ideal rule's share of the same cases, NaN where there is none.
+        of_ideal: value over ideal.
+        goal: as set beforehand.
+    """
 
     measure: str
     group: str
@@ -201,139 +204,8 @@ class Line:
     low: float
     high: float
     ideal: float
+    of_ideal: float
     goal: str
-
-
-def wilson(successes: int, count: int) -> tuple[float, float]:
-    """95 % interval of a share (Wilson 1927; scipy.stats.binomtest); NaN without cases."""
-    if not count:
-        return math.nan, math.nan
-    interval = stats.binomtest(successes, count).proportion_ci(0.95, method="wilson")
-    return float(interval.low), float(interval.high)
-
-
-def strength_bin(row: Row) -> float:
-    """The study's strength that is nearest to the d′ reached, on a logarithmic scale; 0 below 4."""
-    if row.reached < 4.0:
-        return 0.0
-    return min(STRENGTHS, key=lambda s: abs(math.log(row.reached / s)))
-
-
-def summary(rows: Iterable[Row]) -> list[Line]:
-    """The table: what is asked of the method, as measured."""
-    rows = list(rows)
-    of = {kind: [r for r in rows if r.kind == kind] for kind in ("null", "single", "pair", "foreign")}
-    lines = []
-
-    def share(measure, group, chosen, what, goal=""):
-        lines.append(_share(measure, group, chosen, what, goal))
-
-    for noise, goal in (("white", "<= 0.01"), ("ar1", "<= 0.02"), ("quantised", "<= 0.02")):
-        share("named on null", noise, [r for r in of["null"] if r.noise == noise], _false_alarm, goal)
-    share("unknown on null", "all", of["null"], _says_unknown)
-    goals = dict(zip(STRENGTHS, (">= 0.77", ">= 0.91", ">= 0.95", ">= 0.99"), strict=True))
-    for strength, goal in goals.items():
-        chosen = [r for r in of["single"] if r.design == "traces" and strength_bin(r) == strength]
-        share("exact name", f"traces, d' {strength:g}", chosen, _exact, goal)
-    for design, goal in (("one-speed", ">= 0.87"), ("scalars", ">= 0.83"), ("ball", "")):
-        chosen = [r for r in of["single"] if r.design == design]
-        share("exact name", f"{design}, d' {_typical(chosen):.3g}", chosen, _exact, goal)
-    strong = [r for r in of["single"] if r.reached >= 9.0]
-    share("class-level name", "d' 10 and more", strong, lambda r: r.class_level, ">= 0.97")
-    share("confident wrong name", "singles", of["single"], _confident_wrong)
-    outside = [r for r in of["foreign"] if r.leftover >= 7.5]
-    share("says unknown", "outside the catalogue, leftover d' 8 and more", outside, _says_unknown, ">= 0.90")
-    share("confident wrong name", "outside the catalogue", outside, _confident_wrong, "<= 0.05")
-    for strength, goal in ((10.0, ">= 0.86"), (20.0, ">= 0.96")):
-        chosen = [r for r in of["pair"] if strength_bin(r) == strength]
-        share("exact pair", f"each d' {strength:g}", chosen, _exact, goal)
-    named = [r for r in strong if r.exact]
-    lines.append(
-        _median("held-out gap closed", "d' 10 and more, median", [r.closed for r in named], ">= 0.95")
-    )
-    lines.append(_median("held-out chi2/N", "d' 10 and more, median", [r.chi2 for r in named], "<= 1.05"))
-    lines.append(_calibration([r for r in rows if r.kind != "pair"]))
-    lines.append(_intervals(rows))
-    lines.append(_median("seconds per record", "median", [r.seconds for r in rows], ""))
-    return lines
-
-
-def _exact(row):
-    return row.exact
-
-
-def _false_alarm(row):
-    return row.false_alarm
-
-
-def _says_unknown(row):
-    return row.says_unknown
-
-
-def _confident_wrong(row):
-    return row.confident_wrong
-
-
-def _typical(rows):
-    return float(np.median([r.reached for r in rows])) if rows else math.nan
-
-
-def _share(measure, group, rows: list[Row], what: Callable, goal):
-    hits = sum(what(r) for r in rows)
-    ideal = [r.ideal for r in rows if not math.isnan(r.ideal)] if measure == "exact name" else []
-    return Line(
-        measure,
-        group,
-        len(rows),
-        hits / len(rows) if rows else math.nan,
-        *wilson(hits, len(rows)),
-        float(np.mean(ideal)) if ideal else math.nan,
-        goal,
-    )
-
-
-def _median(measure, group, values, goal):
-    """A median with the 95 % interval of its order statistics."""
-    values = np.sort([v for v in values if not math.isnan(v)])
-    n = len(values)
-    if not n:
-        return Line(measure, group, 0, math.nan, math.nan, math.nan, math.nan, goal)
-    low = int(stats.binom.ppf(0.025, n, 0.5))
-    high = min(int(stats.binom.ppf(0.975, n, 0.5)), n - 1)
-    middle = float(np.median(values))
-    return Line(measure, group, n, middle, float(values[low]), float(values[high]), math.nan, goal)
-
-
-def calibration_bins(rows: Iterable[Row]) -> list[tuple[float, float, int]]:
-    """(mean stated probability, share right, count) in ten bins of the most probable entry's probability."""
-    bins = [[] for _ in range(BINS)]
-    for row in rows:
-        truth = {"null": NONE, "foreign": UNKNOWN}.get(row.kind, row.effects)
-        bins[min(int(row.confidence * BINS), BINS - 1)].append((row.confidence, row.top == truth))
-    return [(*(float(m) for m in np.mean(b, axis=0)), len(b)) if b else (math.nan, math.nan, 0) for b in bins]
-
-
-def _calibration(rows):
-    bins = [b for b in calibration_bins(rows) if b[2]]
-    count = sum(n for _, _, n in bins)
-    error = sum(n * abs(p - right) for p, right, n in bins) / count if count else math.nan
-    return Line(
-        "calibration error (ECE)", "single verdicts", count, error, math.nan, math.nan, math.nan, "<= 0.03"
-    )
-
-
-def _intervals(rows):
-    inside, count = sum(r.inside for r in rows), sum(r.intervals for r in rows)
-    share = inside / count if count else math.nan
-    return Line(
-        "90 % interval holds truth",
-        "named rightly",
-        count,
-        share,
-        *wilson(inside, count),
-        math.nan,
-        "0.87 to 0.93",
-    )
 
 
 def write_table(lines: list, kind: type, path) -> None:

@@ -30,6 +30,9 @@ VERBS = {
     "compare": "discover",
     "hide": "blind",
     "score": "blind",
+    "baselines": "baselines",
+    "draw-study": "baselines",
+    "publish-study": "baselines",
 }
 
 
@@ -44,7 +47,7 @@ class Verbs(click.Group):
         """The command of one verb, None for an unknown one."""
         if name not in VERBS:
             return None
-        return getattr(import_module(f"{__name__}.{VERBS[name]}"), name)
+        return getattr(import_module(f"{__name__}.{VERBS[name]}"), name.replace("-", "_"))
 
 
 @click.group(cls=Verbs, context_settings={"help_option_names": ["-h", "--help"]})

@@ -1,6 +1,7 @@
 """`sonicvacuum hide`, `score`: data with something hidden in them, and how well `discover` did on them."""
 
 import re
+from pathlib import Path
 
 import click
 
@@ -61,14 +62,24 @@ def _share(text):
     "--out", required=True, type=click.Path(dir_okay=False), help="Score of each case (CSV) to write."
 )
 @click.option("--summary", required=True, type=click.Path(dir_okay=False), help="Table (CSV) to write.")
-def score(truth, verdicts, out, summary):
+@click.option(
+    "--tables",
+    type=folder,
+    help="Folder for the tables in detail: confusion, accuracy, reliability, coverage, seconds (CSV).",
+)
+def score(truth, verdicts, out, summary, tables):
     """Compare verdicts with the truth: one row for each case, and a table with 95 % intervals."""
+    from sonicvacuum.blind import breakdown
     from sonicvacuum.blind import score as scoring
+    from sonicvacuum.blind.summary import summary as summarise
 
     rows = scoring.score(truth, verdicts)
-    lines = scoring.summary(rows)
+    lines = summarise(rows)
     scoring.write_table(rows, scoring.Row, out)
     scoring.write_table(lines, scoring.Line, summary)
+    if tables:
+        for name, (kind, table) in breakdown.TABLES.items():
+            scoring.write_table(table(rows), kind, Path(tables) / f"{name}.csv")
     for line in lines:
         if line.count:
             interval = f"{line.value:.3f} [{line.low:.3f}, {line.high:.3f}]"

@@ -1,0 +1,43 @@
+"""Cases made by hand, as the tables of `discover` would give them."""
+
+import math
+
+from sonicvacuum.baselines.cases import Case, Cell, Single
+from sonicvacuum.blind.score import Row
+
+BLANK = dict.fromkeys(("closed", "chi2", "seconds"), math.nan)
+
+
+def row(id="a", kind="single", effects="tsuji", **changes):
+    base = {
+        "id": id,
+        "kind": kind,
+        "design": "traces",
+        "noise": "white",
+        "effects": effects,
+        "d_prime": 10.0,
+        "reached": 10.0,
+        "leftover": 9.0 if kind == "foreign" else 0.0,
+        "nearest": "gravity",
+        "ideal": 0.9 if kind == "single" else math.nan,
+        "named": effects,
+        "top": effects,
+        "confidence": 0.9,
+        **dict.fromkeys(("exact", "class_level"), 1),
+        **dict.fromkeys(("false_alarm", "says_unknown", "confident_wrong"), 0),
+        **BLANK,
+        **dict.fromkeys(("inside", "intervals", "simulations"), 0),
+    }
+    return Row(**(base | changes))
+
+
+def case(singles=(), cells=(), data=1000, misfit=1.5, record=None, **changes):
+    return Case(row(**changes), tuple(singles), data, misfit, tuple(cells), record, None)
+
+
+def single(effect, gain, parameters=1, cosine=math.nan):
+    return Single(effect, gain, parameters, cosine)
+
+
+def cell(run, sensor, feature, z, size=0.1):
+    return Cell(run, sensor, feature, z, size)

@@ -1,0 +1,114 @@
+"""The pictures of the blind study: drawn from the CSV, legible, the same bytes each time."""
+
+import itertools
+
+import numpy as np
+import pandas
+import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from test_drawings import texts
+
+from sonicvacuum.baselines import names
+from sonicvacuum.baselines.table import Line
+from sonicvacuum.blind import breakdown, catalogue
+from sonicvacuum.blind.score import write_table
+from sonicvacuum.figures import study
+from sonicvacuum.files import InputError
+
+IDS = [e.id for e in catalogue.ENTRIES]
+PICTURES = ["confusion", "accuracy", "reliability", "baselines"]
+
+
+def confusion():
+    named = [*IDS, "none", "unknown", "several"]
+    return [
+        breakdown.Confusion(h, n, 40 * (h == n) + (k + j) % 3, 0.9 if h == n else 0.002)
+        for k, h in enumerate(named[:-1])
+        for j, n in enumerate(named)
+    ]
+
+
+def accuracy():
+    kinds = [("traces", s) for s in (5.0, 7.5, 10.0, 20.0)] + [(d, 10.0) for d in study.DESIGNS]
+    return [breakdown.Accuracy(d, s, s, 220, 0.9, 0.86, 0.94, 0.95, 0.92, 0.97, 0.97) for d, s in kinds]
+
+
+def reliability():
+    counts = (0, 0, 3, 8, 15, 20, 60, 150, 300, 1200)
+    nothing = (np.nan,) * 3
+    return [
+        breakdown.Bin(k / 10, (k + 1) / 10, (k + 0.5) / 10, n, *((0.5, 0.3, 0.7) if n else nothing))
+        for k, n in enumerate(counts)
+    ]
+
+
+def baselines():
+    return [
+        Line(rule, measure, group, 1118, 0.93, 0.91, 0.95, "made up")
+        for rule in names.RULES
+        for measure, group, *_ in names.PANELS
+    ]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """Folder with all tables."""
+    made = tmp_path_factory.mktemp("study")
+    tables = {
+        "confusion": (confusion(), breakdown.Confusion),
+        "accuracy": (accuracy(), breakdown.Accuracy),
+        "reliability": (reliability(), breakdown.Bin),
+        "baselines": (baselines(), Line),
+    }
+    for name, (rows, kind) in tables.items():
+        write_table(rows, kind, made / f"{name}.csv")
+    return made
+
+
+def drawn(folder, name):
+    figure = getattr(study, name)(study._read(folder / f"{name}.csv"))
+    FigureCanvasAgg(figure).draw()
+    return figure
+
+
+@pytest.mark.parametrize("name", PICTURES)
+def test_texts_stay_on_the_page_and_apart(folder, name):
+    figure = drawn(folder, name)
+    found, page = texts(figure), figure.bbox
+    for text, box in found:
+        inside = page.x0 <= box.x0 and box.x1 <= page.x1 and page.y0 <= box.y0 and box.y1 <= page.y1
+        assert inside, f"{text.get_text()!r} leaves the page"
+    for (one, box), (other, other_box) in itertools.combinations(found, 2):
+        assert not box.overlaps(other_box), f"{one.get_text()!r} lies on {other.get_text()!r}"
+
+
+def test_all_tables_give_pictures_and_the_same_bytes_each_time(folder):
+    first = [path.read_bytes() for path in study.draw(folder)]
+    paths = study.draw(folder)
+    assert [p.name for p in paths] == [f"{name}.svg" for name in PICTURES]
+    assert [p.read_bytes() for p in paths] == first
+    assert all(p.with_suffix(".png").stat().st_size > 10_000 for p in paths)
+
+
+def test_confusion_shows_the_table_cell_by_cell(folder):
+    figure = drawn(folder, "confusion")
+    table = pandas.read_csv(folder / "confusion.csv", keep_default_na=False)
+    image = figure.axes[0].images[0].get_array()
+    assert image.shape == (24, 25)
+    assert np.array_equal(image.ravel(), table["share"].to_numpy(float))
+    assert [t.get_text() for t in figure.axes[0].get_xticklabels()] == [*IDS, "none", "unknown", "several"]
+
+
+def test_empty_rows_of_a_small_study_are_drawn_too(folder, tmp_path):
+    few = [c for c in accuracy() if c.design == "traces" and c.strength == 10.0]
+    write_table(few, breakdown.Accuracy, tmp_path / "accuracy.csv")
+    empty = [breakdown.Confusion(c.hidden, c.named, 0, np.nan) for c in confusion()]
+    write_table(empty, breakdown.Confusion, tmp_path / "confusion.csv")
+    assert [p.name for p in study.draw(tmp_path)] == ["confusion.svg", "accuracy.svg"]
+
+
+def test_missing_tables_are_named(tmp_path):
+    with pytest.raises(InputError, match=r"confusion\.csv is missing"):
+        study.draw(tmp_path)
+    with pytest.raises(InputError, match=r"baselines\.csv is missing"):
+        study.draw(tmp_path, ["baselines"])
