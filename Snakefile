@@ -17,6 +17,7 @@ rule all:
         "results/ledger.csv",
         "results/assumptions.csv",
         "results/benchmarks.csv",
+        "results/blind/small/summary.csv",
         expand("results/discover/{record}/index.html", record=RECORDS),
         expand("figures/{figure}.{kind}", figure=FIGURES, kind=["csv", "svg", "png"]),
 

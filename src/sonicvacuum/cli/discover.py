@@ -12,7 +12,12 @@ from sonicvacuum.cli import existing
 @click.command()
 @click.argument("records", nargs=-1, required=True, type=click.Path())
 @click.option("--out", required=True, type=click.Path(file_okay=False), help="Folder to write.")
-@click.option("--figures/--no-figures", default=True, show_default=True, help="Draw the pictures.")
+@click.option(
+    "--figures/--no-figures",
+    default=True,
+    show_default=True,
+    help="Draw the pictures and write the page, index.html.",
+)
 @click.option(
     "--threads",
     type=click.IntRange(1),
@@ -33,8 +38,10 @@ def discover(records, out, figures, threads):
         session.write(result, folder)
         if figures:
             from sonicvacuum.figures.discovery import draw
+            from sonicvacuum.report.record import write_page
 
             draw(folder)
+            write_page(folder)
         click.echo(f"{path}: {_sentence(result.verdict)}")
 
 
