@@ -48,7 +48,13 @@ LAYERS = {
     "ledger": ["paper", "cli/ledger.py"],
     "figures": ["figures", "observe", "paper", "cli/draw.py"],
     "report": ["report", "cli/report.py"],
-    "pages": ["report", "figures/discovery.py", "figures/disagreement.py", "figures/posterior.py", "figures/style.py"],
+    "pages": [
+        "report",
+        "figures/discovery.py",
+        "figures/disagreement.py",
+        "figures/posterior.py",
+        "figures/style.py",
+    ],
     "discover": ["observe", "records", "discover", "cli/discover.py"],
     "blind": ["observe", "records", "blind", "cli/blind.py"],
 }
@@ -61,7 +67,9 @@ def sources(*layers):
     found = set()
     for part in (part for layer in layers for part in LAYERS[layer]):
         path = package / part
-        found.update((p for kind in ("*.py", "*.j2", "*.css") for p in path.rglob(kind)) if path.is_dir() else [path])
+        found.update(
+            (p for kind in ("*.py", "*.j2", "*.css") for p in path.rglob(kind)) if path.is_dir() else [path]
+        )
     return sorted(str(path) for path in found if path.name != "bench.py") + LOCKS
 
 

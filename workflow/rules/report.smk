@@ -79,7 +79,9 @@ rule page:
         figures=lambda wildcards, input: [f"--figure {path}" for path in input.figures],
         cards=lambda wildcards, input: [f"--card {path}" for path in input.cards],
         locks=lambda wildcards, input: [f"--lock {path}" for path in input.locks],
-        discoveries=lambda wildcards, input: [f"--discovery {Path(path).parent}" for path in input.discoveries],
+        discoveries=lambda wildcards, input: [
+            f"--discovery {Path(path).parent}" for path in input.discoveries
+        ],
         blind_full=lambda wildcards, input: f"--blind-full {input.blind_full}" if input.blind_full else "",
     message:
         "Writing the report"
