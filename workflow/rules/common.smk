@@ -16,8 +16,7 @@ ENVIRONMENT = "../envs/locked.yaml"
 # Jobs call the command that stands beside this interpreter, whether or not its environment is activated.
 shell.prefix(f'export PATH="{Path(sys.executable).parent}:$PATH"; ')
 FIGURES = ["fig3", "fig4", "fig5", "fig6"]
-# Tables that discover writes beside its verdict.
-TABLES = ["where", "candidates", "gap", "limits", "traces", "parameters"]
+
 
 try:
     CONFIG = configuration.read(CONFIG_FILE)

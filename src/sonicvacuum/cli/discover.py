@@ -1,5 +1,5 @@
-"""`sonicvacuum discover`, `compare`: what a record of measured data says is missing, and a model's score on
-a record.
+"""`sonicvacuum discover`, `page`, `compare`: what a record of measured data says is missing, told on a page,
+and a model's score on a record.
 """
 
 from pathlib import Path
@@ -37,12 +37,27 @@ def discover(records, out, figures, threads):
         result = session.discover(read(path), threads or available_threads())
         session.write(result, folder)
         if figures:
-            from sonicvacuum.figures.discovery import draw
-            from sonicvacuum.report.record import write_page
-
-            draw(folder)
-            write_page(folder)
+            _illustrate(folder)
         click.echo(f"{path}: {_sentence(result.verdict)}")
+
+
+@click.command()
+@click.argument("folders", nargs=-1, required=True, type=click.Path(exists=True, file_okay=False))
+def page(folders):
+    """Draw the pictures of what discover wrote into FOLDERS, and write its page, index.html."""
+    from sonicvacuum.report.record import section
+
+    for folder in map(Path, folders):
+        section(folder)  # what is not a discovery's folder is refused before anything is drawn
+        _illustrate(folder)
+
+
+def _illustrate(folder):
+    from sonicvacuum.figures.discovery import draw
+    from sonicvacuum.report.record import write_page
+
+    draw(folder)
+    write_page(folder)
 
 
 def _folders(records, out):
