@@ -6,7 +6,7 @@ import click
 
 from sonicvacuum.cli import existing
 from sonicvacuum.cli.card import read_card
-from sonicvacuum.files import replacing
+from sonicvacuum.files import InputError, replacing
 
 _FILE = existing()
 
@@ -55,12 +55,18 @@ def report(
     "--reference", required=True, type=click.Path(dir_okay=False), help="Where the ledger is kept in git."
 )
 @click.option("--benchmark", type=_FILE, help="Table of the benchmark (Markdown), where one was made.")
-def publish(ledger, claims, readme, guide, reference, benchmark):
+@click.option("--study", type=_FILE, help="Scores of the small blind study.")
+@click.option("--naming", type=click.Path(dir_okay=False), help="Where its naming is kept in git.")
+def publish(ledger, claims, readme, guide, reference, benchmark, study, naming):
     """Keep the ledger as the reference of later checks; renew the README's table and the figures' guide."""
     from sonicvacuum import figures
-    from sonicvacuum.report.publish import publish as write
+    from sonicvacuum.report import publish as keep
 
-    write(ledger, readme, reference, benchmark)
+    if (study is None) != (naming is None):
+        raise InputError("publish: --study and --naming go together: give both, or neither")
+    keep.publish(ledger, readme, reference, benchmark)
+    if study:
+        keep.publish_study(study, naming)
     with replacing(guide) as stream:
         stream.write(figures.readme(claims))
 

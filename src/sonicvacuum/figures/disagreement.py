@@ -21,8 +21,9 @@ def where(cells: list[dict[str, str]]):
         table[features.index(c["feature"]), places.index((c["run"], c["sensor"]))] = float(c["z_before"])
     wide = min(DOUBLE, 45.0 + 9.0 * len(places))
     room = 6.0 + 1.25 * max(len(f"{r} {s}") for r, s in places)
-    figure = canvas(wide, room + 6.0 * len(features) + 3.0)
-    axes = panel(figure, (22.0, room, wide - 46.0, 6.0 * len(features)))
+    high = max(6.0 * len(features), 30.0)  # the least that the label of the colours needs
+    figure = canvas(wide, room + high + 3.0)
+    axes = panel(figure, (22.0, room, wide - 46.0, high))
     image = axes.imshow(table, cmap="PuOr", vmin=-LIMIT, vmax=LIMIT, aspect="auto")
     for (i, j), z in np.ndenumerate(table):
         if abs(z) >= 3.0 and len(places) <= 16:
@@ -33,9 +34,7 @@ def where(cells: list[dict[str, str]]):
     )
     axes.set_yticks(range(len(features)), features)
     axes.tick_params(length=0)
-    bar = figure.colorbar(
-        image, cax=panel(figure, (wide - 20.0, room, 3.0, 6.0 * len(features))), extend="both"
-    )
+    bar = figure.colorbar(image, cax=panel(figure, (wide - 20.0, room, 3.0, high)), extend="both")
     bar.set_label("score $z$ of the residual")
     return figure
 

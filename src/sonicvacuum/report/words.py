@@ -72,12 +72,24 @@ def headline(verdict: Verdict) -> str:
             f"{in_words(odds.get('unknown', 0.0))}."
         )
     told = [f"{effect(name).title} ({name}): {effect(name).missing}" for name in found]
-    if len(found) == 1:
+    if len(found) == 1 and verdict.confusable:
+        text = _one_of(verdict, told[0])
+    elif len(found) == 1:
         text = f"What is missing: {told[0]}. That is {in_words(odds.get(found[0], 0.0))}."
     else:
         text = f"Two effects are missing: {'; '.join(told)}."
         text += f" No single effect does: {_singles(odds)}."
     return text + (" Even so, a misfit is left that nothing of the catalogue explains." if unknown else "")
+
+
+def _one_of(verdict, told):
+    """A single effect with others that these data cannot tell from it."""
+    members, odds = verdict.confusable[0], verdict.probabilities
+    together = in_words(sum(odds.get(name, 0.0) for name in members))
+    return (
+        f"What is missing is one of {joined(members, 'or')}, which these data cannot tell apart: together "
+        f"{together}. Most probable among them, {share(odds.get(members[0], 0.0))}: {told}."
+    )
 
 
 def _nothing(odds):
