@@ -1,4 +1,4 @@
-"""The truth of a blind case cannot reach its verdict, which is the same with the truth next door or without."""
+"""No truth of a blind case reaches its verdict, which is the same with the truth next door or without."""
 
 import json
 import os
