@@ -167,6 +167,8 @@ def gap(verdict: Verdict) -> str:
         )
         if not verdict.named:
             return f"{text} As nothing was added, nothing changes."
+        if fitted.after == fitted.before:
+            return f"{text} Nothing was added that would lower it."
         return f"{text} The nearest model that was found, which is not named, leaves {fitted.after:.3g}."
     text = (
         "With the nuisances fitted, the nominal model leaves a mean squared residual of "
