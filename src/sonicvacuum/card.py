@@ -86,8 +86,21 @@ class SensorBlock(_Block):
     lowpass_us: NonNegative = 0.0
 
 
+class ModelBlock(_Block):
+    """What a case takes from the model that `discover` makes of a record.
+
+    `specimen: other` for another chain of the same material, which takes the modulus and the contact laws but
+    no property of that record's chain, gauges or striker; `losses: left-out` for the twin without what takes
+    energy.
+    """
+
+    record: Name
+    specimen: Literal["same", "other"] = "same"
+    losses: Literal["kept", "left-out"] = "kept"
+
+
 class CaseBlock(_Block):
-    """One case of `config.yaml`."""
+    """One case of `config.yaml`; `model` is put in once `discover` has made it (`paper.named`)."""
 
     title: str
     chain: ChainBlock
@@ -97,6 +110,7 @@ class CaseBlock(_Block):
     sample_us: Positive = 0.5
     materials: dict[str, MaterialBlock] = {}
     effects: dict[str, dict[str, float | str]] = {}
+    model: ModelBlock | None = None
     variants: dict[str, dict[str, Any]] = {}
 
 

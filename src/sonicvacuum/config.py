@@ -1,11 +1,12 @@
 """`config.yaml`: the cases to simulate and what to make of them, checked before any job runs."""
 
+from pathlib import PurePosixPath
 from typing import Annotated, Any
 
 import msgspec
 from msgspec import Meta, Struct
 
-from sonicvacuum.card import Card, CardError, CaseBlock, Name, merged, resolve, variant_names
+from sonicvacuum.card import Card, CardError, CaseBlock, ModelBlock, Name, merged, resolve, variant_names
 from sonicvacuum.files import InputError, convert, read_yaml
 
 
@@ -15,10 +16,17 @@ class Config(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     Attributes:
         cases: name → block, see `sonicvacuum.card.CaseBlock`.
         ledger: column of the ledger → the variants that stand for it, the first that a case has being taken.
+        discover: folders of the records in which `discover` looks for what is missing.
     """
 
     cases: Annotated[dict[Name, dict[str, Any]], Meta(min_length=1)]
     ledger: dict[Name, list[Name]]
+    discover: list[str] = []
+
+    @property
+    def records(self) -> dict[str, str]:
+        """Name of a record, that of its folder → the folder."""
+        return {PurePosixPath(folder).name: folder for folder in self.discover}
 
 
 def read(path) -> Config:
@@ -28,10 +36,31 @@ def read(path) -> Config:
         InputError: naming the file, the key, the value and the cure.
     """
     config = convert(read_yaml(path), Config, path)
+    for place, folder in enumerate(config.discover):
+        if config.records[PurePosixPath(folder).name] != folder:
+            raise InputError(
+                f"{path}: discover[{place}]: is {folder!r}; another record has that folder name: rename one"
+            )
     for case, block in config.cases.items():
         for variant in variant_names(block):
             card(config, case, variant, path)
+            _check_model(config, case, variant, path)
     return config
+
+
+def _check_model(config, case, variant, path):
+    wanted = model(config, case, variant)
+    if wanted and wanted.record not in config.records:
+        raise InputError(
+            f"{path}: cases.{case}: variant {variant}: model.record: is {wanted.record!r}; "
+            f"no such record under discover; known: {', '.join(config.records) or 'none'}"
+        )
+
+
+def model(config: Config, case: str, variant: str) -> ModelBlock | None:
+    """What a variant takes from the model of a record; None for most."""
+    written = merged(config.cases[case], variant).get("model")
+    return convert(written, ModelBlock, "config.yaml", f"cases.{case}.model") if written else None
 
 
 def card(config: Config, case: str, variant: str, path="config.yaml") -> Card:

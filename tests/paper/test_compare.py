@@ -46,20 +46,26 @@ def test_missing_case_and_absent_metric_are_told_apart():
     assert compared(rows, "speed_ratio_fig3b_fig3a").reason == "fig3a.matched/speed/g9-g5: no pulse"
 
 
+def lossy(case, *row, effects=1.0):
+    return [Row(case, *row), Row(case, "loss_effects", "", effects, "1")]
+
+
 def test_losses_are_compared_with_the_lossless_twin():
-    lossy = Row("fig5a.named", "valley_depth", "g9", 0.8, "1")
-    assert "no loss effect has been named" in compared([lossy], "losses_delay_splitting", "named").reason
+    named = lossy("fig5a.named", "valley_depth", "g9", 0.8, "1")
+    assert "no loss effect has been named" in compared(named, "losses_delay_splitting", "named").reason
     twin = Row("fig5a.named-lossless", "valley_depth", "g9", 0.95, "1")
-    assert compared([lossy, twin], "losses_delay_splitting", "named").value == 1.0
+    assert compared([*named, twin], "losses_delay_splitting", "named").value == 1.0
     alike = Row("fig5a.named-lossless", "valley_depth", "g9", 0.81, "1")
-    assert compared([lossy, alike], "losses_delay_splitting", "named").value == 0.0
+    assert compared([*named, alike], "losses_delay_splitting", "named").value == 0.0
+    elastic = lossy("fig5a.named", "valley_depth", "g9", 0.8, "1", effects=0.0)
+    assert not compared([*elastic, twin], "losses_delay_splitting", "named").known
 
 
 def test_decay_counts_only_where_a_loss_is_named():
-    decay = Row("fig3a.named", "decay", "g9-g5", 0.9, "1")
-    assert not compared([decay], "decay_with_losses", "named").known
-    twin = Row("fig3a.named-lossless", "decay", "g9-g5", 1.0, "1")
-    assert compared([decay, twin], "decay_with_losses", "named").value == 0.9
+    elastic = lossy("fig3a.named", "decay", "g9-g5", 0.9, "1", effects=0.0)
+    assert not compared(elastic, "decay_with_losses", "named").known
+    damped = lossy("fig3a.named", "decay", "g9-g5", 0.9, "1")
+    assert compared(damped, "decay_with_losses", "named").value == 0.9
 
 
 def test_modulus_of_the_printed_speed_is_exact_for_a_power_law():

@@ -1,6 +1,7 @@
 """The workflow makes what is missing or touched, and nothing else; bad input stops it with one sentence.
 
-The pipeline is run once on two small cases; what a change would bring is then read off the plan.
+The pipeline is run once on two small cases and a small record; what a change would bring is then read off the
+plan.
 """
 
 import re
@@ -14,6 +15,8 @@ CONFIG = """\
 ledger:
   handbook: [soft, nominal]
   matched: [hard, nominal]
+  named: [found]
+discover: [records/ball]
 cases:
   coated:
     title: Five coated beads
@@ -28,6 +31,7 @@ cases:
     variants:
       soft: {}
       hard: {materials: {parylene-c: {modulus_GPa: 15.0}}}
+      found: {model: {record: ball}}
   sweep:
     title: Two speeds
     chain: *chain
@@ -35,8 +39,27 @@ cases:
     sensors: [{id: g2, kind: embedded, bead: 3}, {id: wall, kind: wall}]
     duration_us: 400
 """
+# One ball on a wall, rebounding as it should: the smallest record there is.
+RECORD = """\
+format: 1
+title: Steel ball on a steel wall
+chain:
+  beads: 0
+  orientation: vertical
+  bead: {diameter_mm: 10.0, mass_g: 4.0, material: stainless-steel}
+  wall: {material: stainless-steel}
+sensors: []
+runs:
+  - id: slow
+    striker: {shape: sphere, diameter_mm: 10.0, material: stainless-steel, mass_g: 4.0, speed_m_s: 0.5}
+    observables:
+      - {quantity: restitution, value: 0.99, sigma: 0.01, unit: 1}
+"""
 TARGET = "results/metrics.csv"
-ALL = {"card": 3, "simulate": 3, "observe": 3, "metrics": 1}
+ALL = {"discover": 1, "card": 4, "simulate": 4, "observe": 4, "metrics": 1}
+# What follows from the record alone.
+FOUND = {"discover": 1, "card": 1, "simulate": 1, "observe": 1, "metrics": 1}
+PAGE = "results/discover/ball/index.html"
 
 
 def snakemake(folder, *arguments):
@@ -62,8 +85,10 @@ def finished(tmp_path_factory, pytestconfig):
     for part in ("Snakefile", "requirements.lock", "requirements-build.lock"):
         shutil.copy2(root / part, folder / part)
     (folder / "config.yaml").write_text(CONFIG)
+    (folder / "records/ball").mkdir(parents=True)
+    (folder / "records/ball/record.yaml").write_text(RECORD)
     assert planned(folder) == ALL
-    done = snakemake(folder, TARGET)
+    done = snakemake(folder, TARGET, PAGE)
     assert done.returncode == 0, done.stderr
     return folder
 
@@ -89,13 +114,13 @@ def test_touching_without_changing_plans_nothing(project):
 def test_an_edit_above_the_simulation_leaves_the_simulation_alone(project):
     with open(project / "src/sonicvacuum/observe/pulse.py", "a") as stream:
         stream.write("# edited\n")
-    assert planned(project) == {"observe": 3, "metrics": 1}
+    assert planned(project) == FOUND | {"observe": 4}
 
 
 def test_an_edit_of_the_stepper_replans_all_that_follows(project):
     with open(project / "src/sonicvacuum/physics/kernel.py", "a") as stream:
         stream.write("# edited\n")
-    assert planned(project) == {"simulate": 3, "observe": 3, "metrics": 1}
+    assert planned(project) == FOUND | {"simulate": 4, "observe": 4}
 
 
 def test_changing_one_variant_reruns_that_card_alone(project):
@@ -107,6 +132,29 @@ def test_adding_a_case_runs_that_case_alone(project):
     block = "  third:\n" + CONFIG.split("  sweep:\n")[1].replace("*chain", "*chain\n    materials: {}")
     (project / "config.yaml").write_text(CONFIG + block)
     assert planned(project) == {"card": 1, "simulate": 1, "observe": 1, "metrics": 1}
+
+
+def test_new_data_are_looked_into_and_change_the_cases_that_take_their_model(project):
+    (project / "records/ball/record.yaml").write_text(RECORD.replace("0.99", "0.98"))
+    assert planned(project) == FOUND
+
+
+def test_an_edit_of_the_wording_discovers_nothing_anew(project):
+    with open(project / "src/sonicvacuum/report/words.py", "a") as stream:
+        stream.write("# edited\n")
+    assert planned(project) == {}
+    assert planned(project, PAGE) == {"record_page": 1}
+
+
+def test_a_folder_without_a_record_stops_with_one_sentence(project):
+    (project / "config.yaml").write_text(CONFIG.replace("records/ball", "records/bell"))
+    done = snakemake(project, "--dry-run", TARGET)
+    assert done.returncode != 0
+    assert "model.record: is 'ball'; no such record under discover; known: bell" in done.stdout + done.stderr
+    (project / "config.yaml").write_text(CONFIG.replace("records/ball", "elsewhere/ball"))
+    done = snakemake(project, "--dry-run", TARGET)
+    assert done.returncode != 0
+    assert "discover: elsewhere/ball: no record.yaml in this folder" in done.stdout + done.stderr
 
 
 def test_a_new_lock_replans_everything(project):

@@ -1,9 +1,10 @@
-"""One resolved card for each variant of each case."""
+"""One resolved card for each variant of each case, with the model that discover made where it asks for one."""
 
 
 rule card:
     input:
-        sources=sources("card"),
+        model=model_of,
+        sources=lambda wildcards: sources("card", *(["model"] if model_of(wildcards) else [])),
     output:
         "results/cards/{card}.json",
     log:
@@ -16,10 +17,11 @@ rule card:
         config=CONFIG_FILE,
         case=lambda wildcards: wildcards.card.split(".")[0],
         variant=lambda wildcards: wildcards.card.split(".")[1],
+        model=lambda wildcards, input: f"--model {input.model}" if input.model else "",
         # The card's own text, so that an edit of config.yaml reruns the cards that it changes and no other.
         resolved=resolved,
     message:
         "Resolving {wildcards.card}"
     shell:
         "sonicvacuum card --config {params.config} --case {params.case} --variant {params.variant}"
-        " --out {output} 2> {log}"
+        " {params.model} --out {output} 2> {log}"

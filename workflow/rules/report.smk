@@ -2,6 +2,8 @@
 
 CLAIMS = "workflow/resources/claims.csv"
 ASSUMPTIONS = "workflow/resources/assumptions.csv"
+# The full study takes hours: its table is kept in git, once it has been made.
+BLIND_FULL = "workflow/resources/reference/blind_full.csv"
 
 
 rule ledger:
@@ -61,8 +63,10 @@ rule page:
         figures=expand("figures/{figure}.svg", figure=FIGURES),
         cards=expand("results/cards/{card}.json", card=CARDS),
         locks=LOCKS,
-        template="src/sonicvacuum/report/page.html.j2",
-        sources=sources("card", "report", "figures"),
+        discoveries=expand("results/discover/{record}/index.html", record=RECORDS),
+        blind_small="results/blind/small/summary.csv",
+        blind_full=[BLIND_FULL] if Path(BLIND_FULL).exists() else [],
+        sources=sources("card", "report", "figures", "discover"),
     output:
         report("results/report.html", category="Report", caption="../report/page.rst"),
     log:
@@ -75,12 +79,17 @@ rule page:
         figures=lambda wildcards, input: [f"--figure {path}" for path in input.figures],
         cards=lambda wildcards, input: [f"--card {path}" for path in input.cards],
         locks=lambda wildcards, input: [f"--lock {path}" for path in input.locks],
+        discoveries=lambda wildcards, input: [
+            f"--discovery {Path(path).parent}" for path in input.discoveries
+        ],
+        blind_full=lambda wildcards, input: f"--blind-full {input.blind_full}" if input.blind_full else "",
     message:
         "Writing the report"
     shell:
         "sonicvacuum report --ledger {input.ledger} --assumptions {input.assumptions}"
         " --metrics {input.metrics} --claims {input.claims} {params.figures}"
-        " {params.cards} {params.locks} --out {output} 2> {log}"
+        " {params.cards} {params.locks} {params.discoveries} --blind-small {input.blind_small}"
+        " {params.blind_full} --out {output} 2> {log}"
 
 
 rule timings:
@@ -100,11 +109,12 @@ rule timings:
         "sonicvacuum timings results/benchmarks --out {output} 2> {log}"
 
 
-# Run on purpose: the ledger of this run becomes the one that later runs are compared with.
+# Run on purpose: ledger and naming of this run become those that later runs are compared with.
 rule publish:
     input:
         ledger="results/ledger.csv",
         claims=CLAIMS,
+        study="results/blind/small/score.csv",
     log:
         "results/logs/publish.log",
     localrule: True
@@ -114,13 +124,15 @@ rule publish:
         readme="README.md",
         reference="workflow/resources/reference/ledger.csv",
         guide="figures/README.md",
+        naming="workflow/resources/reference/blind_small.csv",
         # Made by `make bench` only, on purpose.
         benchmark="--benchmark results/bench.md" if Path("results/bench.md").exists() else "",
     message:
         "Keeping the ledger in git and in the README"
     shell:
         "sonicvacuum publish --ledger {input.ledger} --claims {input.claims} --readme {params.readme}"
-        " --guide {params.guide} --reference {params.reference} {params.benchmark} 2> {log}"
+        " --guide {params.guide} --reference {params.reference} --study {input.study} --naming {params.naming}"
+        " {params.benchmark} 2> {log}"
 
 
 # Figure tables and ledger made anew in clean folders, compared with those in git.

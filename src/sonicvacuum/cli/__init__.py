@@ -27,6 +27,7 @@ VERBS = {
     "timings": "report",
     "record": "record",
     "discover": "discover",
+    "page": "discover",
     "compare": "discover",
     "hide": "blind",
     "score": "blind",

@@ -15,14 +15,20 @@ from sonicvacuum.materials import MATERIALS
 @click.option("--config", "path", default="config.yaml", show_default=True, type=existing())
 @click.option("--case", help="Name of the case; without it, all cards are listed.")
 @click.option("--variant", default="nominal", show_default=True)
+@click.option("--model", type=existing(), help="model.json of discover, where the case asks for one.")
 @click.option("--out", type=click.Path(dir_okay=False), help="File to write; default: standard output.")
-def card(path, case, variant, out):
+def card(path, case, variant, model, out):
     """Resolve one case of the configuration into a card (JSON, SI units)."""
     config = configuration.read(path)
     if case is None:
         click.echo("\n".join(configuration.card_names(config)))
         return
     resolved = configuration.card(config, case, variant, path)
+    wanted = configuration.model(config, case, variant)
+    if (wanted is None) != (model is None):
+        raise InputError(f"{path}: cases.{case}: variant {variant}: {_cure(wanted)}")
+    if wanted:
+        resolved = with_model(resolved, model, wanted)
     if resolved.effects:
         from sonicvacuum.study import set_up
 
@@ -33,6 +39,20 @@ def card(path, case, variant, out):
         return
     with replacing(out, "wb") as stream:
         stream.write(text)
+
+
+def _cure(wanted):
+    if wanted is None:
+        return "takes no model; leave --model out, or give the variant the key model"
+    return f"takes the model of {wanted.record}; give --model with the model.json that discover wrote for it"
+
+
+def with_model(card: Card, path, wanted=None) -> Card:
+    """The card with a model of discover in it."""
+    from sonicvacuum.discover.compare import read_model
+    from sonicvacuum.paper.named import extended
+
+    return extended(card, read_model(path), wanted)
 
 
 @click.command()

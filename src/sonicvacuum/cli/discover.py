@@ -1,5 +1,5 @@
-"""`sonicvacuum discover`, `compare`: what a record of measured data says is missing, and a model's score on
-a record.
+"""`sonicvacuum discover`, `page`, `compare`: what a record of measured data says is missing, told on a page,
+and a model's score on a record.
 """
 
 from pathlib import Path
@@ -13,7 +13,12 @@ from sonicvacuum.cli import existing
 @click.argument("records", nargs=-1, required=True, type=click.Path())
 @click.option("--out", required=True, type=click.Path(file_okay=False), help="Folder to write.")
 @click.option("--together", is_flag=True, help="RECORDS are of one chain and its gauges: one verdict on all.")
-@click.option("--figures/--no-figures", default=True, show_default=True, help="Draw the pictures.")
+@click.option(
+    "--figures/--no-figures",
+    default=True,
+    show_default=True,
+    help="Draw the pictures and write the page, index.html.",
+)
 @click.option(
     "--threads",
     type=click.IntRange(1),
@@ -33,10 +38,27 @@ def discover(records, out, together, figures, threads):
         result = session.discover(*(read(p) for p in paths), threads=threads or available_threads())
         session.write(result, folder)
         if figures:
-            from sonicvacuum.figures.discovery import draw
-
-            draw(folder)
+            _illustrate(folder)
         click.echo(f"{', '.join(paths)}: {_sentence(result.verdict)}")
+
+
+@click.command()
+@click.argument("folders", nargs=-1, required=True, type=click.Path(exists=True, file_okay=False))
+def page(folders):
+    """Draw the pictures of what discover wrote into FOLDERS, and write its page, index.html."""
+    from sonicvacuum.report.record import section
+
+    for folder in map(Path, folders):
+        section(folder)  # what is not a discovery's folder is refused before anything is drawn
+        _illustrate(folder)
+
+
+def _illustrate(folder):
+    from sonicvacuum.figures.discovery import draw
+    from sonicvacuum.report.record import write_page
+
+    draw(folder)
+    write_page(folder)
 
 
 def _folders(records, out):

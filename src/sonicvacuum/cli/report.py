@@ -6,7 +6,7 @@ import click
 
 from sonicvacuum.cli import existing
 from sonicvacuum.cli.card import read_card
-from sonicvacuum.files import replacing
+from sonicvacuum.files import InputError, replacing
 
 _FILE = existing()
 
@@ -19,15 +19,27 @@ _FILE = existing()
 @click.option("--figure", "figures", multiple=True, type=_FILE, help="SVG of a figure; repeat.")
 @click.option("--card", "cards", multiple=True, type=_FILE, help="Resolved card; repeat.")
 @click.option("--lock", "locks", multiple=True, type=_FILE, help="Lock file of the environment; repeat.")
+@click.option(
+    "--discovery",
+    "discoveries",
+    multiple=True,
+    type=click.Path(exists=True, file_okay=False),
+    help="Folder that discover wrote; repeat.",
+)
+@click.option("--blind-small", type=_FILE, help="Summary of the small blind study.")
+@click.option("--blind-full", type=click.Path(dir_okay=False), help="That of the full one, where it is kept.")
 @click.option("--out", required=True, type=click.Path(dir_okay=False), help="Page (HTML) to write.")
-def report(ledger, assumptions, metrics, claims, figures, cards, locks, out):
-    """Write the self-contained page with figures, ledger, audit and provenance."""
+def report(
+    ledger, assumptions, metrics, claims, figures, cards, locks, discoveries, blind_small, blind_full, out
+):
+    """Write the self-contained page with figures, ledger, audit, discoveries and provenance."""
     from sonicvacuum.figures import caption
     from sonicvacuum.report.page import build
 
     captioned = [(figure, caption(Path(figure).stem)) for figure in figures]
     read = [read_card(card) for card in cards]
-    text = build(ledger, assumptions, metrics, claims, captioned, read, locks)
+    tables = (ledger, assumptions, metrics, claims)
+    text = build(*tables, captioned, read, locks, discoveries, blind_small, blind_full)
     with replacing(out) as stream:
         stream.write(text)
 
@@ -43,12 +55,18 @@ def report(ledger, assumptions, metrics, claims, figures, cards, locks, out):
     "--reference", required=True, type=click.Path(dir_okay=False), help="Where the ledger is kept in git."
 )
 @click.option("--benchmark", type=_FILE, help="Table of the benchmark (Markdown), where one was made.")
-def publish(ledger, claims, readme, guide, reference, benchmark):
+@click.option("--study", type=_FILE, help="Scores of the small blind study.")
+@click.option("--naming", type=click.Path(dir_okay=False), help="Where its naming is kept in git.")
+def publish(ledger, claims, readme, guide, reference, benchmark, study, naming):
     """Keep the ledger as the reference of later checks; renew the README's table and the figures' guide."""
     from sonicvacuum import figures
-    from sonicvacuum.report.publish import publish as write
+    from sonicvacuum.report import publish as keep
 
-    write(ledger, readme, reference, benchmark)
+    if (study is None) != (naming is None):
+        raise InputError("publish: --study and --naming go together: give both, or neither")
+    keep.publish(ledger, readme, reference, benchmark)
+    if study:
+        keep.publish_study(study, naming)
     with replacing(guide) as stream:
         stream.write(figures.readme(claims))
 

@@ -3,14 +3,20 @@
 import click
 
 from sonicvacuum.cli import existing
-from sonicvacuum.cli.card import read_card
+from sonicvacuum.cli.card import read_card, with_model
 
 
 @click.command()
 @click.argument("card", type=existing())
+@click.option(
+    "--model",
+    type=existing(),
+    help="model.json of discover to put into the chain first; to observe the result, put it into the card.",
+)
 @click.option("--out", required=True, type=click.Path(dir_okay=False), help="History (.npz) to write.")
-def simulate(card, out):
+def simulate(card, model, out):
     """Integrate the chains of a CARD and keep the contact forces."""
     from sonicvacuum import study
 
-    study.save(study.run(read_card(card)), out)
+    resolved = read_card(card)
+    study.save(study.run(with_model(resolved, model) if model else resolved), out)

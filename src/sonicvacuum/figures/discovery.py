@@ -1,9 +1,9 @@
 """The pictures of one verdict, each drawn from the tables that `sonicvacuum discover` wrote beside it.
 
-where: disagreement of the nominal model by run, gauge and feature. traces: measured and predicted, with
-    running
-means of the residuals over their own standard error (band: two of them). candidates: how probable each
-explanation is. gap: misfit of each round, falling to the noise.
+where: disagreement of the nominal model by run, gauge and feature. scalars: the same for quantities measured
+without traces, before and after. traces: measured and predicted, with running means of the residuals over
+their own standard error (band: two of them). candidates: how probable each explanation is. parameters: their
+posteriors. gap: misfit of each round, falling to the noise.
 """
 
 import csv
@@ -12,31 +12,40 @@ from pathlib import Path
 
 import numpy as np
 
+from sonicvacuum.figures import disagreement, posterior
 from sonicvacuum.figures.style import BAND, DOUBLE, GREY, SINGLE, canvas, context, panel, save
 
 BLUE, ORANGE, GREEN = "#0072B2", "#D55E00", "#009E73"
-# Scores beyond this are drawn in the full colour.
-LIMIT = 10.0
 _MOST = 8
 
 
 def draw(folder: Path) -> list[Path]:
-    """Draw all pictures that the tables in the folder give; the files written (SVG, each with its PNG)."""
+    """Draw all pictures that the tables in the folder give; the files written (SVG, each with its PNG).
+
+    Those of an earlier verdict that this one does not have are removed.
+    """
     folder = Path(folder)
+    posterior.write_table(folder)
     verdict = json.loads((folder / "verdict.json").read_text(encoding="utf-8"))
     pictures = {
-        "where": lambda: where(rows(folder / "where.csv")),
+        "where": lambda: disagreement.where(rows(folder / "where.csv")),
+        "scalars": lambda: disagreement.scalars(rows(folder / "where.csv")),
         "traces": lambda: traces(rows(folder / "traces.csv"), verdict["named"]),
         "candidates": lambda: candidates(verdict["probabilities"]),
+        "parameters": lambda: posterior.parameters(rows(folder / "parameters.csv")),
         "gap": lambda: gap(rows(folder / "gap.csv")),
     }
     written = []
     with context():
         for name, make in pictures.items():
+            paths = [folder / f"{name}.{kind}" for kind in ("svg", "png")]
             figure = make()
             if figure is not None:
-                save(figure, folder / f"{name}.svg", folder / f"{name}.png")
-                written.append(folder / f"{name}.svg")
+                save(figure, *paths)
+                written.append(paths[0])
+                continue
+            for path in paths:
+                path.unlink(missing_ok=True)
     return written
 
 
@@ -44,34 +53,6 @@ def rows(path: Path) -> list[dict[str, str]]:
     """Rows of a table, by column."""
     with open(path, encoding="utf-8", newline="") as stream:
         return list(csv.DictReader(stream))
-
-
-def where(cells: list[dict[str, str]]):
-    """Map of scores: features down, runs and gauges across; None without traces."""
-    cells = [c for c in cells if c["sensor"]]
-    if not cells:
-        return None
-    places = list(dict.fromkeys((c["run"], c["sensor"]) for c in cells))
-    features = list(dict.fromkeys(c["feature"] for c in cells))
-    table = np.full((len(features), len(places)), np.nan)
-    for c in cells:
-        table[features.index(c["feature"]), places.index((c["run"], c["sensor"]))] = float(c["z_before"])
-    wide = min(DOUBLE, 45.0 + 9.0 * len(places))
-    figure = canvas(wide, 24.0 + 6.0 * len(features) + 5.0)
-    axes = panel(figure, (22.0, 24.0, wide - 46.0, 6.0 * len(features)))
-    image = axes.imshow(table, cmap="PuOr", vmin=-LIMIT, vmax=LIMIT, aspect="auto")
-    for (i, j), z in np.ndenumerate(table):
-        if abs(z) >= 3.0 and len(places) <= 16:
-            shade = "white" if abs(z) > 7.0 else "black"
-            axes.text(j, i, f"{z:.0f}", ha="center", va="center", fontsize=6, color=shade)
-    axes.set_xticks(range(len(places)), [f"{r} {s}" for r, s in places], rotation=60, ha="right")
-    axes.set_yticks(range(len(features)), features)
-    axes.tick_params(length=0)
-    bar = figure.colorbar(
-        image, cax=panel(figure, (wide - 20.0, 24.0, 3.0, 6.0 * len(features))), extend="both"
-    )
-    bar.set_label("score $z$ of the residual")
-    return figure
 
 
 def traces(table: list[dict[str, str]], named: list[str]):
@@ -93,7 +74,8 @@ def traces(table: list[dict[str, str]], named: list[str]):
             _signal(panel(figure, (left, bottom + 12.0, wide, high - 16.0)), part, f"{run}, {sensor}")
             _residual(panel(figure, (left, bottom, wide, 10.5)), part, i == len(sensors) - 1)
     handles, labels = figure.axes[0].get_legend_handles_labels()
-    labels = [label.replace("extended", " + ".join(named) or "nominal") for label in labels]
+    extended = "nearest model" if named == ["unknown"] else " + ".join(named) or "nominal"
+    labels = [label.replace("extended", extended) for label in labels]
     figure.legend(handles, labels, loc="upper right", ncols=3, fontsize=7, borderaxespad=0.1)
     return figure
 
@@ -121,7 +103,7 @@ def _residual(axes, part, last):
     for model, color, style in ((nominal, ORANGE, (0, (3.5, 1.2))), (extended, BLUE, "-")):
         mean, middle = running((measured - model) / sigma, count), running(time, count)
         axes.plot(middle, mean * np.sqrt(count), color=color, lw=0.9, ls=style)
-    axes.set_ylabel("resid.", fontsize=7)
+    axes.set_ylabel("resid./σ", fontsize=6.5)
     axes.set_xlim(time[0], time[-1])
     if last:
         axes.set_xlabel("time (µs)")
@@ -136,17 +118,24 @@ def running(values: np.ndarray, count: int) -> np.ndarray:
 
 def candidates(probabilities: dict[str, float]):
     """Bars of the most probable explanations."""
-    best = sorted(probabilities.items(), key=lambda item: -item[1])[:_MOST][::-1]
+    best = sorted(probabilities.items(), key=lambda item: -item[1])[:_MOST]
+    best = [one for k, one in enumerate(best) if k < 3 or one[1] >= 0.005][::-1]
     figure = canvas(SINGLE, 13.0 + 5.0 * len(best))
     axes = panel(figure, (30.0, 10.0, SINGLE - 40.0, 5.0 * len(best)))
     names, values = zip(*best, strict=True)
     axes.barh(names, values, color=[GREY if n in ("none", "unknown") else BLUE for n in names], height=0.65)
     for k, value in enumerate(values):
-        axes.text(value + 0.015, k, f"{value:.2f}", va="center", fontsize=7)
+        told = f"{value:.2f}" if value >= 0.005 else "< 0.01"
+        axes.text(value + 0.015, k, told, va="center", fontsize=7)
     axes.set_xlim(0.0, 1.0)
     axes.set_xlabel("probability")
     axes.tick_params(axis="y", length=0)
     return figure
+
+
+def _broken(name):
+    """A model's name over several lines."""
+    return name.replace("+", " +\n") if "+" in name else name.replace("-", "-\n")
 
 
 def gap(table: list[dict[str, str]]):
@@ -155,14 +144,15 @@ def gap(table: list[dict[str, str]]):
     if not steps:
         return None
     values = [float(r["after"]) for r in steps]
-    figure = canvas(SINGLE, 58.0)
-    axes = panel(figure, (17.0, 19.0, SINGLE - 22.0, 36.0))
+    figure = canvas(SINGLE, 54.0)
+    axes = panel(figure, (17.0, 15.0, SINGLE - 22.0, 36.0))
     axes.axhline(1.0, color=GREEN, lw=0.9, ls=(0, (5, 1.2, 1, 1.2)))
     axes.text(len(values) - 0.55, 1.0, "noise", color=GREEN, fontsize=7, ha="right", va="bottom")
     axes.plot(range(len(values)), values, "o-", color=BLUE, lw=1.0, ms=4)
+    axes.margins(y=0.12)
     if max(values) > 5.0:
         axes.set_yscale("log")
-    axes.set_xticks(range(len(values)), [r["run"].split(": ")[1].replace("+", " +\n") for r in steps])
+    axes.set_xticks(range(len(values)), [_broken(r["run"].split(": ")[1]) for r in steps], fontsize=7)
     axes.set_xlim(-0.5, len(values) - 0.5)
     axes.set_ylabel("$\\chi^2$ per datum")
     axes.set_xlabel("best model of each round")

@@ -143,7 +143,7 @@ def _losses_delay_splitting(metrics, column):
     key = f"compare.{column}", "losses_delay_splitting", "g9"
     lossy = metrics.find("fig5a", column, "valley_depth", "g9")
     free = lossy and metrics.at(lossy.case + LOSSLESS, "valley_depth", "g9")
-    if not free:
+    if not free or not _has_losses(metrics, lossy.case):
         return absent(*key, "1", "no loss effect has been named")
     needs = ((lossy.case, "valley_depth", "g9"), (free.case, "valley_depth", "g9"))
     return _derived(*key, [lossy, free], needs, _flag(lambda one, other: one < other - 0.02))
@@ -153,9 +153,15 @@ def _decay_with_losses(metrics, column):
     """Decay of fig3a where a loss has been named; a model without loss passes by construction."""
     key = f"compare.{column}", "decay_with_losses", BETWEEN
     decay = metrics.find("fig3a", column, "decay", BETWEEN)
-    if not decay or not metrics.at(decay.case + LOSSLESS, "decay", BETWEEN):
+    if not decay or not _has_losses(metrics, decay.case):
         return absent(*key, "1", "no loss effect has been named")
     return _derived(*key, [decay], ((decay.case, "decay", BETWEEN),), lambda value: value)
+
+
+def _has_losses(metrics, name):
+    """Whether a card has effects that take energy."""
+    count = metrics.at(name, "loss_effects")
+    return count is not None and count.value > 0.0
 
 
 def _derived(case, name, sensor, found, needs, function):

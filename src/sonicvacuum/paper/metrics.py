@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from sonicvacuum.effects import effect
 from sonicvacuum.files import InputError
 from sonicvacuum.observe.trace import Measured
 from sonicvacuum.paper import contacts, gauges, sweep, trains
@@ -78,7 +79,14 @@ def card_rows(study: Study) -> list[Row]:
         rows += list(_balance(study, name, plain.lane))
     if lanes > 1:
         rows += _rows(*(_sweep(runs, study.card.name) for runs in both))
-    return rows
+    return [*rows, *_model(study)]
+
+
+def _model(study: Study) -> Iterator[Row]:
+    """What was simulated: modulus of the beads' surface, effects included; number of effects with losses."""
+    losses = sum(effect(name).dissipative for name in study.card.effects)
+    yield Row(study.card.name, "modulus", "", float(study.chain.bead.modulus[0]) / 1e9, "GPa", 0.0)
+    yield Row(study.card.name, "loss_effects", "", float(losses), "1", 0.0)
 
 
 def _one(run: OneRun, name: str, brief: bool) -> Found:

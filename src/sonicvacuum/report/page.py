@@ -1,16 +1,24 @@
 """`results/report.html`: what was asked, the figures, the ledger, the audit, and how each number was made."""
 
-import re
 from pathlib import Path
 
-import jinja2
-from markupsafe import Markup, escape
-
 from sonicvacuum.card import Card
-from sonicvacuum.report import provenance, tables
+from sonicvacuum.effects import IDS
+from sonicvacuum.report import blind, inline, provenance, record, tables
 
 
-def build(ledger_path, assumptions_path, metrics_path, claims_path, figures, cards, locks) -> str:
+def build(
+    ledger_path,
+    assumptions_path,
+    metrics_path,
+    claims_path,
+    figures,
+    cards,
+    locks,
+    discoveries=(),
+    blind_small=None,
+    blind_full=None,
+) -> str:
     """The page as HTML text, figures inside.
 
     Args:
@@ -18,6 +26,8 @@ def build(ledger_path, assumptions_path, metrics_path, claims_path, figures, car
         figures: pairs of an SVG file, named figN.svg, and its caption in plain text.
         cards: resolved `Card`s.
         locks: lock files of the environment.
+        discoveries: folders that `sonicvacuum discover` wrote.
+        blind_small, blind_full: summaries that `sonicvacuum score` wrote, None where there is none.
 
     Raises:
         InputError: when a table has other columns than it should.
@@ -27,24 +37,25 @@ def build(ledger_path, assumptions_path, metrics_path, claims_path, figures, car
     ledger["statement"] = [claims["statement"].get(c, "") for c in ledger["claim"]]
     ledger["note"] = [claims["note"].get(c, "") for c in ledger["claim"]]
     metrics = tables.read(metrics_path, tables.METRICS)
-    environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("sonicvacuum.report", "."),
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
-    )
-    environment.filters["number"] = tables.number
-    return environment.get_template("page.html.j2").render(
-        ledger=ledger.to_dict("records"),
-        counts=tables.counts(ledger),
-        verdicts=tables.VERDICTS,
-        disagreements=tables.disagreements(ledger).to_dict("records"),
-        assumptions=tables.read(assumptions_path, tables.ASSUMPTIONS).to_dict("records"),
-        headline=_headline(metrics),
-        figures=[_figure(svg, caption) for svg, caption in figures],
-        cards=[_card_row(card, metrics) for card in cards],
-        versions=provenance.versions(),
-        source=provenance.source_digest(),
-        lock=provenance.digest(locks),
+    return (
+        inline.environment()
+        .get_template("page.html.j2")
+        .render(
+            ledger=ledger.to_dict("records"),
+            counts=tables.counts(ledger),
+            verdicts=tables.VERDICTS,
+            disagreements=tables.disagreements(ledger).to_dict("records"),
+            assumptions=tables.read(assumptions_path, tables.ASSUMPTIONS).to_dict("records"),
+            headline=_headline(metrics),
+            figures=[_figure(svg, caption) for svg, caption in figures],
+            cards=[_card_row(card, metrics) for card in cards],
+            catalogue=len(IDS),
+            discoveries=[record.section(folder) for folder in discoveries],
+            tested={"small": blind.shown(blind_small), "full": blind.shown(blind_full)},
+            versions=provenance.versions(),
+            source=provenance.source_digest(),
+            lock=provenance.digest(locks),
+        )
     )
 
 
@@ -64,25 +75,14 @@ CLAIMS = [
 
 
 def _figure(svg, caption):
-    """One figure, its SVG inlined with ids of its own, so that the clip paths of two figures never meet."""
+    """One figure, its SVG inlined."""
     name = Path(svg).stem
-    text = Path(svg).read_text(encoding="utf-8")
-    text = text[text.index("<svg") :]
-    text = re.sub(r'\bid="([^"]+)"', rf'id="{name}-\1"', text)
-    text = re.sub(r"url\(#([^)]+)\)", rf"url(#{name}-\1)", text)
-    text = re.sub(r'href="#([^"]+)"', rf'href="#{name}-\1"', text)
     return {
         "name": name,
         "number": name.removeprefix("fig"),
-        "svg": Markup(text),
-        "caption": _with_subscripts(caption),
+        "svg": inline.svg(svg, name),
+        "caption": inline.with_subscripts(caption),
     }
-
-
-def _with_subscripts(text):
-    """Plain text as HTML, F_m and the like with their index lowered."""
-    plain = str(escape(" ".join(text.split())))
-    return Markup(re.sub(r"\b([A-Za-z])_(\w+)", r"<i>\1</i><sub>\2</sub>", plain))
 
 
 def _headline(metrics):

@@ -1,4 +1,4 @@
-"""What of the results is kept in git: the ledger as a reference, and its summary in the README."""
+"""What of the results is kept in git: references for later checks, and a summary in the README."""
 
 import re
 
@@ -18,6 +18,8 @@ HEADLINES = (
     "low-speed",
     "modulus-ratio",
 )
+# Of a blind study, what must come out again; times and estimates are left out.
+NAMING = ("id", "kind", "effects", "named", "exact")
 
 
 def summary(ledger: pd.DataFrame) -> str:
@@ -27,8 +29,8 @@ def summary(ledger: pd.DataFrame) -> str:
         f"Of {len(ledger)} checkable statements of the paper, **{counts['reproduced']} are reproduced, "
         f"{counts['disagrees']} disagree, {counts['not testable']} cannot be tested** by this simulation.",
         "",
-        "| claim | quantity | paper | σ | handbook 2.76 GPa | matched 15 GPa | verdict |",
-        "|---|---|---:|---:|---:|---:|---|",
+        "| claim | quantity | paper | σ | handbook 2.76 GPa | matched 15 GPa | as discovered | verdict |",
+        "|---|---|---:|---:|---:|---:|---:|---|",
     ]
     known = ledger.set_index("claim")
     for claim in HEADLINES:
@@ -41,7 +43,7 @@ def summary(ledger: pd.DataFrame) -> str:
 
 def _row(claim, row):
     unit = "" if row["unit"] in ("", "1") else f", {row['unit']}"
-    numbers = [tables.number(row[c]) for c in ("measured", "sigma", "handbook", "matched")]
+    numbers = [tables.number(row[c]) for c in ("measured", "sigma", "handbook", "matched", "named")]
     return f"| {claim} | {row['quantity']}{unit} | " + " | ".join(numbers) + f" | {row['verdict']} |"
 
 
@@ -56,6 +58,25 @@ def with_part(readme: str, name: str, text: str) -> str:
         raise InputError(f"README.md: the markers are missing; put {begin} and {end} around its {name}")
     pattern = re.compile(re.escape(begin) + ".*?" + re.escape(end), re.DOTALL)
     return pattern.sub(lambda _: f"{begin}\n{text.strip()}\n{end}", readme)
+
+
+def naming(score_path) -> pd.DataFrame:
+    """What a blind study named, case by case: the columns `NAMING` of a table that `sonicvacuum score` wrote.
+
+    Raises:
+        InputError: where a column is missing.
+    """
+    table = pd.read_csv(score_path, dtype=str, keep_default_na=False)
+    missing = [column for column in NAMING if column not in table]
+    if missing:
+        raise InputError(f"{score_path}: no column {missing[0]}; make the table with sonicvacuum score")
+    return table[list(NAMING)]
+
+
+def publish_study(score_path, reference_path) -> None:
+    """Keep what the small blind study named, so that a later run can be held against it."""
+    with replacing(reference_path) as stream:
+        naming(score_path).to_csv(stream, index=False, lineterminator="\n")
 
 
 def publish(ledger_path, readme_path, reference_path, benchmark_path=None) -> None:

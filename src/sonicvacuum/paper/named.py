@@ -1,0 +1,69 @@
+"""The model that `discover` made of a record, put into the cases of the reproduction.
+
+A case of the same chain takes the whole model. Another chain of the same material takes the modulus and what
+happens in its contacts; what belongs to that record's chain, gauges and striker stays there.
+"""
+
+import math
+
+from msgspec.structs import replace
+
+from sonicvacuum.card import Card, CardMaterial, ModelBlock
+from sonicvacuum.discover.verdict import Model
+from sonicvacuum.effects import effect
+
+# Effects of the contact material, which a bead of another size has too.
+OF_MATERIAL = (
+    "dynamic-modulus",
+    "contact-exponent",
+    "coating-thickness",
+    "plastic-contact",
+    "linear-dashpot",
+    "kuwabara-kono",
+    "tsuji",
+    "hunt-crossley",
+    "velocity-power",
+    "relaxing-contact",
+)
+
+
+def extended(card: Card, model: Model, wanted: ModelBlock | None = None) -> Card:
+    """The card with the model's effects and with its modulus of the beads' contact material.
+
+    Args:
+        card: of the nominal model.
+        model: as `sonicvacuum.discover.compare.read_model` gives it.
+        wanted: what to take of it; by default all.
+    """
+    wanted = wanted or ModelBlock(record="any")
+    effects = dict(card.effects)
+    for name, parameters in model.effects.items():
+        if wanted.specimen == "other" and name not in OF_MATERIAL:
+            continue
+        if wanted.losses == "left-out" and effect(name).dissipative:
+            continue
+        effects[name] = _places_whole(name, parameters)
+    return _stiffened(replace(card, effects=effects), model.modulus_ratio)
+
+
+def _places_whole(name, parameters):
+    """Places as whole numbers; values that JSON cannot hold are left out, and so are off."""
+    place = effect(name).places
+    kept = {key: value for key, value in parameters.items() if math.isfinite(value)}
+    return {key: int(value) if key == place else value for key, value in kept.items()}
+
+
+def _stiffened(card, ratio):
+    """Every body whose surface is the beads' contact material has its modulus scaled."""
+    name = card.bead.surface.name
+
+    def scaled(surface: CardMaterial):
+        own = surface.name == name
+        return replace(surface, modulus_Pa=surface.modulus_Pa * ratio) if own else surface
+
+    return replace(
+        card,
+        bead=replace(card.bead, surface=scaled(card.bead.surface)),
+        striker=replace(card.striker, surface=scaled(card.striker.surface)),
+        wall=scaled(card.wall),
+    )

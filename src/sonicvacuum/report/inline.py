@@ -1,0 +1,54 @@
+"""Drawings and styles inside a page, so that it needs nothing but itself."""
+
+import re
+from pathlib import Path
+
+import jinja2
+from markupsafe import Markup, escape
+
+from sonicvacuum.report import tables
+
+# Drawings of one journal column are not blown up to the width of the page; pt.
+_COLUMN = 300.0
+
+
+def environment() -> jinja2.Environment:
+    """The templates of this package; `number` shows a table's number legibly."""
+    found = jinja2.Environment(
+        loader=jinja2.PackageLoader("sonicvacuum.report", "."),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    found.filters["number"] = tables.number
+    return found
+
+
+def svg(path, prefix: str, told: str = "") -> Markup:
+    """The drawing in an SVG file with ids of its own, so that the clip paths of two drawings never meet.
+
+    Args:
+        path: of the file.
+        prefix: put before every id.
+        told: what a screen reader says.
+    """
+    text = Path(path).read_text(encoding="utf-8")
+    text = text[text.index("<svg") :]
+    text = re.sub(r'\bid="([^"]+)"', rf'id="{prefix}-\1"', text)
+    text = re.sub(r"url\(#([^)]+)\)", rf"url(#{prefix}-\1)", text)
+    text = re.sub(r'href="#([^"]+)"', rf'href="#{prefix}-\1"', text)
+    label = f' role="img" aria-label="{escape(told)}"' if told else ""
+    return Markup(text.replace("<svg", f"<svg{label}", 1))
+
+
+def is_narrow(path) -> bool:
+    """Whether a drawing is one journal column wide."""
+    found = re.search(r'<svg[^>]*\swidth="([\d.]+)pt"', Path(path).read_text(encoding="utf-8"))
+    return bool(found) and float(found[1]) < _COLUMN
+
+
+def with_subscripts(text: str) -> Markup:
+    """Plain text as HTML, F_m and the like with their index lowered."""
+    plain = str(escape(" ".join(text.split())))
+    return Markup(re.sub(r"\b([A-Za-z])_(\w+)", r"<i>\1</i><sub>\2</sub>", plain))

@@ -1,0 +1,252 @@
+"""The sentences of a record's page: what was found, in words that can be read aloud.
+
+Every sentence is made from `verdict.json`, `model.json` and the tables beside them, and from nothing else.
+"""
+
+import math
+
+from sonicvacuum.discover.verdict import Gap, Model, Next, Verdict
+from sonicvacuum.effects import effect
+from sonicvacuum.report.tables import number
+
+# Probability from which on each wording is used.
+SURE = (
+    (0.99, "practically certain"),
+    (0.95, "very probable"),
+    (0.8, "probable"),
+    (0.5, "more probable than not"),
+    (0.0, "less probable than all its rivals together"),
+)
+# Feature → what a measured one is that lies above, and below, the prediction.
+SIDES = {
+    "precursor": ("more force before the pulse", "less force before the pulse"),
+    "amplitude": ("a higher peak", "a lower peak"),
+    "delay": ("a later pulse", "an earlier pulse"),
+    "width": ("a wider pulse", "a narrower pulse"),
+    "asymmetry": ("a pulse leaning backwards", "a pulse leaning forwards"),
+    "tail": ("more force behind the pulse", "less force behind the pulse"),
+    "decay": ("stronger later pulses", "weaker later pulses"),
+    "reflection": ("a stronger reflection", "a weaker reflection"),
+    "baseline": ("a higher baseline", "a lower baseline"),
+}
+
+
+def in_words(probability: float) -> str:
+    """A probability in words, with its number."""
+    word = next(text for least, text in SURE if probability >= least)
+    return f"{word} ({share(probability)})"
+
+
+def share(value: float) -> str:
+    """A probability with two decimals, never rounded to certainty."""
+    if value > 0.995:
+        return "above 0.99"
+    return "below 0.01" if value < 0.005 else f"{value:.2f}"
+
+
+def joined(parts: list[str], last: str = "and") -> str:
+    """a, b and c."""
+    return parts[0] if len(parts) == 1 else f"{', '.join(parts[:-1])} {last} {parts[-1]}"
+
+
+def plural(count: int, word: str) -> str:
+    """Count and word."""
+    return f"{count} {word}{'' if count == 1 else 's'}"
+
+
+def effects_of(verdict: Verdict) -> list[str]:
+    """What was named, without `unknown`."""
+    return [name for name in verdict.named if name != "unknown"]
+
+
+def headline(verdict: Verdict) -> str:
+    """What is missing, and how sure that is."""
+    found, odds = effects_of(verdict), verdict.probabilities
+    unknown = "unknown" in verdict.named
+    if not found and not unknown:
+        return _nothing(odds)
+    if not found:
+        return (
+            "Something is missing, and it is unknown: a real misfit is left that no effect of the catalogue, "
+            f"nor any pair that was tried, explains. That it is none of the single effects is "
+            f"{in_words(odds.get('unknown', 0.0))}."
+        )
+    told = [f"{effect(name).title} ({name}): {effect(name).missing}" for name in found]
+    if len(found) == 1 and verdict.confusable:
+        text = _one_of(verdict, told[0])
+    elif len(found) == 1:
+        text = f"What is missing: {told[0]}. That is {in_words(odds.get(found[0], 0.0))}."
+    else:
+        text = f"Two effects are missing: {'; '.join(told)}."
+        text += f" No single effect does: {_singles(odds)}."
+    return text + (" Even so, a misfit is left that nothing of the catalogue explains." if unknown else "")
+
+
+def _one_of(verdict, told):
+    """A single effect with others that these data cannot tell from it."""
+    members, odds = verdict.confusable[0], verdict.probabilities
+    together = in_words(sum(odds.get(name, 0.0) for name in members))
+    return (
+        f"What is missing is one of {joined(members, 'or')}, which these data cannot tell apart: together "
+        f"{together}. Most probable among them, {share(odds.get(members[0], 0.0))}: {told}."
+    )
+
+
+def _nothing(odds):
+    best = max(odds, key=odds.get)
+    text = "Nothing is named: the nominal model explains these data as far as they go."
+    if best == "none":
+        if odds["none"] >= 0.5:
+            return f"{text} That nothing is missing is {in_words(odds['none'])}."
+        chance = f"has the probability {share(odds['none'])}"
+        return f"{text} That nothing is missing {chance}, more than any single rival, less than all together."
+    against = f"{share(odds[best])} against {share(odds.get('none', 0.0))} for none"
+    return f"Nothing is named: the likeliest explanation, {best} ({against}), did not pass all tests."
+
+
+def _singles(odds):
+    best = max(odds, key=odds.get)
+    if best == "unknown":
+        return f"that something else is needed is {in_words(odds[best])}"
+    return f"the likeliest is {best}, {share(odds[best])}"
+
+
+def where(verdict: Verdict, cells: list[dict]) -> str:
+    """Where the nominal model and the data disagree."""
+    traces = any(c["sensor"] for c in cells)
+    kind = "run, gauge and feature of the trace" if traces else "run and measured quantity"
+    if not cells:
+        return "There was nothing to compare by feature."
+    if not verdict.where:
+        return (
+            f"Nowhere: of {plural(len(cells), 'comparison')} ({kind}), none stands out beyond what so many "
+            "comparisons give by chance."
+        )
+    first = verdict.where[0]
+    counts: dict[str, int] = {}
+    for cell in verdict.where:
+        counts[cell.feature] = counts.get(cell.feature, 0) + 1
+    groups = joined([f"{name} ({count})" for name, count in sorted(counts.items(), key=lambda c: -c[1])])
+    place = f"run {first.run}" + (f", gauge {first.sensor}" if first.sensor else "")
+    return (
+        f"In {len(verdict.where)} of {plural(len(cells), 'comparison')} ({kind}) the nominal model fails: "
+        f"{groups}. The largest is in {place}: the data show {_side(first)} than predicted, by "
+        f"{abs(first.z):.3g} standard errors."
+    )
+
+
+def _side(cell):
+    above = cell.z > 0.0
+    if cell.feature in SIDES:
+        return SIDES[cell.feature][0 if above else 1]
+    return f"a {'larger' if above else 'smaller'} {cell.feature.replace('_', ' ')}"
+
+
+def alternatives(verdict: Verdict) -> str:
+    """What else it could be."""
+    found = effects_of(verdict)
+    alike = [(members[0], members[1:]) for members in verdict.confusable]
+    parts = [f"These data cannot tell {own} from {joined(others, 'or')}." for own, others in alike]
+    if not parts and found:
+        parts = [f"No rival comes near: {joined(found)} can be told from every other effect that was fitted."]
+    if not found:
+        rivals = [n for n in sorted(verdict.probabilities, key=verdict.probabilities.get, reverse=True)]
+        rivals = [n for n in rivals if n not in ("none", "unknown") and verdict.probabilities[n] >= 0.01][:3]
+        named = [f"{n} ({share(verdict.probabilities[n])})" for n in rivals]
+        parts = [f"The nearest single effects: {joined(named)}." if named else "No single effect comes near."]
+    return " ".join(parts)
+
+
+def gap(verdict: Verdict) -> str:
+    """How the misfit shrinks."""
+    fitted, held_out = verdict.gap.fitted, verdict.gap.held_out
+    if not effects_of(verdict):
+        text = (
+            f"The nominal model leaves a mean squared residual of {fitted.before:.3g} times the noise, with "
+            "the nuisances fitted; 1 is expected."
+        )
+        if not verdict.named:
+            return f"{text} As nothing was added, nothing changes."
+        if fitted.after == fitted.before:
+            return f"{text} Nothing was added that would lower it."
+        return f"{text} The nearest model that was found, which is not named, leaves {fitted.after:.3g}."
+    text = (
+        "With the nuisances fitted, the nominal model leaves a mean squared residual of "
+        f"{fitted.before:.4g} times the noise, the extended model {fitted.after:.4g}{_closed(fitted)}."
+    )
+    if held_out is None:
+        return f"{text} There is one run only, so that none could be held out."
+    return (
+        f"{text} On runs left out of the fit it falls from {held_out.before:.4g} to {held_out.after:.4g}"
+        f"{_closed(held_out)}."
+    )
+
+
+def _closed(one: Gap):
+    if one.closed is None or one.before <= one.floor:
+        return ""
+    closed = 100.0 * min(one.closed, 1.0)
+    return f" ({closed:.3g} % of the gap closed)" if closed > 0.0 else " (the gap is not closed)"
+
+
+def nuisances(model: Model) -> str:
+    """How far what the record states with an error has moved."""
+
+    def farthest(values):
+        return max((abs(v - 1.0) for v in values), default=0.0)
+
+    parts = []
+    if abs(model.modulus_ratio - 1.0) >= 5e-4:
+        parts.append(f"modulus of the beads' material times {model.modulus_ratio:.4g}")
+    if farthest(model.speed_ratio.values()) >= 5e-5:
+        parts.append(f"striker speeds by up to {100.0 * farthest(model.speed_ratio.values()):.2g} %")
+    if farthest(model.gain.values()) >= 5e-5:
+        parts.append(f"gauge gains by up to {100.0 * farthest(model.gain.values()):.2g} %")
+    shift = max((abs(v) for v in model.trigger_us.values()), default=0.0)
+    if shift >= 5e-3:
+        parts.append(f"time zeros by up to {shift:.2g} µs")
+    if not parts:
+        return "What the record states with an error (speeds, time zeros, gains, modulus) stays as recorded."
+    return f"What the record states with an error has followed the data: {joined(parts)}."
+
+
+def experiment(proposal: Next | None, cells: list[dict]) -> str:
+    """The experiment that would settle it."""
+    if proposal is None:
+        if not any(c["sensor"] for c in cells):
+            return "No proposal: the gain of a further run is predicted for traces, and this record has none."
+        return "No proposal: no rivals are left to separate."
+    steps = joined([_change(key, value) for key, value in proposal.change.items()])
+    one, other = (name.replace("+", " with ") for name in proposal.separates[:2])
+    text = (
+        f"One more run {steps} would tell {one} from {other} best: an expected Δχ² of "
+        f"{proposal.delta_chi2:.3g}, about {math.sqrt(max(proposal.delta_chi2, 0.0)):.2g} standard errors."
+    )
+    return text + (" That would hardly decide." if proposal.delta_chi2 < 9.0 else "")
+
+
+def _change(key, value):
+    known = {
+        "striker.speed_m_s": "with the striker at {} m/s",
+        "striker.mass_g": "with a striker of {} g",
+        "chain.static_force_N": "under a static force of {} N",
+        "chain.orientation": "with the chain {}",
+    }
+    shown = f"{value:.4g}" if isinstance(value, float) else str(value)
+    if key.startswith("sensors."):
+        return f"with gauge {key.split('.')[1]} in bead {shown}"
+    return known.get(key, f"with {key} = {{}}").format(shown)
+
+
+def decided(verdict: Verdict) -> list[str]:
+    """What decided, and how probable by chance what each step leaves is."""
+    left = {
+        "none": "what the nominal model leaves",
+        "single": "what the best single effect leaves",
+        "pair": "what the best pair leaves",
+    }
+    lines = [f"Decisive: {reason}." for reason in verdict.reasons]
+    return lines + [
+        f"By chance alone, {left.get(step, step)} would come about with probability {number(str(p), 2)}."
+        for step, p in verdict.alarms.items()
+    ]

@@ -1,0 +1,216 @@
+"""The page of a record says what its verdict says, whatever the outcome, and needs nothing but itself."""
+
+import re
+from html.parser import HTMLParser
+
+import pytest
+from made_verdicts import KINDS, WITHOUT_TRACES, gaps, verdict, write
+
+from sonicvacuum.figures import disagreement, discovery, posterior, style
+from sonicvacuum.files import InputError
+from sonicvacuum.report import record, words
+
+
+class Page(HTMLParser):
+    """Words, ids and what a browser would fetch."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.words, self.fetched, self.ids = [], [], []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attributes):
+        given = dict(attributes)
+        self.ids += [given["id"]] if "id" in given else []
+        if tag in ("script", "img", "link", "iframe"):
+            self.fetched.append(given.get("src", given.get("href")))
+
+    def handle_data(self, data):
+        self.words.append(data)
+
+
+@pytest.fixture(scope="module")
+def folders(tmp_path_factory):
+    """Kind of outcome → its folder with pictures and page."""
+    root = tmp_path_factory.mktemp("discover")
+    made = {kind: write(root / kind, kind) for kind in KINDS}
+    for folder in made.values():
+        discovery.draw(folder)
+        record.write_page(folder)
+    return made
+
+
+def told(folder):
+    return " ".join(" ".join(Page((folder / "index.html").read_text()).words).split())
+
+
+SENTENCES = {
+    "none": (
+        "Nothing is named: the nominal model explains these data",
+        "That nothing is missing is probable (0.91)",
+        "Nowhere: of 8 comparisons",
+        "The nearest single effects: tsuji (0.08)",
+        "No proposal: no rivals are left",
+    ),
+    "single": (
+        "What is missing: Viscoelastic Hertz contact (kuwabara-kono)",
+        "very probable (0.97)",
+        "In 1 of 8 comparisons (run, gauge and feature of the trace)",
+        "run fast, gauge g1: the data show a lower peak than predicted, by 12 standard errors",
+        "1.980 ± 0.060",
+        "1.881 to 2.079",
+        "falls from 80.7 to 1.05 (99.9 % of the gap closed)",
+        "No rival comes near",
+        "with the striker at 1.25 m/s would tell kuwabara-kono from tsuji best: an expected Δχ² of 25",
+        "Not testable with these data: gravity",
+    ),
+    "class": (
+        "one of kuwabara-kono or tsuji, which these data cannot tell apart",
+        "together practically certain (0.99)",
+        "These data cannot tell kuwabara-kono from tsuji.",
+    ),
+    "pair": (
+        "Two effects are missing: Mass defect (mass-defect)",
+        "sits at bead",
+        "These data cannot tell kuwabara-kono from tsuji.",
+        "mass-defect + kuwabara-kono",
+    ),
+    "unknown": (
+        "Something is missing, and it is unknown",
+        "practically certain (above 0.99)",
+        "The nearest model that was found, which is not named, leaves 1.02",
+    ),
+    "scalars": (
+        "In 1 of 2 comparisons (run and measured quantity)",
+        "run fast: the data show a smaller restitution than predicted",
+        "There is one run only",
+        "this record has none",
+    ),
+    "ball": ("(hunt-crossley)", "practically certain (above 0.99)", "0.0270 ± 0.0014"),
+}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_page_can_be_read_aloud(folders, kind):
+    text = told(folders[kind])
+    for sentence in SENTENCES[kind]:
+        assert sentence in text
+    assert "nan" not in text.lower().replace("nanosecond", "")
+    assert "None" not in text
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_page_needs_nothing_but_itself_and_no_id_stands_twice(folders, kind):
+    page = Page((folders[kind] / "index.html").read_text())
+    assert page.fetched == []
+    assert len(page.ids) == len(set(page.ids))
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_pictures_are_those_that_the_record_gives(folders, kind):
+    drawn = {path.stem for path in folders[kind].glob("*.svg")}
+    expected = {"candidates", "gap"}
+    expected |= {"scalars"} if kind in WITHOUT_TRACES else {"where", "traces"}
+    expected |= {"parameters"} if KINDS[kind].parameters else set()
+    assert drawn == expected
+    assert drawn == {path.stem for path in folders[kind].glob("*.png")}
+
+
+def test_times_do_not_enter_the_page(folders):
+    assert "12.345" not in told(folders["single"])
+
+
+def test_a_new_verdict_removes_the_pictures_of_the_old_one(tmp_path):
+    folder = write(tmp_path / "made", "ball")
+    (folder / "traces.svg").write_text("stale")
+    discovery.draw(folder)
+    assert not (folder / "traces.svg").exists()
+
+
+def test_the_same_verdict_gives_the_same_bytes(folders, tmp_path):
+    again = write(tmp_path / "again", "pair")
+    discovery.draw(again)
+    record.write_page(again)
+    for path in again.iterdir():
+        assert path.read_bytes() == (folders["pair"] / path.name).read_bytes(), path.name
+
+
+def test_a_folder_of_something_else_is_refused_with_the_file(tmp_path):
+    with pytest.raises(InputError, match=r"verdict\.json: No such file"):
+        record.write_page(tmp_path)
+    folder = write(tmp_path / "made", "none")
+    (folder / "verdict.json").write_text('{"named": 3}')
+    with pytest.raises(InputError, match=r"verdict\.json: not what sonicvacuum discover writes"):
+        record.write_page(folder)
+
+
+@pytest.mark.parametrize(
+    ("probability", "text"),
+    [
+        (1.0, "practically certain (above 0.99)"),
+        (0.96, "very probable (0.96)"),
+        (0.85, "probable (0.85)"),
+        (0.5, "more probable than not (0.50)"),
+        (0.2, "less probable than all its rivals together (0.20)"),
+    ],
+)
+def test_probabilities_in_words(probability, text):
+    assert words.in_words(probability) == text
+
+
+def test_a_gap_that_is_not_closed_is_not_called_closed():
+    assert "the gap is not closed" in words.gap(verdict(gap=gaps(2.0, 2.5)))
+    assert "of the gap closed" not in words.gap(verdict(gap=gaps(0.9, 0.8)))
+
+
+def test_none_that_is_less_probable_than_an_effect_says_so():
+    odds = {"none": 0.3, "tsuji": 0.6, "unknown": 0.1}
+    text = words.headline(verdict(named=[], probabilities=odds, parameters={}))
+    assert "tsuji (0.60 against 0.30 for none)" in text
+
+
+def beyond_the_page(figure):
+    """Texts with ink that leave the page; tick labels beyond the limits are kept by matplotlib, not drawn."""
+    renderer = figure.canvas.get_renderer()
+    figure.draw(renderer)
+    page, found = figure.bbox, []
+    for axes in figure.axes:
+        texts = [axes.xaxis.label, axes.yaxis.label, *axes.texts]
+        for axis in (axes.xaxis, axes.yaxis):
+            low, high = sorted(axis.get_view_interval())
+            texts += [t.label1 for t in axis.get_major_ticks() if low <= t.get_loc() <= high]
+        found += [t for t in texts if t.get_visible() and t.get_text().strip()]
+    boxes = [(t.get_text(), t.get_window_extent(renderer)) for t in found]
+    return [n for n, b in boxes if b.x0 < page.x0 or b.x1 > page.x1 or b.y0 < page.y0 or b.y1 > page.y1]
+
+
+@pytest.mark.parametrize("kind", ["pair", "ball"])
+def test_no_text_of_the_pictures_leaves_the_page(folders, kind):
+    tables = {name: discovery.rows(folders[kind] / f"{name}.csv") for name in ("where", "parameters", "gap")}
+    with style.context():
+        figures = [
+            posterior.parameters(tables["parameters"]),
+            disagreement.where(tables["where"]),
+            disagreement.scalars(tables["where"]),
+            discovery.gap(tables["gap"]),
+            discovery.candidates(KINDS[kind].probabilities),
+        ]
+        for figure in filter(None, figures):
+            assert beyond_the_page(figure) == []
+
+
+def test_the_posterior_is_drawn_where_the_verdict_has_it(folders):
+    (row,) = discovery.rows(folders["single"] / "parameters.csv")
+    assert (float(row["value"]), float(row["sigma"])) == (1.98, 0.06)
+    density, searched = posterior.parameters([row]).axes
+    x, y = density.lines[0].get_data()
+    assert x[y.argmax()] == pytest.approx(1.98)
+    half = x[y >= 0.5]
+    # Full width at half height of a Gaussian, on a grid of 8 sigma in 400 steps.
+    assert half[-1] - half[0] == pytest.approx(2.3548 * 0.06, abs=2 * 8 * 0.06 / 400)
+    assert list(searched.lines[0].get_xdata()) == [float(row["low"]), float(row["high"])]
+
+
+def test_every_picture_is_described(folders):
+    text = (folders["single"] / "index.html").read_text()
+    assert len(re.findall(r'<svg role="img" aria-label=', text)) == len(re.findall("<svg", text))

@@ -1,0 +1,54 @@
+"""What the nominal model lacks, record by record: verdict, extended model and tables; then the pictures and a page.
+
+The pictures lie beside the tables; they are no outputs here, because which of them there are depends on what the
+record holds.
+"""
+
+DISCOVERY = "results/discover/{record}"
+FOUND = [
+    "verdict.json",
+    "model.json",
+    *(f"{table}.csv" for table in ["where", "candidates", "gap", "limits", "traces"]),
+]
+
+
+rule discover:
+    input:
+        record=record_files,
+        sources=sources("card", "physics", "discover"),
+    output:
+        expand(f"{DISCOVERY}/{{name}}", name=FOUND, allow_missing=True),
+    log:
+        "results/logs/discover/{record}.log",
+    benchmark:
+        "results/benchmarks/discover/{record}.tsv"
+    conda:
+        ENVIRONMENT
+    params:
+        folder=lambda wildcards: RECORDS[wildcards.record],
+        out=lambda wildcards: f"results/discover/{wildcards.record}",
+    message:
+        "Discovering what the model of {wildcards.record} lacks"
+    shell:
+        "sonicvacuum discover {params.folder} --out {params.out} --no-figures --threads {threads} > {log} 2>&1"
+
+
+rule record_page:
+    input:
+        expand(f"{DISCOVERY}/{{name}}", name=FOUND, allow_missing=True),
+        sources=sources("card", "pages"),
+    output:
+        table=f"{DISCOVERY}/parameters.csv",
+        page=report(f"{DISCOVERY}/index.html", category="Discovery", labels={"record": "{record}"}),
+    log:
+        "results/logs/record_page/{record}.log",
+    benchmark:
+        "results/benchmarks/record_page/{record}.tsv"
+    conda:
+        ENVIRONMENT
+    params:
+        out=lambda wildcards: f"results/discover/{wildcards.record}",
+    message:
+        "Writing the page of {wildcards.record}"
+    shell:
+        "sonicvacuum page {params.out} 2> {log}"
