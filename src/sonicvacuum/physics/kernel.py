@@ -78,13 +78,12 @@ def _pass_splitting(c, table, first, beyond, pull, drift, kick):
 
 
 @_inlined
-def _step_splitting(c, table, first, beyond, weight, method, step, pending):
+def _step_splitting(c, table, first, beyond, weight, factors, gains, step, pending):
     """One step; returns the impulse on the body beyond. Positions then lack the last drift."""
-    drifts, kicks = method
     impulse = zero(c)
-    for stage in range(len(kicks)):
-        kick = kicks[stage] * step
-        force = _pass_splitting(c, table, first, beyond, weight, drifts[stage] * step + pending, kick)
+    for stage in range(len(gains)):
+        kick = gains[stage] * step
+        force = _pass_splitting(c, table, first, beyond, weight, factors[stage] * step + pending, kick)
         impulse = impulse + kick * force
         pending = zero(c)
     return impulse
@@ -117,26 +116,25 @@ def _pass_runge_kutta(c, table, first, beyond, pull, keep, gain, step, moved_col
 
 
 @_inlined
-def _step_runge_kutta(c, table, first, beyond, weight, method, step, pending):
-    keeps, gains = method
+def _step_runge_kutta(c, table, first, beyond, weight, factors, gains, step, pending):
     impulse = zero(c)
     increment = zero(c)
     for stage in range(len(gains)):
         force = _pass_runge_kutta(
-            c, table, first, beyond, weight, keeps[stage], gains[stage], step, first_increment(c)
+            c, table, first, beyond, weight, factors[stage], gains[stage], step, first_increment(c)
         )
-        increment = keeps[stage] * increment + step * force
+        increment = factors[stage] * increment + step * force
         impulse = impulse + gains[stage] * increment
     return impulse
 
 
-def _step(c, table, first, beyond, weight, method, step, pending):
+def _step(c, table, first, beyond, weight, factors, gains, step, pending):
     """One step by the stepper that suits the laws; returns the impulse on the body beyond."""
     raise NotImplementedError("compiled code only")
 
 
 @overload(_step, jit_options=INLINED)
-def _choose_step(c, table, first, beyond, weight, method, step, pending):
+def _choose_step(c, table, first, beyond, weight, factors, gains, step, pending):
     stepper = _step_splitting if c.composition.laws.splits else _step_runge_kutta
     return stepper.py_func
 
@@ -229,12 +227,14 @@ def _keep_balance(c, table, first, beyond, weight, impulse, pending, time, balan
 
 
 @_inlined
-def _advance_group(c, method, table, first, bodies, extendable, recorder, start, end, every, balance, status):
+def _advance_group(
+    c, factors, gains, table, first, bodies, extendable, recorder, start, end, every, balance, status
+):
     """Integrate one group, whose bodies begin at row `first` of the table."""
     clock, contacts = recorder.clock, recorder.contacts
     weight = load(c, clock, WEIGHT)
     threshold = load(c, clock, THRESHOLD)
-    pending_part = method[0][len(method[1]) :].sum()
+    pending_part = factors[-1] if len(factors) > len(gains) else 0.0
     beyond = first + min(MARGIN, bodies)
     time = zero(c)
     pending = zero(c)
@@ -263,7 +263,7 @@ def _advance_group(c, method, table, first, bodies, extendable, recorder, start,
                 keep_memory(c, table, first + contacts[r])
         if sampled and not noted:
             _note(c, table, first, contacts, pending, start)
-        impulse = impulse + _step(c, table, first, beyond, weight, method, step, pending)
+        impulse = impulse + _step(c, table, first, beyond, weight, factors, gains, step, pending)
         pending = pending_part * step
         if sampled:
             _note(c, table, first, contacts, pending, end)
@@ -325,7 +325,8 @@ def advance(
         first_row = g * (bodies + 1)
         _advance_group(
             c,
-            (first, second),
+            first,
+            second,
             table,
             first_row,
             bodies,

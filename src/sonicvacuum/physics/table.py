@@ -24,7 +24,7 @@ from sonicvacuum.physics.lanes import FASTMATH, LANES, lane
 from sonicvacuum.physics.laws import LawSet
 
 # Options of all that is compiled, and of what is only ever called from compiled code.
-OPTIONS = {"fastmath": FASTMATH, "error_model": "numpy", "nogil": True}
+OPTIONS = {"fastmath": FASTMATH, "error_model": "numpy", "nogil": True, "_nrt": False}
 INLINED = OPTIONS | {"forceinline": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
 U, V, INVERSE_MASS, REST, REST_FORCE = range(5)
