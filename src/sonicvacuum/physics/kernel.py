@@ -22,9 +22,11 @@ from numba import njit
 from numba.extending import overload
 
 from sonicvacuum.physics.compose import (
+    COMPILED_ONLY,
     advance_memory,
     blend_memory,
     body_acceleration,
+    follow_path,
     keep_memory,
     push,
     set_rest_force,
@@ -125,12 +127,14 @@ def _step_runge_kutta(c, table, first, beyond, weight, factors, gains, step, pen
         )
         increment = factors[stage] * increment + step * force
         impulse = impulse + gains[stage] * increment
+    for body in range(first, beyond):
+        follow_path(c, table, body, step)
     return impulse
 
 
 def _step(c, table, first, beyond, weight, factors, gains, step, pending):
     """One step by the stepper that suits the laws; returns the impulse on the body beyond."""
-    raise NotImplementedError("compiled code only")
+    raise TypeError(COMPILED_ONLY)
 
 
 @overload(_step, jit_options=INLINED)
@@ -174,7 +178,7 @@ def _sample(c, table, body, start, end, r, step, fraction):
     cube = v + w - 2.0 * gap
     approach = x + fraction * (v + fraction * (square + fraction * cube))
     rate = (v + fraction * (2.0 * square + 3.0 * fraction * cube)) / step
-    blend_memory(c, table, body, fraction)
+    blend_memory(c, table, body, fraction, approach, rate)
     return push(c, table, body, approach, rate, first_blend(c))
 
 
@@ -199,7 +203,7 @@ def _emit(c, table, first, recorder, start, end, before, time, step):
 
 def _audit(c, table, first, beyond, weight, impulse, pending, time, balance, status):
     """Keep total energy, and total momentum less all impulses received: both must stay constant."""
-    raise NotImplementedError("compiled code only")
+    raise TypeError(COMPILED_ONLY)
 
 
 @overload(_audit, jit_options=INLINED)
@@ -243,6 +247,7 @@ def _advance_group(
     noted = False
     for body in range(first, first + bodies):
         set_rest_force(c, table, body)
+        follow_path(c, table, body, zero(c))
     _audit(c, table, first, beyond, weight, impulse, pending, time, balance, status)
     while True:
         step = select(load(c, clock, FINE_UNTIL) - time, load(c, clock, FINE_STEP), load(c, clock, STEP))
