@@ -16,7 +16,6 @@ from sonicvacuum.records.predict import predict as engine
 USUAL = 3e-5
 CLOSE = {
     "guide-friction": 1e-2,  # below 1 mm/s a straight line here and a cubic there
-    "plastic-contact": 2e-4,  # turning points are located to a step in the engine
     "sensor-lowpass": 5e-4,  # two grids on which the force is taken as linear
     "linear-dashpot": 1e-4,  # the force jumps where contacts close
 }

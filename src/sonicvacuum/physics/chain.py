@@ -8,7 +8,7 @@ so that a chain of a million beads costs no more memory than the part that the w
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -218,7 +218,7 @@ class Chain:
                 gap[e.index] = e.value
         return gap
 
-    @property
+    @cached_property
     def preloaded(self) -> bool:
         """Whether any contact bears a force or has a gap at rest."""
         gap = any(e.what == "gap" for e in self.departures)
@@ -229,7 +229,7 @@ class Chain:
         terms = tuple(a.term for a in self.actions)
         if not any(t.slot == "elastic" for t in terms):
             terms = (HERTZ, *terms)
-        return LawSet(terms, self.preloaded, symplectic)
+        return _law_set(terms, self.preloaded, symplectic)
 
     def coefficients(self, laws: LawSet, bodies: int) -> np.ndarray:
         """(bodies, n, lanes) table of the coefficients of all terms, in the order of the law set."""
@@ -247,6 +247,12 @@ class Chain:
             if e.what == what and e.index < len(values):
                 values[e.index] = values[e.index] * e.value
         return values
+
+
+@lru_cache(maxsize=256)
+def _law_set(terms, preloaded, symplectic):
+    """One object for equal law sets, so that what is derived from it is worked out once."""
+    return LawSet(terms, preloaded, symplectic)
 
 
 _NUMBERS = ("bead_mass", "striker_mass", "speed", "gravity", "static_force")

@@ -136,7 +136,24 @@ def prepare(dispatcher, name: str, arguments: tuple) -> None:
         _prepared.add(name)
 
 
+def _import_array_functions():
+    """Import Numba's array functions, but without scipy's linear algebra: no kernel multiplies matrices.
+
+    Numba loads it only to see that it is there, which is a fifth of a second of every process's start; where
+    it is used, Numba checks again.
+    """
+    with contextlib.suppress(ImportError, AttributeError):
+        from numba.np import linalg
+
+        check, linalg.ensure_blas = linalg.ensure_blas, lambda: None
+        try:
+            import numba.np.arraymath  # noqa: F401
+        finally:
+            linalg.ensure_blas = check
+
+
 def _load_or_compile(dispatcher, signature):
+    _import_array_functions()
     folder = cache_folder()
     path = dispatcher._cache.path(signature, dispatcher.targetctx) if folder else None
     if path is None or path.exists():

@@ -8,11 +8,29 @@ from numba import njit
 from numba.extending import overload
 
 from sonicvacuum.physics import lanes
-from sonicvacuum.physics.table import INLINED, REST, REST_FORCE, first_memory, get, put, zero
+from sonicvacuum.physics.lanes import positive, root, select
+from sonicvacuum.physics.table import INLINED, REST, REST_FORCE, U, V, first_memory, get, put, zero
+
+COMPILED_ONLY = "this function exists in compiled code only: it takes a composition that Numba knows"
 
 
 def _compiled(function):
     return njit(**INLINED)(function)
+
+
+@_compiled
+def highest(v, w, gain):
+    """Largest value during a step of the cubic that goes from 0 to `gain`, first at the rate v, last at w.
+
+    Rates per step. Only the maximum of a curve that rises first and falls last counts.
+    """
+    square = 3.0 * gain - 2.0 * v - w
+    cube = v + w - 2.0 * gain
+    turns = select(v, select(-w, 1.0, 0.0), 0.0)
+    below = root(square * square - 3.0 * cube * v) - square
+    moment = v / select(turns, below, 1.0)
+    top = moment * (v + moment * (square + moment * cube))
+    return select(turns, top, positive(gain))
 
 
 class _Source:
@@ -22,7 +40,7 @@ class _Source:
         self.composition, self.laws = composition, composition.laws
         self.lines = [f"def composed({signature}):"]
         self.namespace = {name: getattr(lanes, name) for name in ("select", "positive", "without_fusing")}
-        self.namespace |= {"get": get, "put": put}
+        self.namespace |= {"get": get, "put": put, "highest": highest}
 
     def call(self, term, what, *arguments):
         """The call of one formula of a term, its coefficients read from the table."""
@@ -57,7 +75,7 @@ def push(c, table, body, approach, rate, first_memory):
 
     `approach` of the two since rest in m, its `rate` in m/s; `first_memory`: column of the memory to use.
     """
-    raise NotImplementedError("compiled code only")
+    raise TypeError(COMPILED_ONLY)
 
 
 @overload(push, jit_options=INLINED)
@@ -86,7 +104,7 @@ def set_rest_force(c, table, body):
 
     By the law itself: what is at rest then stays so to the bit.
     """
-    raise NotImplementedError("compiled code only")
+    raise TypeError(COMPILED_ONLY)
 
 
 @overload(set_rest_force, jit_options=INLINED)
@@ -108,20 +126,16 @@ def _delta(laws):
 
 def advance_memory(c, table, body, approach, keep, gain, step):
     """One low-storage Runge–Kutta stage of the memory of the contact behind a body."""
-    raise NotImplementedError("compiled code only")
+    raise TypeError(COMPILED_ONLY)
 
 
 @overload(advance_memory, jit_options=INLINED)
 def _advance_memory(c, table, body, approach, keep, gain, step):
     composition, laws = c.composition, c.composition.laws
     source = _Source(composition, "c, table, body, approach, keep, gain, step")
-    if composition.memories:
+    if laws.in_slot("memory"):
         source.add(_delta(laws))
         source.add_elastic(composition.first_memory)
-    for term in laws.in_slot("path"):
-        column = composition.first_memory + laws.memory_of[term.name]
-        source.add(f"largest = get(c, table, body, {column})")
-        source.add(f"put(c, table, body, {column}, select(delta - largest, delta, largest))")
     for term in laws.in_slot("memory"):
         k = laws.memory_of[term.name]
         column, increment = composition.first_memory + k, composition.first_increment + 2 + k
@@ -136,9 +150,41 @@ def _advance_memory(c, table, body, approach, keep, gain, step):
     return source.function()
 
 
+def follow_path(c, table, body, step):
+    """After a step, keep the largest compression that the contact behind a body had during it.
+
+    That of the cubic Hermite polynomial: the stages of a step stray from the motion, and a largest
+    compression once too large would stay so.
+    """
+    raise TypeError(COMPILED_ONLY)
+
+
+@overload(follow_path, jit_options=INLINED)
+def _follow_path(c, table, body, step):
+    composition, laws = c.composition, c.composition.laws
+    source = _Source(composition, "c, table, body, step")
+    if laws.in_slot("path"):
+        start = composition.first_turn
+        source.add(
+            f"x, v = get(c, table, body, {start}), step * get(c, table, body, {start + 1})",
+            f"rate = get(c, table, body, {V}) - get(c, table, body + 1, {V})",
+            f"approach = get(c, table, body, {U}) - get(c, table, body + 1, {U})",
+            f"put(c, table, body, {start}, approach)",
+            f"put(c, table, body, {start + 1}, rate)",
+            "approach = x + highest(v, step * rate, approach - x)",
+            _delta(laws),
+        )
+    for term in laws.in_slot("path"):
+        column = composition.first_memory + laws.memory_of[term.name]
+        source.add(f"largest = get(c, table, body, {column})")
+        source.add(f"put(c, table, body, {column}, select(delta - largest, delta, largest))")
+    source.add("return None")
+    return source.function()
+
+
 def body_acceleration(c, table, body, velocity):
     """Acceleration in m/s² of a bead by drag and friction."""
-    raise NotImplementedError("compiled code only")
+    raise TypeError(COMPILED_ONLY)
 
 
 @overload(body_acceleration, jit_options=INLINED)
@@ -151,7 +197,7 @@ def _body_acceleration(c, table, body, velocity):
 
 def stored_energy(c, table, body, approach):
     """Elastic energy in J of a contact beyond that at rest, less the work of its static force."""
-    raise NotImplementedError("compiled code only")
+    raise TypeError(COMPILED_ONLY)
 
 
 @overload(stored_energy, jit_options=INLINED)
@@ -172,7 +218,7 @@ def _stored_energy(c, table, body, approach):
 
 def keep_memory(c, table, body):
     """Copy the memory of a contact to the columns `old`."""
-    raise NotImplementedError("compiled code only")
+    raise TypeError(COMPILED_ONLY)
 
 
 @overload(keep_memory, jit_options=INLINED)
@@ -186,19 +232,30 @@ def _keep_memory(c, table, body):
     return source.function()
 
 
-def blend_memory(c, table, body, fraction):
-    """Leave the memory at a fraction of the step in the columns `blend`."""
-    raise NotImplementedError("compiled code only")
+def blend_memory(c, table, body, fraction, approach, rate):
+    """Leave the memory at a fraction of the step in the columns `blend`.
+
+    `approach` and `rate` at that moment: the largest compression is the present one while it grows beyond the
+    old.
+    """
+    raise TypeError(COMPILED_ONLY)
 
 
 @overload(blend_memory, jit_options=INLINED)
-def _blend_memory(c, table, body, fraction):
-    composition = c.composition
-    source = _Source(composition, "c, table, body, fraction")
-    for k in range(composition.memories):
-        old = f"get(c, table, body, {composition.first_old + k})"
-        new = f"get(c, table, body, {composition.first_memory + k})"
-        blend = f"{old} * (1.0 - fraction) + {new} * fraction"
-        source.add(f"put(c, table, body, {composition.first_blend + k}, {blend})")
+def _blend_memory(c, table, body, fraction, approach, rate):
+    composition, laws = c.composition, c.composition.laws
+    source = _Source(composition, "c, table, body, fraction, approach, rate")
+    if laws.in_slot("path"):
+        source.add(_delta(laws))
+    for name, k in laws.memory_of.items():
+        source.add(
+            f"old = get(c, table, body, {composition.first_old + k})",
+            f"new = get(c, table, body, {composition.first_memory + k})",
+        )
+        if name in [t.name for t in laws.in_slot("path")]:
+            source.add("blend = select(rate, select(delta - old, delta, old), new)")
+        else:
+            source.add("blend = old * (1.0 - fraction) + new * fraction")
+        source.add(f"put(c, table, body, {composition.first_blend + k}, blend)")
     source.add("return None")
     return source.function()

@@ -22,9 +22,11 @@ from numba import njit
 from numba.extending import overload
 
 from sonicvacuum.physics.compose import (
+    COMPILED_ONLY,
     advance_memory,
     blend_memory,
     body_acceleration,
+    follow_path,
     keep_memory,
     push,
     set_rest_force,
@@ -78,13 +80,12 @@ def _pass_splitting(c, table, first, beyond, pull, drift, kick):
 
 
 @_inlined
-def _step_splitting(c, table, first, beyond, weight, method, step, pending):
+def _step_splitting(c, table, first, beyond, weight, factors, gains, step, pending):
     """One step; returns the impulse on the body beyond. Positions then lack the last drift."""
-    drifts, kicks = method
     impulse = zero(c)
-    for stage in range(len(kicks)):
-        kick = kicks[stage] * step
-        force = _pass_splitting(c, table, first, beyond, weight, drifts[stage] * step + pending, kick)
+    for stage in range(len(gains)):
+        kick = gains[stage] * step
+        force = _pass_splitting(c, table, first, beyond, weight, factors[stage] * step + pending, kick)
         impulse = impulse + kick * force
         pending = zero(c)
     return impulse
@@ -117,26 +118,27 @@ def _pass_runge_kutta(c, table, first, beyond, pull, keep, gain, step, moved_col
 
 
 @_inlined
-def _step_runge_kutta(c, table, first, beyond, weight, method, step, pending):
-    keeps, gains = method
+def _step_runge_kutta(c, table, first, beyond, weight, factors, gains, step, pending):
     impulse = zero(c)
     increment = zero(c)
     for stage in range(len(gains)):
         force = _pass_runge_kutta(
-            c, table, first, beyond, weight, keeps[stage], gains[stage], step, first_increment(c)
+            c, table, first, beyond, weight, factors[stage], gains[stage], step, first_increment(c)
         )
-        increment = keeps[stage] * increment + step * force
+        increment = factors[stage] * increment + step * force
         impulse = impulse + gains[stage] * increment
+    for body in range(first, beyond):
+        follow_path(c, table, body, step)
     return impulse
 
 
-def _step(c, table, first, beyond, weight, method, step, pending):
+def _step(c, table, first, beyond, weight, factors, gains, step, pending):
     """One step by the stepper that suits the laws; returns the impulse on the body beyond."""
-    raise NotImplementedError("compiled code only")
+    raise TypeError(COMPILED_ONLY)
 
 
 @overload(_step, jit_options=INLINED)
-def _choose_step(c, table, first, beyond, weight, method, step, pending):
+def _choose_step(c, table, first, beyond, weight, factors, gains, step, pending):
     stepper = _step_splitting if c.composition.laws.splits else _step_runge_kutta
     return stepper.py_func
 
@@ -176,7 +178,7 @@ def _sample(c, table, body, start, end, r, step, fraction):
     cube = v + w - 2.0 * gap
     approach = x + fraction * (v + fraction * (square + fraction * cube))
     rate = (v + fraction * (2.0 * square + 3.0 * fraction * cube)) / step
-    blend_memory(c, table, body, fraction)
+    blend_memory(c, table, body, fraction, approach, rate)
     return push(c, table, body, approach, rate, first_blend(c))
 
 
@@ -201,7 +203,7 @@ def _emit(c, table, first, recorder, start, end, before, time, step):
 
 def _audit(c, table, first, beyond, weight, impulse, pending, time, balance, status):
     """Keep total energy, and total momentum less all impulses received: both must stay constant."""
-    raise NotImplementedError("compiled code only")
+    raise TypeError(COMPILED_ONLY)
 
 
 @overload(_audit, jit_options=INLINED)
@@ -229,12 +231,14 @@ def _keep_balance(c, table, first, beyond, weight, impulse, pending, time, balan
 
 
 @_inlined
-def _advance_group(c, method, table, first, bodies, extendable, recorder, start, end, every, balance, status):
+def _advance_group(
+    c, factors, gains, table, first, bodies, extendable, recorder, start, end, every, balance, status
+):
     """Integrate one group, whose bodies begin at row `first` of the table."""
     clock, contacts = recorder.clock, recorder.contacts
     weight = load(c, clock, WEIGHT)
     threshold = load(c, clock, THRESHOLD)
-    pending_part = method[0][len(method[1]) :].sum()
+    pending_part = factors[-1] if len(factors) > len(gains) else 0.0
     beyond = first + min(MARGIN, bodies)
     time = zero(c)
     pending = zero(c)
@@ -243,6 +247,7 @@ def _advance_group(c, method, table, first, bodies, extendable, recorder, start,
     noted = False
     for body in range(first, first + bodies):
         set_rest_force(c, table, body)
+        follow_path(c, table, body, zero(c))
     _audit(c, table, first, beyond, weight, impulse, pending, time, balance, status)
     while True:
         step = select(load(c, clock, FINE_UNTIL) - time, load(c, clock, FINE_STEP), load(c, clock, STEP))
@@ -263,7 +268,7 @@ def _advance_group(c, method, table, first, bodies, extendable, recorder, start,
                 keep_memory(c, table, first + contacts[r])
         if sampled and not noted:
             _note(c, table, first, contacts, pending, start)
-        impulse = impulse + _step(c, table, first, beyond, weight, method, step, pending)
+        impulse = impulse + _step(c, table, first, beyond, weight, factors, gains, step, pending)
         pending = pending_part * step
         if sampled:
             _note(c, table, first, contacts, pending, end)
@@ -325,7 +330,8 @@ def advance(
         first_row = g * (bodies + 1)
         _advance_group(
             c,
-            (first, second),
+            first,
+            second,
             table,
             first_row,
             bodies,

@@ -76,6 +76,14 @@ def hertz_energy(delta, stiffness):
 HERTZ = Term("hertz", "elastic", hertz_force, 1, energy=hertz_energy)
 
 
+def _place(term):
+    """Order of composition: by slot, then by name, so that equal terms make one law set however they came.
+
+    Sums and products do not care but for rounding; of two path terms the second acts on the first.
+    """
+    return SLOTS.index(term.slot), "" if term.slot == "path" else term.name
+
+
 @dataclass(frozen=True, eq=False)
 class LawSet:
     """The terms that act in every contact and bead of a chain, in order of composition.
@@ -98,7 +106,7 @@ class LawSet:
         names = [t.name for t in self.terms]
         if len(set(names)) < len(names):
             raise ValueError(f"a law set names each term once, got {', '.join(names)}")
-        ordered = tuple(sorted(self.terms, key=lambda t: SLOTS.index(t.slot)))
+        ordered = tuple(sorted(self.terms, key=_place))
         object.__setattr__(self, "terms", ordered)
         flags = ["preloaded" if self.preloaded else "unloaded", "splitting" if self.splits else "runge-kutta"]
         object.__setattr__(self, "_name", "laws[" + ",".join([*(t.key for t in ordered), *flags]) + "]")

@@ -129,7 +129,7 @@ def _zeros(*shape):
     """Zeros aligned to the 64 bytes of a cache line and a register."""
     size = math.prod(shape)
     buffer = np.zeros(size + 8)
-    start = -(buffer.ctypes.data // 8) % 8
+    start = -(buffer.__array_interface__["data"][0] // 8) % 8
     return buffer[start : start + size].reshape(shape)
 
 
@@ -276,7 +276,7 @@ class _Batch:
             force = np.zeros((self.chain.lanes, len(self.wanted), self.samples))
             force[:, [c < self.bodies for c in self.wanted]] = self.out
         entries = int(self.status[:, kernel.BALANCED].min())
-        balance = self._collect(self.balance[:, :entries])
+        balance = self._collect(self.balance[:, :entries]) if entries else np.empty((0, 2, self.chain.lanes))
         return History(
             time=np.arange(self.samples) * self.interval,
             contacts=self.wanted,

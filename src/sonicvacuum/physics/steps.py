@@ -16,6 +16,8 @@ EARLY_REFINEMENT = 8
 EARLY_CONTACT_TIMES = 4.5
 # Step in units of the time in which damping or memory decays: stable and accurate to the stepper's order.
 DECAY_STEP = 0.25
+# Speed of a body about to stop, in units of the striker's.
+CREEP = 1e-4
 
 
 def time_scale(chain: Chain, laws: LawSet, table: np.ndarray, mass: np.ndarray) -> np.ndarray:
@@ -79,8 +81,10 @@ def decay_time(chain: Chain, laws: LawSet, table: np.ndarray, mass: np.ndarray) 
         fall = term.growth(force, force, *columns) - term.growth(force, 0.5 * force, *columns)
         fastest = np.maximum(fastest, np.abs(2.0 * fall / force).max(axis=0))
     for term in laws.in_slot("body"):
-        fall = np.broadcast_to(term.formula(rate, *columns_of(laws, term, table)), rate.shape)
-        fastest = np.maximum(fastest, np.abs(fall / rate).max(axis=0))
+        # Friction stops the slow sooner than the fast.
+        for velocity in (rate, CREEP * rate):
+            fall = np.broadcast_to(term.formula(velocity, *columns_of(laws, term, table)), rate.shape)
+            fastest = np.maximum(fastest, np.abs(fall / velocity).max(axis=0))
     with np.errstate(divide="ignore"):
         return 1.0 / fastest
 

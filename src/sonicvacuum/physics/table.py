@@ -6,7 +6,7 @@ an array (groups, bodies + 1, columns, lanes) whose last body is the wall, alway
     U, V, INVERSE_MASS          displacement from rest, velocity, 1/mass
     REST, REST_FORCE            compression and force of the contact at rest; only if it may be preloaded
     coefficients, memory        of the law set
-    increments, old, blend      work space of the Runge–Kutta stepper and of its samples between steps
+    increments, old, blend, turn  work space of the Runge–Kutta stepper and of its samples between steps
 
 A `Composition` (law set, lanes, audit) is part of the type that Numba compiles for. It knows the
 columns, so that all addresses are constants of the compiled code.
@@ -24,7 +24,7 @@ from sonicvacuum.physics.lanes import FASTMATH, LANES, lane
 from sonicvacuum.physics.laws import LawSet
 
 # Options of all that is compiled, and of what is only ever called from compiled code.
-OPTIONS = {"fastmath": FASTMATH, "error_model": "numpy", "nogil": True}
+OPTIONS = {"fastmath": FASTMATH, "error_model": "numpy", "nogil": True, "_nrt": False}
 INLINED = OPTIONS | {"forceinline": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
 U, V, INVERSE_MASS, REST, REST_FORCE = range(5)
@@ -80,9 +80,16 @@ class Composition:
         return self.first_old + self.memories
 
     @property
+    def first_turn(self) -> int:
+        """Column of approach and rate at the step's start, kept where a path is to be followed."""
+        return self.first_blend + self.memories
+
+    @property
     def columns(self) -> int:
         """Numbers per body."""
-        return self.first_increment if self.laws.splits else self.first_blend + self.memories
+        if self.laws.splits:
+            return self.first_increment
+        return self.first_turn + (2 if self.laws.in_slot("path") else 0)
 
     @cached_property
     def _numba_type_(self):
