@@ -1,7 +1,8 @@
 """What gauges show of an impact, and the scalars read from them.
 
 Change from rest → bandwidth → droop → gauge faults outside the catalogue → gain. Filters are sampled ten
-times finer than the record and solved exactly for a force that is linear between samples (a first-order hold).
+times finer than the record and solved exactly for a force that is linear between samples (first-order
+hold).
 """
 
 import math
@@ -27,9 +28,7 @@ def read(plan: Plan, times: np.ndarray, tolerance: float = TOLERANCE) -> np.ndar
     contacts = sorted({c for g in plan.gauges for c in _weights(plan, g)})
     # Gauges do not act back on the chain: what they are does not matter to how it moves.
     bare = replace(plan, gauges=(), electronics={})
-    force = _forces(
-        bare, tuple(contacts), float(times[0]), interval, (len(times) - 1) * finer + 1, tolerance
-    )
+    force = _forces(bare, tuple(contacts), float(times[0]), interval, (len(times) - 1) * finer + 1, tolerance)
     mix = np.zeros((len(plan.gauges), len(contacts)))
     for k, gauge in enumerate(plan.gauges):
         for contact, weight in _weights(plan, gauge).items():
@@ -49,13 +48,20 @@ def _weights(plan, gauge):
 @lru_cache(maxsize=REMEMBERED)
 def _forces(plan, contacts, start, interval, samples, tolerance):
     """(contacts, samples) forces beyond the static ones; zero before the impact."""
-    setting = problem(plan)
+    setting, static = _at_rest(replace(plan, speed=1.0))
     times = start + interval * np.arange(samples)
     after = times >= 0.0
     forces = np.zeros((len(contacts), samples))
-    found = integrate(setting, times[after], contacts, tolerance=tolerance).force.T
-    forces[:, after] = found - static_forces(setting.rest, setting.rows)[list(contacts), None]
+    found = integrate(setting, times[after], contacts, speed=plan.speed, tolerance=tolerance).force.T
+    forces[:, after] = found - static[list(contacts), None]
     return forces
+
+
+@lru_cache(maxsize=REMEMBERED)
+def _at_rest(plan):
+    """The chain before any impact and its static forces; the striker's speed does not matter to them."""
+    setting = problem(plan)
+    return setting, static_forces(setting.rest, setting.rows)
 
 
 def _filtered(shown, interval, electronics):

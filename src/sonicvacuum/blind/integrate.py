@@ -4,10 +4,11 @@ The method is in `stepper`, the force laws in `laws`.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
-from sonicvacuum.blind.laws import acting, numbers
+from sonicvacuum.blind.laws import Acting, acting, numbers
 from sonicvacuum.blind.stepper import run
 
 TOLERANCE = 1e-8
@@ -39,6 +40,16 @@ class Problem:
     push: tuple[float, float, float] = (0.0, 0.0, 0.0)
     wall: tuple[float, float] = (0.0, 0.0)
 
+    @cached_property
+    def table(self) -> np.ndarray:
+        """(rows, bodies + 1) `laws.numbers` of the chain."""
+        return numbers(self.rows, self.rest, self.load, self.mass, self.drag)
+
+    @cached_property
+    def acting(self) -> Acting:
+        """Which laws act."""
+        return acting(self.table)
+
 
 @dataclass(frozen=True)
 class Motion:
@@ -57,7 +68,13 @@ class Motion:
 
 
 def integrate(
-    problem: Problem, times: np.ndarray, contacts, *, states: bool = False, tolerance: float = TOLERANCE
+    problem: Problem,
+    times: np.ndarray,
+    contacts,
+    *,
+    speed: float | None = None,
+    states: bool = False,
+    tolerance: float = TOLERANCE,
 ) -> Motion:
     """Forces of some contacts at given true times.
 
@@ -65,24 +82,22 @@ def integrate(
         problem: the chain.
         times: (samples,) ascending true times in s, 0 or later.
         contacts: whose force is recorded.
+        speed: of the striker in m/s, instead of the problem's.
         states: record all displacements and velocities too.
         tolerance: error of one step over the impact's own compression and speed.
 
     Raises:
         ValueError: where the steps become too small or too many: laws that the chain cannot follow.
     """
-    mass = float(np.min(problem.mass))
-    scale = (1.25 * mass * problem.speed**2 / float(np.max(problem.rows[:, 0]))) ** 0.4
+    speed = float(problem.speed if speed is None else speed)
+    scale = (1.25 * float(problem.mass.min()) * speed**2 / float(problem.rows[:, 0].max())) ** 0.4
     recorded = np.array(tuple(contacts), dtype=np.int64)
     force = np.zeros((len(times), len(recorded)))
     kept = np.zeros((len(times) if states else 0, 2, len(problem.mass)))
     times = np.ascontiguousarray(times, dtype=float)
-    table = numbers(problem.rows, problem.rest, problem.load, problem.mass, problem.drag)
     push, wall = tuple(map(float, problem.push)), tuple(map(float, problem.wall))
-    steps = run(
-        *(table, acting(table), push, wall, problem.speed, scale, times, recorded, tolerance, force, kept)
-    )
+    chain = (problem.table, problem.acting, push, wall)
+    steps = run(*chain, speed, scale, times, recorded, tolerance, force, kept)
     if steps < 0:
         raise ValueError(f"no solution to {tolerance:g}: the laws are too stiff for the chain")
     return Motion(force, kept[:, 0], kept[:, 1], steps)
-

@@ -87,12 +87,12 @@ def numbers(rows: np.ndarray, rest: np.ndarray, load: np.ndarray, mass: np.ndarr
 
 def acting(table: np.ndarray) -> Acting:
     """Which laws act in a chain with these `numbers`."""
-    power, layer = table[_EXPONENT] != 1.5, table[_SLOPE] != 0.0
-    rate = (table[_GAMMA] != 0.0) | (table[_LOG] != 0.0)
-    viscous = np.any(table[_DASHPOT : _HUNT + 1] != 0.0, axis=0)
-    others = [power, layer, table[_RESIDUAL] != 0.0, viscous, rate, table[_RELAXING] != 0.0]
-    acts = [bool(np.any(x)) for x in (*others, table[_ADHESION] != 0.0)]
-    return Acting(not any(acts), *acts, bool(np.any(table[DRAG:] != 0.0)))
+    some = (table != 0.0).any(axis=1)
+    power, viscous = bool((table[_EXPONENT] != 1.5).any()), bool(some[_DASHPOT : _HUNT + 1].any())
+    rate = bool(some[_GAMMA] or some[_LOG])
+    others = [power, bool(some[_SLOPE]), bool(some[_RESIDUAL]), viscous, rate]
+    others += [bool(some[_RELAXING]), bool(some[_ADHESION])]
+    return Acting(not any(others), *others, bool(some[DRAG:].any()))
 
 
 @njit(nogil=True, error_model="numpy")
@@ -247,13 +247,20 @@ def _borne(delta, table, uses, room):
 
 def static_forces(rest: np.ndarray, rows: np.ndarray) -> np.ndarray:
     """(contacts,) static forces in N at compressions (contacts,) in m; zero where a contact is open."""
+    if not np.any(rest > 0.0):
+        return np.zeros(len(rest))
     table, uses, room = _alone(rows)
     return _borne(np.maximum(rest, 0.0), table, uses, room)
 
 
 def compression_at_rest(weight: np.ndarray, rows: np.ndarray) -> np.ndarray:
     """(contacts,) compression in m at which contacts bear their load (contacts,) in N by the law in force."""
-    return _sink(weight, *_alone(rows))
+    if not (np.any(weight > 0.0) or np.any(rows[:, _ADHESION])):
+        return np.zeros(len(weight))
+    table, uses, room = _alone(rows)
+    if not (uses.power or uses.layer or uses.adhesion):
+        return (np.maximum(weight, 0.0) / rows[:, _HERTZ]) ** (2.0 / 3.0)
+    return _sink(weight, table, uses, room)
 
 
 def _alone(rows):
