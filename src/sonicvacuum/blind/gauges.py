@@ -1,66 +1,79 @@
 """What gauges show of an impact, and the scalars read from them.
 
 Change from rest → bandwidth → droop → gauge faults outside the catalogue → gain. Filters are sampled ten
-times finer than the record and solved by scipy's first-order-hold discretisation, exact for a force that is
-linear between samples.
+times finer than the record and solved exactly for a force that is linear between samples (first-order
+hold).
 """
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 from scipy import signal
 
 from sonicvacuum.blind.integrate import TOLERANCE, integrate
-from sonicvacuum.blind.laws import force_at_rest
+from sonicvacuum.blind.laws import static_forces
 from sonicvacuum.blind.plan import Plan, problem
 
 FINER = 10
+# Motions kept, for effects that change gauges only.
+REMEMBERED = 16
 
 
 def read(plan: Plan, times: np.ndarray, tolerance: float = TOLERANCE) -> np.ndarray:
     """(gauges, samples) readings in N at equidistant true times in s; zero before the impact (time 0)."""
     finer = FINER if any(plan.electronics.get(k) for k in ("lowpass", "inverse_droop")) else 1
     interval = (times[1] - times[0]) / finer
-    fine = times[0] + interval * np.arange((len(times) - 1) * finer + 1)
-    force = _forces(plan, fine, tolerance)
-    weights = {"wall": lambda g: {plan.beads: 1.0}, "embedded": _halves}
-    shown = np.stack([sum(w * force[c] for c, w in weights[g.kind](g).items()) for g in plan.gauges])
-    shown = _filtered(shown, interval, plan.electronics)[:, ::finer]
+    contacts = sorted({c for g in plan.gauges for c in _weights(plan, g)})
+    # Gauges do not act back on the chain: what they are does not matter to how it moves.
+    bare = replace(plan, gauges=(), electronics={})
+    force = _forces(bare, tuple(contacts), float(times[0]), interval, (len(times) - 1) * finer + 1, tolerance)
+    mix = np.zeros((len(plan.gauges), len(contacts)))
+    for k, gauge in enumerate(plan.gauges):
+        for contact, weight in _weights(plan, gauge).items():
+            mix[k, contacts.index(contact)] = weight
+    shown = _filtered(mix @ force, interval, plan.electronics)[:, ::finer]
     shown = _faults(shown, times, plan.electronics)
     return shown * np.array([[g.gain] for g in plan.gauges])
 
 
-def _halves(gauge):
+def _weights(plan, gauge):
+    """contact → its share in what a gauge feels."""
+    if gauge.kind == "wall":
+        return {plan.beads: 1.0}
     return {gauge.bead - 1: 0.5 + gauge.offset, gauge.bead: 0.5 - gauge.offset}
 
 
-def _forces(plan, times, tolerance):
-    """contact → (samples,) force beyond the static one, for the contacts that the gauges feel."""
-    setting = problem(plan)
-    contacts = sorted(
-        {c for g in plan.gauges for c in (_halves(g) if g.kind == "embedded" else [plan.beads])}
-    )
+@lru_cache(maxsize=REMEMBERED)
+def _forces(plan, contacts, start, interval, samples, tolerance):
+    """(contacts, samples) forces beyond the static ones; zero before the impact."""
+    setting, static = _at_rest(replace(plan, speed=1.0))
+    times = start + interval * np.arange(samples)
     after = times >= 0.0
-    motion = integrate(setting, times[after], contacts, tolerance=tolerance)
-    forces = {}
-    for k, c in enumerate(contacts):
-        forces[c] = np.zeros(len(times))
-        forces[c][after] = motion.force[:, k] - force_at_rest(setting.rest[c], setting.rows, c)
+    forces = np.zeros((len(contacts), samples))
+    found = integrate(setting, times[after], contacts, speed=plan.speed, tolerance=tolerance).force.T
+    forces[:, after] = found - static[list(contacts), None]
     return forces
 
 
+@lru_cache(maxsize=REMEMBERED)
+def _at_rest(plan):
+    """The chain before any impact and its static forces; the striker's speed does not matter to them."""
+    setting = problem(plan)
+    return setting, static_forces(setting.rest, setting.rows)
+
+
 def _filtered(shown, interval, electronics):
-    lowpass, inverse_droop = electronics.get("lowpass", 0.0), electronics.get("inverse_droop", 0.0)
-    if lowpass > 0.0:
-        shown = _first_order(shown, ([1.0], [lowpass, 1.0]), interval)
-    if inverse_droop > 0.0:
-        shown = _first_order(shown, ([1.0, 0.0], [1.0, inverse_droop]), interval)
+    """Readings through an RC low pass and a discharging gauge, exact for forces linear between samples."""
+    if lowpass := electronics.get("lowpass", 0.0):
+        stay = math.exp(-interval / lowpass)
+        mean = -math.expm1(-interval / lowpass) * lowpass / interval
+        shown = signal.lfilter([1.0 - mean, mean - stay], [1.0, -stay], shown, axis=1)
+    if rate := electronics.get("inverse_droop", 0.0):
+        mean = -math.expm1(-interval * rate) / (interval * rate)
+        shown = signal.lfilter([mean, -mean], [1.0, -math.exp(-interval * rate)], shown, axis=1)
     return shown
-
-
-def _first_order(shown, system, interval):
-    numerator, denominator, _ = signal.cont2discrete(system, interval, method="foh")
-    return signal.lfilter(numerator.ravel(), denominator, shown, axis=1)
 
 
 def _faults(shown, times, electronics):

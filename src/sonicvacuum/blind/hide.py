@@ -4,8 +4,10 @@ sides.
 The record goes to one folder, the truth to another; nothing in the record says what is hidden in it.
 """
 
+import itertools
 import json
 from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -24,6 +26,8 @@ NOISES = ("white", "ar1", "quantised")
 TOLERANCE = 1e-9
 # A design in which the effect cannot reach this share of the wanted d′ is drawn anew, so often at most.
 ENOUGH, TRIES = 0.9, 12
+# Designs drawn in search of one in which the effects can act at all.
+DRAWS = 200
 CORRELATIONS = (0.2, 0.5, 0.8)
 
 
@@ -84,10 +88,13 @@ class Hidden:
 
 @dataclass(frozen=True)
 class Case:
-    """A record's design with what is hidden in it."""
+    """A record's design with what is hidden in it, and what the catalogue's effects do there (empty where
+    nobody asked yet).
+    """
 
     frame: Frame
     hidden: tuple[Hidden, ...]
+    directions: tuple[Rival, ...]
 
     @property
     def change(self):
@@ -136,28 +143,22 @@ def _case(spec, random):
     """A design in which all effects reach the wanted d′; the best of the designs tried otherwise."""
     best, reached = None, -1.0
     correlation = float(random.choice(CORRELATIONS)) if spec.noise == "ar1" else 0.0
-    for _ in range(TRIES):
-        made = design.draw(spec.design, random)
-        entries = [_entry(spec, name) for name in spec.effects]
-        if not all(_acts(made, e) for e in entries):
-            continue
+    drawn = (design.draw(spec.design, random) for _ in range(DRAWS))
+    able = (d for d in drawn if all(_acts(d, _entry(spec, name)) for name in spec.effects))
+    for made in itertools.islice(able, TRIES):
         frame = Frame.of(made, correlation)
-        measure = _measure(frame) if spec.kind == "foreign" else np.linalg.norm
-        hidden = tuple(_hidden(frame, e, spec.d_prime, measure, random) for e in entries)
+        directions = tuple(rivals(frame)) if spec.kind == "foreign" else ()
+        # The strength of an effect outside the catalogue is what no single effect of the catalogue explains.
+        measure = partial(leftover, directions) if directions else np.linalg.norm
+        hidden = tuple(_hidden(frame, _entry(spec, e), spec.d_prime, measure, random) for e in spec.effects)
         least = min((measure(h.seen) for h in hidden), default=np.inf)
         if least > reached:
-            best, reached = Case(frame, hidden), least
+            best, reached = Case(frame, hidden, directions), least
         if least >= ENOUGH * spec.d_prime:
             break
     if best is None:
         raise ValueError(f"case {spec.id}: {', '.join(spec.effects)} cannot act in designs {spec.design}")
     return best, correlation
-
-
-def _measure(frame):
-    """Strength of an effect outside the catalogue: what no single effect of the catalogue explains."""
-    directions = rivals(frame)
-    return lambda seen: leftover(directions, seen)
 
 
 def _entry(spec, name):
@@ -225,7 +226,7 @@ def _truth(spec, case, errors, noise, random):
     frame, made = case.frame, case.frame.design
     # In the linear approximation, effects of a pair add up.
     seen = sum((h.seen for h in case.hidden), np.zeros(len(frame.base) + frame.slopes.shape[1]))
-    directions = rivals(frame) if case.hidden else []
+    directions = list(case.directions or rivals(frame)) if case.hidden else []
     if spec.kind in ("single", "pair"):
         # Shapes and strengths of the catalogue's directions lie on a grid; what is hidden need not.
         directions += [Rival(h.id, h.place, h.seen / h.d_prime) for h in case.hidden]

@@ -1,13 +1,15 @@
-"""Force laws for hidden-effect data, one contact at a time, compiled.
+"""Force laws for hidden-effect data, all contacts of a chain at once, compiled.
 
 All laws stand side by side and a number of zero leaves one out: one row of numbers for each contact
-(`CONTACT` names the columns) and one for each bead (`BODY`). Composition, as for the catalogue: loading curve
+(`CONTACT` names the columns) and one for each bead (`BODY`), gathered by `numbers` into one table with a row
+for each name, so that loops over a chain run along memory. Composition, as for the catalogue: loading curve
 (Hertz or a power) × layer correction, replaced by the unloading branch below the largest compression so far,
 plus dissipative and relaxing parts; zero out of contact and never pulling, but for adhesion, which is not in
 the catalogue.
 """
 
 import math
+from collections import namedtuple
 
 import numpy as np
 from numba import njit
@@ -34,11 +36,16 @@ CONTACT = (
     "adhesion",  # k in −k δ^{3/4}
     "log_rate",  # b in F (1 + b ln(1 + |v|/v_log))
     "log_speed",  # v_log in m/s
-    "plain",  # 1 where only Hertz acts: the short way through
 )
 BODY = ("drag", "friction", "quadratic_drag")  # 1/s, m/s², 1/m
 C = {name: k for k, name in enumerate(CONTACT)}
 B = {name: k for k, name in enumerate(BODY)}
+# Further rows of the numbers of a chain, one column for each body and its contact with the next.
+REST, LOAD, INVERSE, DRAG, FRICTION, QUADRATIC = range(len(CONTACT), len(CONTACT) + 3 + len(BODY))
+# Rows of the room for intermediate results: force on each body from the one before; compression in m (0
+# where open), its root, elastic force in N and its slope in N/m of each contact; largest compression so far;
+# elastic force at that.
+FORCE, DELTA, ROOT, SPRING, RISE, LARGEST, TOP = range(7)
 SLOW = 1e-3  # m/s; dry friction grows in proportion to velocity below it
 
 _HERTZ, _POWER, _EXPONENT = C["hertz"], C["power"], C["exponent"]
@@ -47,98 +54,10 @@ _SLOPE, _LIMIT, _RESIDUAL = C["layer_slope"], C["layer_limit"], C["residual"]
 _DASHPOT, _VISCO, _TSUJI, _HUNT = C["dashpot"], C["viscoelastic"], C["tsuji"], C["hunt_crossley"]
 _GAMMA, _ALPHA = C["power_damping"], C["power_of_rate"]
 _RELAXING, _RELAXATION = C["relaxing"], C["relaxation_rate"]
-_ADHESION, _LOG, _LOG_SPEED, _PLAIN = C["adhesion"], C["log_rate"], C["log_speed"], C["plain"]
-_SWITCHES = [
-    C[n] for n in CONTACT if n not in ("hertz", "power", "exponent", "power_of_rate", "log_speed", "plain")
-]
-_DRAG, _FRICTION, _QUADRATIC = B["drag"], B["friction"], B["quadratic_drag"]
+_ADHESION, _LOG, _LOG_SPEED = C["adhesion"], C["log_rate"], C["log_speed"]
 
-
-@njit(nogil=True, error_model="numpy")
-def loading(delta, rows, c):
-    """Loading force in N and its slope in N/m of contact c at compression delta > 0 (m)."""
-    r = math.sqrt(delta)
-    if rows[c, _EXPONENT] == 1.5:
-        force = rows[c, _HERTZ] * delta * r
-        slope = 1.5 * rows[c, _HERTZ] * r
-    else:
-        force = rows[c, _POWER] * delta ** rows[c, _EXPONENT]
-        slope = force * rows[c, _EXPONENT] / delta
-    if rows[c, _SLOPE] != 0.0:
-        x = min(r, rows[c, _LIMIT])
-        g = 1.0 + x * (rows[c, _L1] + x * (rows[c, _L2] + x * (rows[c, _L3] + x * rows[c, _L4])))
-        dg = rows[c, _L1] + x * (2.0 * rows[c, _L2] + x * (3.0 * rows[c, _L3] + x * 4.0 * rows[c, _L4]))
-        if r > rows[c, _LIMIT]:
-            g += rows[c, _SLOPE] * (r - rows[c, _LIMIT])
-            dg = rows[c, _SLOPE]
-        slope = slope * g + force * dg / (2.0 * r)
-        force *= g
-    return force, slope
-
-
-@njit(nogil=True, error_model="numpy")
-def elastic(delta, largest, rows, c):
-    """Force in N and slope in N/m, below the largest compression so far along the unloading branch.
-
-    F_max ((δ − δ_res)/(δ_max − δ_res))^{3/2}, δ_res = ε δ_max (Walton & Braun, J. Rheol. 30, 949, 1986, with
-    Hertzian branches).
-    """
-    if rows[c, _RESIDUAL] == 0.0 or delta >= largest:
-        return loading(delta, rows, c)
-    residual = rows[c, _RESIDUAL] * largest
-    if delta <= residual:
-        return 0.0, 0.0
-    top, _ = loading(largest, rows, c)
-    share = (delta - residual) / (largest - residual)
-    return top * share * math.sqrt(share), 1.5 * top * math.sqrt(share) / (largest - residual)
-
-
-@njit(nogil=True, error_model="numpy")
-def contact(delta, rate, q, largest, rows, c):
-    """Contact force in N and dq/dt in N/s of the relaxing part q (Zener's solid: q' + q/τ = g dF/dt).
-
-    Args:
-        delta, rate: compression in m and approach rate in m/s.
-        q: relaxing part in N.
-        largest: largest compression so far in m.
-        rows: (contacts, columns) numbers, columns `CONTACT`.
-        c: the contact.
-    """
-    if delta <= 0.0:
-        return 0.0, 0.0
-    if rows[c, _PLAIN] == 1.0:
-        return rows[c, _HERTZ] * delta * math.sqrt(delta), 0.0
-    spring, slope = elastic(delta, largest, rows, c)
-    damping = rows[c, _DASHPOT] + rows[c, _HUNT] * spring
-    if rows[c, _VISCO] != 0.0:
-        damping += rows[c, _VISCO] * math.sqrt(delta)
-    if rows[c, _TSUJI] != 0.0:
-        damping += rows[c, _TSUJI] * delta**0.25
-    force = spring + damping * rate
-    if rows[c, _GAMMA] != 0.0:
-        force += rows[c, _GAMMA] * math.copysign(abs(rate) ** rows[c, _ALPHA], rate)
-    if rows[c, _LOG] != 0.0:
-        force += spring * rows[c, _LOG] * math.log1p(abs(rate) / rows[c, _LOG_SPEED])
-    growth = 0.0
-    if rows[c, _RELAXING] != 0.0:
-        force += q
-        growth = rows[c, _RELAXING] * slope * rate - q * rows[c, _RELAXATION]
-    return max(force, 0.0) - _pull(delta, rows, c), growth
-
-
-@njit(nogil=True, error_model="numpy")
-def _pull(delta, rows, c):
-    """Adhesive pull in N, as a^{3/2} of the contact radius (Johnson, Kendall & Roberts 1971)."""
-    return rows[c, _ADHESION] * delta**0.75 if rows[c, _ADHESION] != 0.0 else 0.0
-
-
-@njit(nogil=True, error_model="numpy")
-def deceleration(velocity, rows, c):
-    """Deceleration in m/s² of a bead by medium and holder: linear, dry and quadratic drag."""
-    dry = min(max(velocity / SLOW, -1.0), 1.0)
-    return (
-        rows[c, _DRAG] * velocity + rows[c, _FRICTION] * dry + rows[c, _QUADRATIC] * abs(velocity) * velocity
-    )
+# Which laws act anywhere in a chain; `plain`: Hertz alone.
+Acting = namedtuple("Acting", "plain power layer residual viscous rate relaxing adhesion drag")
 
 
 def hertz_rows(stiffness: np.ndarray) -> np.ndarray:
@@ -151,39 +70,223 @@ def hertz_rows(stiffness: np.ndarray) -> np.ndarray:
     return rows
 
 
-def marked(rows: np.ndarray) -> np.ndarray:
-    """The same numbers with the plain contacts marked as such."""
-    rows = rows.copy()
-    rows[:, _PLAIN] = (rows[:, _EXPONENT] == 1.5) & np.all(rows[:, _SWITCHES] == 0.0, axis=1)
-    return rows
+def numbers(rows: np.ndarray, rest: np.ndarray, load: np.ndarray, mass: np.ndarray, drag: np.ndarray):
+    """(rows, bodies + 1) table of a chain: contact laws, then rest, load, 1/mass and drag.
+
+    Bodies without a contact behind them (a wall with a mass of its own) get one that never closes; the last
+    column is the fixed wall.
+    """
+    table = np.zeros((len(CONTACT) + 3 + len(BODY), len(mass) + 1))
+    table[: len(CONTACT)] = hertz_rows(np.zeros(len(mass) + 1)).T
+    table[: len(CONTACT), : len(rows)] = rows.T
+    table[REST] = -1.0
+    table[REST, : len(rest)] = rest
+    table[LOAD, :-1], table[INVERSE, :-1], table[DRAG:, :-1] = load, 1.0 / mass, drag.T
+    return table
+
+
+def acting(table: np.ndarray) -> Acting:
+    """Which laws act in a chain with these `numbers`."""
+    some = (table != 0.0).any(axis=1)
+    power, viscous = bool((table[_EXPONENT] != 1.5).any()), bool(some[_DASHPOT : _HUNT + 1].any())
+    rate = bool(some[_GAMMA] or some[_LOG])
+    others = [power, bool(some[_SLOPE]), bool(some[_RESIDUAL]), viscous, rate]
+    others += [bool(some[_RELAXING]), bool(some[_ADHESION])]
+    return Acting(not any(others), *others, bool(some[DRAG:].any()))
 
 
 @njit(nogil=True, error_model="numpy")
-def force_at_rest(delta, rows, c):
-    """Static force in N of contact c at compression delta (m), zero where it is open."""
-    return loading(delta, rows, c)[0] - _pull(delta, rows, c) if delta > 0.0 else 0.0
+def load(n, table, uses, room, depth, spring):
+    """Loading force and its slope at the compressions in row `depth` of `room` into rows `spring`, RISE."""
+    for c in range(n):
+        root = math.sqrt(room[depth, c])
+        room[ROOT, c] = root
+        room[RISE, c] = 1.5 * table[_HERTZ, c] * root
+        room[spring, c] = table[_HERTZ, c] * room[depth, c] * root
+    if uses.power:
+        for c in range(n):
+            delta = room[depth, c]
+            if table[_EXPONENT, c] != 1.5 and delta > 0.0:
+                room[spring, c] = table[_POWER, c] * delta ** table[_EXPONENT, c]
+                room[RISE, c] = room[spring, c] * table[_EXPONENT, c] / delta
+    if uses.layer:
+        _layer(n, table, room, spring)
 
 
 @njit(nogil=True, error_model="numpy")
-def compression_at_rest(load, rows):
+def _layer(n, table, room, spring):
+    """Correction of a thin layer, a polynomial of √δ up to its limit and a straight line beyond."""
+    for c in range(n):
+        r, x = room[ROOT, c], min(room[ROOT, c], table[_LIMIT, c])
+        l1, l2, l3, l4 = table[_L1, c], table[_L2, c], table[_L3, c], table[_L4, c]
+        g = 1.0 + x * (l1 + x * (l2 + x * (l3 + x * l4))) + table[_SLOPE, c] * (r - x)
+        dg = table[_SLOPE, c] if r > x else l1 + x * (2.0 * l2 + x * (3.0 * l3 + x * 4.0 * l4))
+        room[RISE, c] = room[RISE, c] * g + (0.5 * room[spring, c] * dg / r if r > 0.0 else 0.0)
+        room[spring, c] *= g
+
+
+@njit(nogil=True, error_model="numpy")
+def _unload(n, table, uses, room):
+    """Below the largest compression so far the unloading branch.
+
+    F_max ((δ − δ_res)/(δ_max − δ_res))^{3/2}, δ_res = ε δ_max (Walton & Braun, J. Rheol. 30, 949, 1986, with
+    Hertzian branches).
+    """
+    load(n, table, uses, room, LARGEST, TOP)
+    load(n, table, uses, room, DELTA, SPRING)
+    for c in range(n):
+        largest = room[LARGEST, c]
+        if table[_RESIDUAL, c] != 0.0 and room[DELTA, c] < largest:
+            residual = table[_RESIDUAL, c] * largest
+            share = max(room[DELTA, c] - residual, 0.0) / (largest - residual)
+            room[SPRING, c] = room[TOP, c] * share * math.sqrt(share)
+            room[RISE, c] = 1.5 * room[TOP, c] * math.sqrt(share) / (largest - residual)
+
+
+@njit(nogil=True, error_model="numpy")
+def forces(y, at, slopes, s, table, uses, room):
+    """Contact forces in N into `room`; dq/dt in N/s of the relaxing parts q into `slopes`.
+
+    Zener's solid: q' + q/τ = g dF/dt.
+
+    Args:
+        y: (states, 2 or 3 times bodies + 1): displacements in m, velocities in m/s, relaxing parts in N.
+        at: the state.
+        slopes, s: (stages, as states) and the stage.
+        table: `numbers` of the chain.
+        uses: `acting(table)`.
+        room: rows FORCE and so on, (rows, bodies + 1).
+    """
+    n = table.shape[1] - 1
+    if uses.plain:
+        for c in range(n):
+            delta = max(table[REST, c] + y[at, c] - y[at, c + 1], 0.0)
+            room[FORCE, c + 1] = table[_HERTZ, c] * delta * math.sqrt(delta)
+        return
+    for c in range(n):
+        room[DELTA, c] = max(table[REST, c] + y[at, c] - y[at, c + 1], 0.0)
+    if uses.residual:
+        _unload(n, table, uses, room)
+    else:
+        load(n, table, uses, room, DELTA, SPRING)
+    for c in range(n):
+        room[FORCE, c + 1] = room[SPRING, c]
+    if uses.viscous:
+        _damp(n, y, at, table, room)
+    if uses.rate:
+        _resist(n, y, at, table, room)
+    if uses.relaxing:
+        _relax(n, y, at, slopes, s, table, room)
+    for c in range(n):
+        room[FORCE, c + 1] = max(room[FORCE, c + 1], 0.0) if room[DELTA, c] > 0.0 else 0.0
+    if uses.adhesion:
+        _stick(n, table, room)
+
+
+@njit(nogil=True, error_model="numpy")
+def _damp(n, y, at, table, room):
+    """Dissipative parts in proportion to the approach rate."""
+    for c in range(n):
+        root = room[ROOT, c]
+        damping = table[_DASHPOT, c] + table[_HUNT, c] * room[SPRING, c]
+        damping += table[_VISCO, c] * root + table[_TSUJI, c] * math.sqrt(root)
+        room[FORCE, c + 1] += damping * (y[at, n + 1 + c] - y[at, n + 2 + c])
+
+
+@njit(nogil=True, error_model="numpy")
+def _resist(n, y, at, table, room):
+    """Dissipative part as a power of the approach rate; stiffening with its logarithm."""
+    for c in range(n):
+        rate = y[at, n + 1 + c] - y[at, n + 2 + c]
+        if room[DELTA, c] > 0.0 and rate != 0.0:
+            if table[_GAMMA, c] != 0.0:
+                room[FORCE, c + 1] += table[_GAMMA, c] * math.copysign(abs(rate) ** table[_ALPHA, c], rate)
+            if table[_LOG, c] != 0.0:
+                stiffer = table[_LOG, c] * math.log1p(abs(rate) / table[_LOG_SPEED, c])
+                room[FORCE, c + 1] += room[SPRING, c] * stiffer
+
+
+@njit(nogil=True, error_model="numpy")
+def _relax(n, y, at, slopes, s, table, room):
+    """Relaxing part; none out of contact."""
+    w = n + 1
+    for c in range(n):
+        touching = 1.0 if room[DELTA, c] > 0.0 else 0.0
+        growth = table[_RELAXING, c] * room[RISE, c] * (y[at, w + c] - y[at, w + c + 1])
+        slopes[s, 2 * w + c] = touching * (growth - y[at, 2 * w + c] * table[_RELAXATION, c])
+        room[FORCE, c + 1] += touching * y[at, 2 * w + c]
+
+
+@njit(nogil=True, error_model="numpy")
+def _stick(n, table, room):
+    """Adhesion, a pull as a^{3/2} of the contact radius (Johnson, Kendall & Roberts 1971)."""
+    for c in range(n):
+        room[FORCE, c + 1] -= table[_ADHESION, c] * room[ROOT, c] * math.sqrt(room[ROOT, c])
+
+
+@njit(nogil=True, error_model="numpy")
+def decelerate(y, at, slopes, s, table):
+    """Subtract the decelerations in m/s² of beads by medium and holder: linear, dry and quadratic drag."""
+    w = table.shape[1]
+    for i in range(w - 1):
+        v = y[at, w + i]
+        dry = min(max(v / SLOW, -1.0), 1.0)
+        slopes[s, w + i] -= table[DRAG, i] * v + table[FRICTION, i] * dry + table[QUADRATIC, i] * abs(v) * v
+
+
+@njit(nogil=True, error_model="numpy")
+def _borne(delta, table, uses, room):
+    """(contacts,) static forces in N at compressions (contacts,) in m, 0 or more."""
+    n = len(delta)
+    room[DELTA, :n] = delta
+    load(n, table, uses, room, DELTA, SPRING)
+    room[FORCE, 1:] = room[SPRING, :n]
+    _stick(n, table, room)
+    return room[FORCE, 1:].copy()
+
+
+def static_forces(rest: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """(contacts,) static forces in N at compressions (contacts,) in m; zero where a contact is open."""
+    if not np.any(rest > 0.0):
+        return np.zeros(len(rest))
+    table, uses, room = _alone(rows)
+    return _borne(np.maximum(rest, 0.0), table, uses, room)
+
+
+def compression_at_rest(weight: np.ndarray, rows: np.ndarray) -> np.ndarray:
     """(contacts,) compression in m at which contacts bear their load (contacts,) in N by the law in force."""
-    rest = np.zeros(len(load))
-    for c in range(len(load)):
-        if load[c] <= 0.0 and rows[c, _ADHESION] == 0.0:
-            continue
-        high = 1e-9
-        while force_at_rest(high, rows, c) < load[c] or high < (rows[c, _ADHESION] / rows[c, _HERTZ]) ** (
-            4.0 / 3.0
-        ):
-            high *= 2.0
-        low = 0.5 * high if load[c] > 0.0 and high > 1e-9 else 0.0
-        for _ in range(200):
-            middle = 0.5 * (low + high)
-            if middle in (low, high):
-                break
-            if force_at_rest(middle, rows, c) < load[c]:
-                low = middle
-            else:
-                high = middle
-        rest[c] = high
-    return rest
+    if not (np.any(weight > 0.0) or np.any(rows[:, _ADHESION])):
+        return np.zeros(len(weight))
+    table, uses, room = _alone(rows)
+    if not (uses.power or uses.layer or uses.adhesion):
+        return (np.maximum(weight, 0.0) / rows[:, _HERTZ]) ** (2.0 / 3.0)
+    return _sink(weight, table, uses, room)
+
+
+def _alone(rows):
+    """Numbers, laws and room of contacts without a chain."""
+    none, ones = np.zeros(len(rows)), np.ones(len(rows))
+    table = numbers(rows, none, none, ones, np.zeros((len(rows), len(BODY))))
+    return table, acting(table), np.zeros((7, len(rows) + 1))
+
+
+@njit(nogil=True, error_model="numpy")
+def _sink(weight, table, uses, room):
+    n = len(weight)
+    adhesion = table[_ADHESION, :n]
+    sticks = (adhesion / table[_HERTZ, :n]) ** (4.0 / 3.0)
+    bears = (weight > 0.0) | (adhesion != 0.0)
+    high = np.full(n, 1e-9)
+    while True:
+        short = bears & ((_borne(high, table, uses, room) < weight) | (high < sticks))
+        if not np.any(short):
+            break
+        high = np.where(short, 2.0 * high, high)
+    low = np.where((weight > 0.0) & (high > 1e-9), 0.5 * high, 0.0)
+    for _ in range(200):
+        middle = 0.5 * (low + high)
+        if np.all((middle == low) | (middle == high)):
+            break
+        less = _borne(middle, table, uses, room) < weight
+        low, high = np.where(less, middle, low), np.where(less, high, middle)
+    return np.where(bears, high, 0.0)

@@ -76,8 +76,8 @@ class Plan:
     mass_ratios: tuple[tuple[int, float], ...] = ()
     stiffness_ratios: tuple[tuple[int, float], ...] = ()
     gaps: tuple[tuple[int, float], ...] = ()
-    law: Mapping[str, float] = field(default_factory=dict)
-    electronics: Mapping[str, float] = field(default_factory=dict)
+    law: Mapping[str, float] = field(default_factory=dict, hash=False)
+    electronics: Mapping[str, float] = field(default_factory=dict, hash=False)
 
     def with_law(self, **numbers) -> "Plan":
         """The plan with more departures of the force laws."""

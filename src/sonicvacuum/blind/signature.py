@@ -10,6 +10,7 @@ the errors are refitted through the integrator (`Frame.signature`), not only alo
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -24,6 +25,8 @@ STEP = 2e-3  # relative, of speed and modulus differences
 # then fitted from the best of these moduli, in standard deviations.
 FAR = 0.15
 MODULI = (-14.0, -10.0, -7.0, -4.5, -3.0, -1.5, 0.0, 1.5, 3.0, 4.5, 7.0, 10.0, 14.0)
+# A fit ends where a step promises less than this share of d′, or the shortest of halved steps fails.
+GAIN, SMALLEST = 2e-3, 0.05
 
 Change = Callable[[Plan], Plan]
 
@@ -132,14 +135,21 @@ class Whitener:
         return np.concatenate([scaled.ravel(), scalars])
 
 
-def nuisances(design: Design, whiten: Whitener, at: Errors | None = None, central: bool = True) -> np.ndarray:
+def nuisances(
+    design: Design,
+    whiten: Whitener,
+    at: Errors | None = None,
+    central: bool = True,
+    base: Prediction | None = None,
+) -> np.ndarray:
     """(data, errors) whitened change for one standard deviation of each error, in the order of
     `Errors.vector`.
 
-    Forward instead of central differences (`central` False) suffice on the way to a minimum.
+    Forward instead of central differences (`central` False) suffice on the way to a minimum; `base` is the
+    prediction there where it is known.
     """
     at = at or Errors.of(design)
-    base = predict(design, nothing, at)
+    base = base or predict(design, nothing, at)
     whole = whiten.vector(base)
     behind = None if central else whole
     runs, gauges = len(design.runs), len(design.reference.gauges)
@@ -186,6 +196,54 @@ def _triggers(design, whiten, base):
 
 
 @dataclass(frozen=True)
+class Fit:
+    """Errors fitted to a change.
+
+    Attributes:
+        seen: (data + errors,) what is left and the errors, in units of standard deviations.
+        slopes: (data, errors) as last known.
+        exact: whether these were taken where the errors are.
+    """
+
+    seen: np.ndarray
+    slopes: np.ndarray
+    exact: bool
+
+    @property
+    def size(self) -> float:
+        """The norm, d′."""
+        return float(_norm(self.seen))
+
+    @property
+    def vector(self) -> np.ndarray:
+        """(errors,) fitted."""
+        return self.seen[len(self.slopes) :]
+
+    @property
+    def rest(self) -> np.ndarray:
+        """(data,) what is left."""
+        return self.seen[: len(self.slopes)]
+
+    def step(self) -> np.ndarray:
+        """(errors,) to the minimum if data were linear in the errors, whose prior pulls them back to zero."""
+        slopes = self.slopes
+        normal = slopes.T @ slopes + np.eye(slopes.shape[1])
+        return np.linalg.solve(normal, slopes.T @ (self.rest + slopes @ self.vector)) - self.vector
+
+    def promised(self, vector: np.ndarray) -> float:
+        """d′ with other errors, if data were linear in them."""
+        return float(np.hypot(_norm(self.rest - self.slopes @ (vector - self.vector)), _norm(vector)))
+
+    def moved(self, seen: np.ndarray) -> "Fit":
+        """The fit after a step, its slopes corrected by what they missed of it (Broyden, Math. Comput. 19,
+        577, 1965).
+        """
+        step = seen[len(self.slopes) :] - self.vector
+        missed = self.rest - seen[: len(self.slopes)] - self.slopes @ step
+        return Fit(seen, self.slopes + np.outer(missed, step / (step @ step)), False)
+
+
+@dataclass(frozen=True)
 class Frame:
     """A design with its noise and its errors: maps changes of the model to what an ideal test can see.
 
@@ -209,8 +267,24 @@ class Frame:
     def of(cls, design: Design, correlation: float = 0.0) -> "Frame":
         """The frame of a design."""
         whiten = Whitener(design, correlation)
-        slopes = nuisances(design, whiten)
-        return cls(design, whiten, whiten.vector(predict(design)), slopes, _solver(slopes))
+        base = predict(design)
+        slopes = nuisances(design, whiten, base=base)
+        return cls(design, whiten, whiten.vector(base), slopes, _solver(slopes))
+
+    def nominal(self, vector: np.ndarray) -> np.ndarray:
+        """(data,) whitened prediction with errors alone."""
+        return self.whiten.vector(predict(self.design, nothing, Errors.of(self.design, vector)))
+
+    def slopes_at(self, vector: np.ndarray) -> np.ndarray:
+        """(data, errors) change for one standard deviation of each error, with errors already there."""
+        return nuisances(self.design, self.whiten, Errors.of(self.design, vector), False)
+
+    @cached_property
+    def moduli(self) -> list[tuple[np.ndarray, np.ndarray]]:
+        """(errors, prediction) for each of `MODULI`."""
+        vectors = np.zeros((len(MODULI), self.slopes.shape[1]))
+        vectors[:, len(self.design.runs)] = MODULI
+        return [(v, self.nominal(v)) for v in map(self.bounded, vectors)]
 
     def change(self, change: Change, tolerance: float = TOLERANCE) -> np.ndarray:
         """(data,) whitened difference that a change makes."""
@@ -221,51 +295,55 @@ class Frame:
         errors = self.solve @ difference
         return np.concatenate([difference - self.slopes @ errors, errors])
 
-    def signature(self, change: Change, rounds: int = 25) -> np.ndarray:
-        """(data + errors,) what is left of a change of any size, the errors refitted through the integrator.
+    def signature(self, change: Change) -> np.ndarray:
+        """(data + errors,) what is left of a change of any size, the errors refitted through the
+        integrator.
+        """
+        return self.fit(change).seen
 
-        Gauss and Newton's iteration, halving steps that make d′ grow; it stops once d′ changes by less than
-        0.3 %.
+    def fit(self, change: Change, rounds: int = 40, near: np.ndarray | None = None) -> Fit:
+        """Errors refitted to a change, through the integrator.
+
+        Gauss and Newton's iteration, until a step promises to change d′ by less than `GAIN`. Slopes follow
+        from the steps themselves; they are taken afresh before the end and wherever a step makes d′ grow, and
+        steps are halved if that does not help.
+
+        Args:
+            change: of the model.
+            rounds: at most.
+            near: (errors,) that may be a good start.
         """
         shown = self.whiten.vector(predict(self.design, change))
-        vector, step = self._start(shown)
-        moved = self.whiten.vector(predict(self.design, nothing, Errors.of(self.design, vector)))
-        best, slopes = np.concatenate([shown - moved, vector]), self.slopes
-        halved = False
+        now, share = self._start(shown, near), 1.0
         for _ in range(rounds):
-            tried = self.bounded(vector + step)
-            rest = shown - self.whiten.vector(predict(self.design, nothing, Errors.of(self.design, tried)))
-            now, last = np.concatenate([rest, tried]), np.linalg.norm(best)
-            size = np.linalg.norm(now)
-            if size > last:
-                step, halved = 0.5 * step, True
-                if np.max(np.abs(step)) < 1e-2:
+            vector = self.bounded(now.vector + share * now.step())
+            if now.size - now.promised(vector) < GAIN * now.size or share < SMALLEST:
+                if now.exact:
                     break
+                now = Fit(now.seen, self.slopes_at(now.vector), True)
                 continue
-            best, vector = now, tried
-            if last - size < 3e-3 * size and not halved:
-                break
-            halved = False
-            slopes = nuisances(self.design, self.whiten, Errors.of(self.design, vector), False)
-            # The errors' prior pulls them back to zero.
-            step = _solver(slopes) @ (rest + slopes @ vector) - vector
-        return best
+            seen = np.concatenate([shown - self.nominal(vector), vector])
+            if _norm(seen) < now.size:
+                now, share = now.moved(seen), 1.0
+            elif now.exact:
+                share *= 0.5
+            else:
+                now = Fit(now.seen, self.slopes_at(now.vector), True)
+        return now
 
-    def _start(self, shown):
-        """Errors and first step: at the nominal model, or at the best of some moduli if pulses are off."""
-        vector = np.zeros(self.slopes.shape[1])
-        if np.linalg.norm(shown - self.base) < FAR * np.linalg.norm(self.base):
-            return vector, self.solve @ (shown - self.base)
-        runs, found = len(self.design.runs), []
-        for modulus in MODULI:
-            vector[runs] = modulus
-            tried = self.bounded(vector)
-            errors = Errors.of(self.design, tried)
-            rest = shown - self.whiten.vector(predict(self.design, nothing, errors))
-            found.append((np.hypot(np.linalg.norm(rest), modulus), modulus, tried, errors, rest))
-        _, _, vector, errors, rest = min(found, key=lambda f: f[:2])
-        slopes = nuisances(self.design, self.whiten, errors, False)
-        return vector, _solver(slopes) @ (rest + slopes @ vector) - vector
+    def _start(self, shown, near):
+        """Errors and slopes: at the nominal model, or the best of some moduli if pulses are off."""
+        none = np.zeros(self.slopes.shape[1])
+        fits = [(none, self.base)]
+        if near is not None:
+            fits.append((near, self.nominal(near)))
+        elif _norm(shown - self.base) > FAR * _norm(self.base):
+            fits += self.moduli
+        seen = [np.concatenate([shown - data, vector]) for vector, data in fits]
+        k = int(np.argmin([_norm(s) for s in seen]))
+        if k == 0:
+            return Fit(seen[0], self.slopes, True)
+        return Fit(seen[k], self.slopes_at(fits[k][0]), True)
 
     def bounded(self, vector: np.ndarray) -> np.ndarray:
         """Errors that leave speeds and modulus between a third and three times the stated ones."""
@@ -279,9 +357,11 @@ class Frame:
         """d′ that would be left if the record's errors had no stated limits."""
         rest = seen[: len(self.base)]
         used = np.linalg.norm(self.slopes, axis=0) > 0.0
-        return float(
-            np.linalg.norm(rest - self.slopes[:, used] @ np.linalg.lstsq(self.slopes[:, used], rest)[0])
-        )
+        return float(_norm(rest - self.slopes[:, used] @ np.linalg.lstsq(self.slopes[:, used], rest)[0]))
+
+
+def _norm(x):
+    return float(np.sqrt(x @ x))
 
 
 def _solver(slopes):

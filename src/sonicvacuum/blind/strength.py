@@ -8,7 +8,7 @@ import numpy as np
 from scipy import special
 
 from sonicvacuum.blind.catalogue import ENTRIES, Entry, hidden
-from sonicvacuum.blind.signature import Frame
+from sonicvacuum.blind.signature import Fit, Frame
 
 CLOSE = 0.005  # relative, of the d′ reached to the one wanted
 DRAWS = 2000
@@ -43,22 +43,40 @@ def scale(frame: Frame, entry: Entry, target: float, sign: int, shape, place, me
     """
     measure = measure or np.linalg.norm
     reference = frame.design.reference
+    fits: list[Fit] = []
 
     def at(strength):
-        seen = frame.signature(hidden(entry, sign * strength, shape, place, reference))
-        return Scaled(strength, seen, float(measure(seen)))
+        near = fits[-1].vector if fits else None
+        fits.append(frame.fit(hidden(entry, sign * strength, shape, place, reference), near=near))
+        return Scaled(strength, fits[-1].seen, float(measure(fits[-1].seen)))
 
-    low, high = 0.0, entry.most
-    now = at(min(entry.start, entry.most))
+    low, high, tried = 0.0, entry.most, []
+    now = at(_guess(frame, entry, target, sign, shape, place))
     for _ in range(20):
         if abs(now.d_prime / target - 1.0) < CLOSE or (now.strength >= entry.most and now.d_prime < target):
             return now
         low, high = (now.strength, high) if now.d_prime < target else (low, now.strength)
-        guess = now.strength * np.clip(target / max(now.d_prime, 1e-9), 1e-3, 1e3)
+        tried.append((math.log(now.strength), math.log(max(now.d_prime, 1e-9))))
+        guess = math.exp(tried[-1][0] + _power(tried) * (math.log(target) - tried[-1][1]))
         if high < entry.most and not low < guess < high:
             guess = 0.5 * (low + high)
         now = at(min(guess, entry.most))
     return now
+
+
+def _guess(frame, entry, target, sign, shape, place):
+    """Strength whose d′ would be `target` if it grew in proportion, errors acting linearly."""
+    first = min(entry.start, entry.most)
+    seen = frame.seen(frame.change(hidden(entry, sign * first, shape, place, frame.design.reference)))
+    return float(min(first * np.clip(target / max(np.linalg.norm(seen), 1e-9), 1e-3, 1e3), entry.most))
+
+
+def _power(tried):
+    """d ln strength / d ln d′ from the last two tries, kept between a third and three."""
+    if len(tried) < 2:
+        return 1.0
+    (x, y), (a, b) = tried[-1], tried[-2]
+    return float(np.clip((x - a) / (y - b), 1.0 / 3.0, 3.0)) if abs(y - b) > 1e-6 else 1.0
 
 
 @dataclass(frozen=True)
@@ -80,8 +98,8 @@ def rivals(frame: Frame, size: float = 4.0) -> list[Rival]:
     for entry in ENTRIES:
         if not entry.fits(reference):
             continue
+        strength = min(entry.start, entry.most)
         for shape, sign in itertools.product(entry.shapes(reference), entry.signs):
-            strength = min(entry.start, entry.most)
             for place in entry.where(reference):
 
                 def change(s, entry=entry, sign=sign, shape=shape, place=place):
@@ -157,9 +175,10 @@ def ceiling(
         Verdict ("none" or an id) → share of `draws` data sets, in descending order.
     """
     basis = np.stack([r.direction for r in directions])
-    # Noise enters only through its components along the directions.
-    q, r = np.linalg.qr(basis.T)
-    log = log_evidence(basis @ seen + random.standard_normal((draws, q.shape[1])) @ r)
+    # Noise enters only through its components along the directions, whose covariance is the Gram matrix.
+    values, vectors = np.linalg.eigh(basis @ basis.T)
+    noise = random.standard_normal((draws, len(basis))) * np.sqrt(np.maximum(values, 0.0))
+    log = log_evidence(basis @ seen + noise @ vectors.T)
     ids = sorted({d.id for d in directions})
     total = [np.zeros(draws)]
     for id in ids:

@@ -13,7 +13,8 @@ from sonicvacuum.blind import catalogue, foreign
 from sonicvacuum.blind.hide import Spec
 from sonicvacuum.files import InputError, replacing
 
-SEEDS = {"small": 20061, "full": 20062}
+SEEDS = {"small": 20061, "full": 20062, "training": 20063}
+TRAINING = 300
 STRENGTHS = (5.0, 7.5, 10.0, 20.0)
 # Effects that act on one ball; gauges and beads do not exist there.
 BALL = (
@@ -31,7 +32,10 @@ BALL = (
 
 
 def cases(study: str) -> list[Spec]:
-    """The cases of a study, "small" or "full".
+    """The cases of a study, "small", "full" or "training".
+
+    The training study takes cases evenly out of a list like the full one, with seeds of its own: what is
+    calibrated on it has seen nothing of the full study.
 
     Raises:
         ValueError: for another name.
@@ -40,6 +44,8 @@ def cases(study: str) -> list[Spec]:
         raise ValueError(f"study {study!r} is not one of {', '.join(SEEDS)}")
     random = np.random.default_rng(np.random.SeedSequence(SEEDS[study]))
     rows = list(_small() if study == "small" else _full(random))
+    if study == "training":
+        rows = [rows[(2 * k + 1) * len(rows) // (2 * TRAINING)] for k in range(TRAINING)]
     # Folder names must not follow the order of kinds.
     order = random.permutation(len(rows))
     return [

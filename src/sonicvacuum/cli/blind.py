@@ -12,7 +12,7 @@ folder = click.Path(file_okay=False)
 
 
 @click.command()
-@click.option("--study", type=click.Choice(["small", "full"]), help="A fixed list of cases.")
+@click.option("--study", type=click.Choice(["small", "full", "training"]), help="A fixed list of cases.")
 @click.option("--cases", "path", type=existing(), help="List of cases (CSV), instead of --study.")
 @click.option(
     "--list", "listing", type=click.Path(dir_okay=False), help="Write the list of cases (CSV) only."
