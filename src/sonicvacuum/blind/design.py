@@ -13,7 +13,7 @@ from sonicvacuum.blind.gauges import bounce, main_pulse, read, scalar
 from sonicvacuum.blind.plan import G, Gauge, Plan, Solid
 from sonicvacuum.materials import MATERIALS
 
-KINDS = ("traces", "one-speed", "scalars", "ball")
+KINDS = ("traces", "varied", "one-speed", "scalars", "ball")
 SAMPLES = 480
 # name of the beads' material → (Young's modulus in Pa or None for the table's, coating in µm)
 BEADS = {
@@ -126,8 +126,9 @@ def _table(name):
 
 
 def _chain(kind, random):
+    varied = kind == "varied"
     bead, diameter, mass, coating = _bodies(random)
-    beads = int(random.integers(14, 25))
+    beads = round(math.exp(random.uniform(*np.log([8, 40])))) if varied else int(random.integers(14, 25))
     striker = _table(str(random.choice([s for s in STRIKERS if s != bead.name])))
     flat = bool(random.random() < 0.5)
     wall = _table("stainless-steel" if bead.name != "stainless-steel" else "bearing-steel")
@@ -145,16 +146,16 @@ def _chain(kind, random):
         gravity=G if vertical else 0.0,
         gauges=_gauges(beads, random),
     )
-    counts = {"traces": int(random.integers(3, 5)), "one-speed": 1, "scalars": int(random.integers(4, 7))}
-    ratios = np.exp(np.linspace(-1.0, 1.0, counts[kind]) * math.log(2.2)) if counts[kind] > 1 else [1.0]
-    runs = tuple(replace(plan, speed=_rounded(plan.speed * r, 3)) for r in ratios)
-    interval, pulse = _sampling(runs)
+    plan = _as_others_do(plan, random) if varied else plan
+    runs = _speeds(plan, _count(kind, random))
+    samples = int(random.integers(240, 961)) if varied else SAMPLES
+    interval, pulse = _sampling(runs, samples)
     bare = Design(
         kind,
         runs,
         coating,
         interval,
-        SAMPLES,
+        samples,
         trigger_sigma=max(1e-8, _rounded(pulse * random.uniform(0.003, 0.015), 1)),
         **_errors(random),
     )
@@ -163,10 +164,30 @@ def _chain(kind, random):
     return replace(bare, sigma=_noise(bare, random))
 
 
+def _count(kind, random):
+    """Number of runs."""
+    counts = {"traces": int(random.integers(3, 5)), "one-speed": 1, "scalars": int(random.integers(4, 7))}
+    return counts[kind] if kind in counts else int(random.integers(2, 6))
+
+
+def _speeds(plan, count):
+    """Runs from under half to over twice the speed of a plan."""
+    ratios = np.exp(np.linspace(-1.0, 1.0, count) * math.log(2.2)) if count > 1 else [1.0]
+    return tuple(replace(plan, speed=_rounded(plan.speed * r, 3)) for r in ratios)
+
+
+def _as_others_do(plan, random):
+    """A laboratory with one or two gauges, and half the time a preload of up to a fifth of the impact."""
+    first, second, wall = plan.gauges
+    gauges = ((first, second), (first, wall), (first,), (wall,))[int(random.integers(4))]
+    load = _rounded(random.uniform(0.02, 0.2) * plan.force_scale) if random.random() < 0.5 else 0.0
+    return replace(plan, gauges=gauges, static_force=load)
+
+
 def _gauges(beads, random):
     """Two gauges in beads, some beads apart and from the wall, and one at the wall."""
     first = int(random.integers(beads // 2 - 1, beads // 2 + 3))
-    second = min(first + int(random.integers(3, 6)), beads - 3)
+    second = max(first + 1, min(first + int(random.integers(3, 6)), beads - 3))
     return (
         Gauge("g1", "embedded", first),
         Gauge("g2", "embedded", second),
@@ -174,13 +195,13 @@ def _gauges(beads, random):
     )
 
 
-def _sampling(runs):
+def _sampling(runs, samples):
     """Interval in s that lets the slowest run's reflection reach the first gauge, and the pulse length."""
     slowest = min(runs, key=lambda p: p.speed)
+    watched = replace(slowest, gauges=(slowest.gauges[0], Gauge("end", "wall")))
     times = np.arange(0.0, 40.0 * slowest.beads) * 0.1 * slowest.contact_time
-    readings = read(slowest, times, 1e-5)
-    wall, first = (main_pulse(readings[k], times).time for k in (-1, 0))
-    return _rounded(1.15 * (2.0 * wall - first) / SAMPLES), 5.0 * slowest.contact_time
+    first, wall = (main_pulse(y, times).time for y in read(watched, times, 1e-5))
+    return _rounded(1.15 * (2.0 * wall - first) / samples), 5.0 * slowest.contact_time
 
 
 def _peaks(design):

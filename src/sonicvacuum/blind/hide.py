@@ -226,8 +226,10 @@ def _truth(spec, case, errors, noise, random):
     frame, made = case.frame, case.frame.design
     # In the linear approximation, effects of a pair add up.
     seen = sum((h.seen for h in case.hidden), np.zeros(len(frame.base) + frame.slopes.shape[1]))
-    directions = list(case.directions or rivals(frame)) if case.hidden else []
+    directions = list(case.directions)
     if spec.kind in ("single", "pair"):
+        # Of the size of what is hidden: strong rivals are not weak ones made larger.
+        directions = rivals(frame, spec.d_prime)
         # Shapes and strengths of the catalogue's directions lie on a grid; what is hidden need not.
         directions += [Rival(h.id, h.place, h.seen / h.d_prime) for h in case.hidden]
     near = nearest(directions, seen, case.hidden[0].id) if directions else ("none", 0.0)

@@ -82,19 +82,16 @@ def _small():
 
 
 def _full(random):
-    """2056 cases; strengths, noise kinds and designs in fixed shares, pairs drawn."""
+    """Strengths, noise kinds and designs in fixed shares, pairs drawn."""
     ids = [e.id for e in catalogue.ENTRIES]
+    noises = ("white", "white", "white", "ar1", "quantised")
     for name in ids:
         for strength in STRENGTHS:
-            for k in range(10):
-                yield (
-                    "single",
-                    "traces",
-                    ("white", "white", "white", "ar1", "quantised")[k % 5],
-                    (name,),
-                    strength,
-                )
-        for _ in range(5):
+            for k in range(9):
+                yield "single", "traces", noises[k % 5], (name,), strength
+        for _ in range(4):
+            yield "single", "varied", "white", (name,), 10.0
+        for _ in range(4):
             yield "single", "one-speed", "white", (name,), 10.0
         for _ in range(4):
             yield "single", "scalars", "white", (name,), 10.0
@@ -105,6 +102,7 @@ def _full(random):
         ("traces", "white", 200),
         ("traces", "ar1", 80),
         ("traces", "quantised", 40),
+        ("varied", "white", 40),
         ("one-speed", "white", 40),
         ("scalars", "white", 40),
         ("ball", "white", 20),

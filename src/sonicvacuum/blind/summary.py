@@ -39,7 +39,12 @@ def _singles(rows, strong):
     for strength, goal in goals.items():
         chosen = [r for r in rows if r.design == "traces" and strength_bin(r) == strength]
         yield _share("exact name", f"traces, d' {strength:g}", chosen, _exact, goal)
-    for design, goal in (("one-speed", ">= 0.87"), ("scalars", ">= 0.83"), ("ball", "")):
+    for design, goal in (
+        ("one-speed", ">= 0.87"),
+        ("scalars", ">= 0.83"),
+        ("varied", ""),
+        ("ball", ""),
+    ):
         chosen = [r for r in rows if r.design == design]
         yield _share("exact name", f"{design}, d' {_typical(chosen):.3g}", chosen, _exact, goal)
     yield _share("class-level name", "d' 10 and more", strong, lambda r: r.class_level, ">= 0.97")
