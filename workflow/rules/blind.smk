@@ -4,37 +4,8 @@ Cases go through in batches, so that starting processes costs little. Truths lie
 folders that discover is given. Simpler rules see the same cases; two of them need what `make study` installs.
 """
 
-# Study → number of batches.
-BATCHES = {"small": 4, "training": 12, "full": 84}
-BLIND = "results/blind/{study}"
-PICTURES = ["confusion", "accuracy", "reliability", "baselines"]
-DETAILS = ["confusion", "accuracy", "reliability", "coverage", "seconds"]
-# What only counts and compares: data and verdicts stay as they are when it changes.
-COUNTING = {"score", "shares", "summary", "breakdown", "calibrate"}
-LAYERS["baselines"] = ["baselines", "records", "blind", "discover/locate.py", "cli/baselines.py"]
-LAYERS["study pictures"] = ["figures/study.py", "figures/style.py", "baselines/names.py", "cli/baselines.py"]
 
-
-def sources_of_data():
-    """Sources that make the hidden-effect data; neither engine nor scores are among them."""
-    return [path for path in sources("card", "blind") if Path(path).stem not in COUNTING]
-
-
-def batches(part):
-    """Input function: the folders of all batches of a part (records, truth, verdicts) of a study."""
-    return lambda wildcards: expand(
-        f"{BLIND}/{part}/{{batch}}", study=wildcards.study, batch=range(BATCHES[wildcards.study])
-    )
-
-
-def training(wildcards):
-    """What the rules that learn need of the training family; the small study does without."""
-    if wildcards.study != "full":
-        return []
-    parts = ["records", "truth", "verdicts"]
-    return expand(
-        f"{BLIND}/{{part}}/{{batch}}", study="training", part=parts, batch=range(BATCHES["training"])
-    )
+include: "blind_common.smk"
 
 
 wildcard_constraints:
@@ -98,7 +69,7 @@ rule score:
     conda:
         ENVIRONMENT
     params:
-        folder=BLIND,
+        folder=lambda wildcards: f"results/blind/{wildcards.study}",
     message:
         "Scoring the {wildcards.study} study"
     shell:
@@ -124,7 +95,7 @@ rule baselines:
     conda:
         ENVIRONMENT
     params:
-        folder=BLIND,
+        folder=lambda wildcards: f"results/blind/{wildcards.study}",
         training=lambda wildcards, input: "--training results/blind/training" if input.training else "",
     message:
         "Trying simpler rules on the {wildcards.study} study"
@@ -145,7 +116,7 @@ rule draw_study:
     conda:
         ENVIRONMENT
     params:
-        folder=BLIND,
+        folder=lambda wildcards, input: Path(input.table).parent,
     message:
         "Drawing {wildcards.picture} of the {wildcards.study} study"
     shell:

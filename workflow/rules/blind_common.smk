@@ -1,0 +1,33 @@
+"""What the rules of the blind study share: its parts, and which sources make data and which only count."""
+
+# Study → number of batches.
+BATCHES = {"small": 4, "training": 12, "full": 84}
+BLIND = "results/blind/{study}"
+PICTURES = ["confusion", "accuracy", "reliability", "baselines"]
+DETAILS = ["confusion", "accuracy", "reliability", "coverage", "seconds"]
+# What only counts and compares: data and verdicts stay as they are when it changes.
+COUNTING = {"score", "shares", "summary", "breakdown", "calibrate"}
+LAYERS["baselines"] = ["baselines", "records", "blind", "discover/locate.py", "cli/baselines.py"]
+LAYERS["study pictures"] = ["figures/study.py", "figures/style.py", "baselines/names.py", "cli/baselines.py"]
+
+
+def sources_of_data():
+    """Sources that make the hidden-effect data; neither engine nor scores are among them."""
+    return [path for path in sources("card", "blind") if Path(path).stem not in COUNTING]
+
+
+def batches(part):
+    """Input function: the folders of all batches of a part (records, truth, verdicts) of a study."""
+    return lambda wildcards: expand(
+        f"{BLIND}/{part}/{{batch}}", study=wildcards.study, batch=range(BATCHES[wildcards.study])
+    )
+
+
+def training(wildcards):
+    """What the rules that learn need of the training family; the small study does without."""
+    if wildcards.study != "full":
+        return []
+    parts = ["records", "truth", "verdicts"]
+    return expand(
+        f"{BLIND}/{{part}}/{{batch}}", study="training", part=parts, batch=range(BATCHES["training"])
+    )
