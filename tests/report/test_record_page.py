@@ -4,8 +4,8 @@ import re
 from html.parser import HTMLParser
 
 import pytest
-from msgspec.structs import replace
 from made_verdicts import KINDS, WITHOUT_TRACES, gaps, model, verdict, write
+from msgspec.structs import replace
 
 from sonicvacuum.figures import disagreement, discovery, posterior, style
 from sonicvacuum.files import InputError
