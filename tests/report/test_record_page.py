@@ -4,7 +4,8 @@ import re
 from html.parser import HTMLParser
 
 import pytest
-from made_verdicts import KINDS, WITHOUT_TRACES, gaps, verdict, write
+from made_verdicts import KINDS, WITHOUT_TRACES, gaps, model, verdict, write
+from msgspec.structs import replace
 
 from sonicvacuum.figures import disagreement, discovery, posterior, style
 from sonicvacuum.files import InputError
@@ -161,6 +162,13 @@ def test_probabilities_in_words(probability, text):
 def test_a_gap_that_is_not_closed_is_not_called_closed():
     assert "the gap is not closed" in words.gap(verdict(gap=gaps(2.0, 2.5)))
     assert "of the gap closed" not in words.gap(verdict(gap=gaps(0.9, 0.8)))
+
+
+def test_a_modulus_that_had_to_move_far_is_told_first():
+    far = replace(model(KINDS["none"]), modulus_ratio=3.07)
+    assert "has to be 3.07 times as large as recorded" in words.moved_modulus(KINDS["none"], far)
+    assert words.moved_modulus(KINDS["none"], replace(far, modulus_ratio=1.1)) == ""
+    assert words.moved_modulus(KINDS["single"], far) == ""
 
 
 def test_none_that_is_less_probable_than_an_effect_says_so():

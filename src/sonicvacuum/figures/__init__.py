@@ -88,6 +88,10 @@ _README_HEAD = """# Figures
 Each figure is drawn from the CSV beside it, which the rule `draw` writes first; nothing else enters the
 picture. Make all of them with `snakemake --cores 2`, one with `snakemake --cores 2 figures/fig3.png`. The
 captions stand in the modules named below; this page is made from them by `sonicvacuum.figures.readme`.
+
+The pictures of a record that `sonicvacuum discover` looked into are not kept here: they lie beside its
+verdict, in `results/discover/NAME`, drawn from the tables there by `figures/discovery.py` of the package, and
+stand with their captions on the page `index.html` beside them.
 """
 
 

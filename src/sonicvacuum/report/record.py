@@ -54,7 +54,7 @@ def section(folder) -> dict:
     name = verdict.record
     return {
         "name": name,
-        "headline": words.headline(verdict),
+        "headline": words.headline(verdict) + words.moved_modulus(verdict, model),
         "where": words.where(verdict, tables["where"]),
         "parameters": _parameters(verdict),
         "nuisances": words.nuisances(model),

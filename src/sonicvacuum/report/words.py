@@ -17,6 +17,8 @@ SURE = (
     (0.5, "more probable than not"),
     (0.0, "less probable than all its rivals together"),
 )
+# A modulus that moved by more than this, in its logarithm, is told first.
+FAR = 0.2
 # Feature → what a measured one is that lies above, and below, the prediction.
 SIDES = {
     "precursor": ("more force before the pulse", "less force before the pulse"),
@@ -208,6 +210,16 @@ def nuisances(model: Model) -> str:
     if not parts:
         return "What the record states with an error (speeds, time zeros, gains, modulus) stays as recorded."
     return f"What the record states with an error has followed the data: {joined(parts)}."
+
+
+def moved_modulus(verdict: Verdict, model: Model) -> str:
+    """A word on a modulus that had to move far for the nominal model to explain the data; else empty."""
+    if verdict.named or abs(math.log(model.modulus_ratio)) < FAR:
+        return ""
+    return (
+        " For that, the modulus of the beads' material, which the record states with an error, has to be "
+        f"{model.modulus_ratio:.3g} times as large as recorded."
+    )
 
 
 def experiment(proposal: Next | None, cells: list[dict]) -> str:

@@ -1,0 +1,72 @@
+"""The sections of the report on discoveries and on the blind test."""
+
+import pandas as pd
+import pytest
+from made_verdicts import write
+
+from sonicvacuum.figures import discovery
+from sonicvacuum.files import InputError
+from sonicvacuum.report import blind, publish, tables
+from sonicvacuum.report.page import CLAIMS, build
+
+FIRST = ("measure", "group", "count", "value", "low", "high", "goal")
+SUMMARY = [
+    ("named on null", "white", "8", "0", "0", "0.324", "<= 0.01"),
+    ("exact pair", "each d' 10", "0", "nan", "nan", "nan", ">= 0.86"),
+    ("seconds per record", "median", "36", "12.3", "1", "20", ""),
+]
+
+
+@pytest.fixture
+def summary(tmp_path):
+    path = tmp_path / "summary.csv"
+    table = pd.DataFrame(SUMMARY, columns=FIRST).reindex(columns=blind.SUMMARY, fill_value="nan")
+    table.to_csv(path, index=False)
+    return path
+
+
+@pytest.fixture
+def empty(tmp_path):
+    """Paths of the pipeline's tables, without rows."""
+    columns = {"ledger": tables.LEDGER, "assumptions": tables.ASSUMPTIONS, "metrics": tables.METRICS}
+    for name, header in {**columns, "claims": CLAIMS}.items():
+        pd.DataFrame(columns=header).to_csv(tmp_path / f"{name}.csv", index=False)
+    return [tmp_path / f"{name}.csv" for name in ("ledger", "assumptions", "metrics", "claims")]
+
+
+def test_the_report_holds_the_section_of_each_record_and_both_studies(empty, summary, tmp_path):
+    folder = write(tmp_path / "found", "single")
+    discovery.draw(folder)
+    page = build(*empty, [], [], [], [folder], summary, tmp_path / "none.csv")
+    assert 'id="record-made"' in page
+    assert "What is missing: Viscoelastic Hertz contact (kuwabara-kono)" in page
+    assert "<td>named on null</td><td>white</td>" in page
+    assert page.count("No table of this study has been made.") == 1
+
+
+def test_a_report_without_discoveries_says_so(empty):
+    page = build(*empty, [], [], [])
+    assert "No record has been looked into." in page
+    assert page.count("No table of this study has been made.") == 2
+
+
+def test_rows_without_cases_and_times_are_left_out(summary):
+    (row,) = blind.shown(summary)
+    assert (row["measure"], row["interval"], row["ideal"]) == ("named on null", "0 to 0.324", "")
+
+
+def test_a_summary_with_other_columns_is_refused(tmp_path):
+    path = tmp_path / "summary.csv"
+    path.write_text("measure,share\nnamed,1\n")
+    with pytest.raises(InputError, match=r"summary\.csv: columns are measure,share"):
+        blind.shown(path)
+
+
+def test_what_is_kept_of_a_study_is_its_naming(tmp_path):
+    scores, kept = tmp_path / "score.csv", tmp_path / "kept.csv"
+    scores.write_text("id,kind,effects,named,exact,seconds\na,single,tsuji,tsuji,1,3.2\nb,null,,,1,2.1\n")
+    publish.publish_study(scores, kept)
+    assert kept.read_text() == "id,kind,effects,named,exact\na,single,tsuji,tsuji,1\nb,null,,,1\n"
+    scores.write_text("id,kind\n")
+    with pytest.raises(InputError, match="no column effects"):
+        publish.naming(scores)
