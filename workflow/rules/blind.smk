@@ -50,7 +50,7 @@ rule discover_hidden:
     message:
         "Discovering what is hidden in batch {wildcards.batch} of the {wildcards.study} study"
     shell:
-        "sonicvacuum discover {input.records}/* --out {output} --no-figures > {log} 2>&1"
+        "sonicvacuum discover {input.records}/* --out {output} --no-figures --threads {threads} > {log} 2>&1"
 
 
 rule score:

@@ -1,7 +1,7 @@
 """What the rules of the blind study share: its parts, and which sources make data and which only count."""
 
 # Study → number of batches.
-BATCHES = {"small": 4, "training": 12, "full": 84}
+BATCHES = {"small": 4, "training": 4, "full": 24}
 BLIND = "results/blind/{study}"
 PICTURES = ["confusion", "accuracy", "reliability", "baselines"]
 DETAILS = ["confusion", "accuracy", "reliability", "coverage", "seconds"]

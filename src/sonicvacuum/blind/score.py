@@ -69,7 +69,7 @@ def score(truth_folder, verdict_folder) -> list[Row]:
     Raises:
         InputError: where a case has no verdict, or a file is not what it should be.
     """
-    truths, verdicts = _found(truth_folder, "truth.json"), _found(verdict_folder, "verdict.json")
+    truths, verdicts = found_in(truth_folder, "truth.json"), found_in(verdict_folder, "verdict.json")
     if not truths:
         raise InputError(f"{truth_folder}: holds no truth.json; make cases with sonicvacuum hide")
     missing = sorted(set(truths) - set(verdicts))
@@ -78,14 +78,14 @@ def score(truth_folder, verdict_folder) -> list[Row]:
             f"{verdict_folder}: no verdict for {len(missing)} of {len(truths)} cases, first {missing[0]}; "
             "run sonicvacuum discover on their records"
         )
-    return [row(_load(truths[id]), _load(verdicts[id]), verdicts[id]) for id in sorted(truths)]
+    return [row(load(truths[id]), load(verdicts[id]), verdicts[id]) for id in sorted(truths)]
 
 
-def _found(folder, name):
+def found_in(folder, name):
     return {path.parent.name: path for path in Path(folder).rglob(name)}
 
 
-def _load(path):
+def load(path):
     try:
         return json.loads(path.read_text(encoding="utf-8"))
     except json.JSONDecodeError as error:

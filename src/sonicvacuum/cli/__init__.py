@@ -31,6 +31,7 @@ VERBS = {
     "compare": "discover",
     "hide": "blind",
     "score": "blind",
+    "calibrate": "baselines",
     "baselines": "baselines",
     "draw-study": "baselines",
     "publish-study": "baselines",

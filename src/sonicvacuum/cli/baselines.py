@@ -1,4 +1,4 @@
-"""`sonicvacuum baselines`, `draw-study`, `publish-study`: simpler rules on the cases of a blind study, its
+"""`sonicvacuum baselines`, `calibrate`, `draw-study`, `publish-study`: simpler rules on the cases of a blind study, its
 pictures, and what of it is kept in git.
 """
 
@@ -45,6 +45,20 @@ def baselines(records, truth, verdicts, out, training, wanted, state_cases):
     for line in lines:
         text = f"{line.rule}, {line.measure}, {line.group}: {line.value:.3f}"
         click.echo(f"{text} [{line.low:.3f}, {line.high:.3f}] of {line.count}")
+
+
+@click.command()
+@click.option("--truth", required=True, type=_FOLDER, help="Folder of truths.")
+@click.option("--verdicts", required=True, type=_FOLDER, help="Folder of verdicts.")
+@click.option("--out", required=True, type=click.Path(dir_okay=False), help="Calibration (JSON) to write.")
+def calibrate(truth, verdicts, out):
+    """Find how the evidence that discover works out becomes probabilities that come true."""
+    from sonicvacuum.baselines import calibrate as calibration
+
+    cases = calibration.outcomes(truth, verdicts)
+    found = calibration.calibrate(cases)
+    calibration.write(found, out)
+    click.echo(f"temper {found.temper:g}, unknown {found.unknown:+g} and x{found.unknown_slope:g}")
 
 
 @click.command()
