@@ -1,5 +1,5 @@
-"""`sonicvacuum baselines`, `calibrate`, `draw-study`, `publish-study`: simpler rules on the cases of a blind study, its
-pictures, and what of it is kept in git.
+"""`sonicvacuum baselines`, `calibrate`, `draw-study`, `publish-study`: simpler rules on the cases of a blind
+study, what is learnt from training cases, its pictures, and what of it is kept in git.
 """
 
 from pathlib import Path

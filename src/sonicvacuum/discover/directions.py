@@ -6,7 +6,7 @@ readings to answer in proportion, and large enough to stand clear of numerical e
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -58,12 +58,14 @@ class Family:
         change: (setup, lane index, (lanes,) strengths) → setup, lane k departing in direction k.
         trial: strength of the first trial.
         least: smallest strength at which the change is what it is called (a gap opens at once).
+        common: whether the change composes the common law set itself.
     """
 
     directions: tuple[Direction, ...]
     change: Callable[[Setup, np.ndarray, np.ndarray], Setup]
     trial: float = TRIAL
     least: float = WEAKEST
+    common: bool = False
 
 
 def of_effect(
@@ -81,9 +83,8 @@ def of_effect(
         )
         if directions:
             least = strength.low / strength.scale if effect.id == "contact-gap" else WEAKEST
-            families.append(
-                Family(directions, _change(effect, strength, grid, common, present), TRIAL, least)
-            )
+            change = _change(effect, strength, grid, common, present)
+            families.append(Family(directions, change, TRIAL, least, common))
     return families
 
 
@@ -153,6 +154,8 @@ def simulate(forward: Forward, hypothesis: Hypothesis, u, nu, family: Family, ro
     are where it starts.
     """
     count = len(family.directions)
+    if family.common:
+        hypothesis = replace(hypothesis, common=False)
 
     def at(strengths):
         return finite(forward, hypothesis, u, nu, family, strengths)

@@ -129,25 +129,54 @@ def batches(record: Record) -> tuple[Batch, ...]:
 
 def noise(records: Sequence[Record]) -> tuple[np.ndarray, np.ndarray]:
     """(S,) standard deviation of one sample in N and correlation of neighbours, stated or seen."""
-    found = [_noise_of(records, g) for g in records[0].gauges]
-    return np.array([f[0] for f in found]), np.array([f[1] for f in found])
+    quiet = [_quiet_of(records, g) for g in records[0].gauges]
+    sigma = [_sigma(records, g, q) for g, q in zip(records[0].gauges, quiet, strict=True)]
+    return np.array(sigma), _correlations(quiet)
 
 
-def _noise_of(records, gauge):
-    traces = [r.signals.readings[gauge.id] for record in records for r in record.runs if r.signals]
-    if not traces:
-        return max(gauge.sigma, 1e-12), 0.0
-    peak = max(float(np.abs(t).max()) for t in traces)
-    floor = math.hypot(gauge.sigma, MODEL_FLOOR * peak)
-    quiet = [q for t in traces if len(q := _quiet(t, gauge.sigma)) >= _FEWEST]
+def _traces(records, gauge):
+    return [r.signals.readings[gauge.id] for record in records for r in record.runs if r.signals]
+
+
+def _quiet_of(records, gauge):
+    """The quiet stretches of a gauge that are long enough."""
+    return [q for t in _traces(records, gauge) if len(q := _quiet(t, gauge.sigma)) >= _FEWEST]
+
+
+def _sigma(records, gauge, quiet):
+    """What the record states, or more where the quiet stretches are surely louder."""
+    peak = max((float(np.abs(t).max()) for t in _traces(records, gauge)), default=0.0)
+    floor = max(math.hypot(gauge.sigma, MODEL_FLOOR * peak), 1e-12)
     if not quiet:
-        return floor, 0.0
+        return floor
     count = sum(len(q) for q in quiet)
     seen = math.sqrt(sum(q @ q for q in quiet) / count)
-    rho = float(np.average([lag_one(q) for q in quiet], weights=[len(q) for q in quiet]))
-    error = _SURE / math.sqrt(count)
-    sigma = max(floor, seen) if seen > floor * (1.0 + error) else floor
-    return max(sigma, 1e-12), min(rho, 0.99) if rho > error else 0.0
+    return seen if seen > floor * (1.0 + _SURE / math.sqrt(count)) else floor
+
+
+def _correlations(quiet):
+    """(S,) correlation of neighbours: one for all gauges, or each its own where they surely differ; 0 where
+    none is sure.
+    """
+    weights = np.array([sum(len(q) for q in stretches) for stretches in quiet], dtype=float)
+    if not weights.any():
+        return np.zeros(len(quiet))
+    own = np.array([_correlation(stretches) for stretches in quiet])
+    shared = float(np.average(own, weights=weights))
+    if shared <= _SURE / math.sqrt(weights.sum()):
+        # One gauge alone may still be correlated.
+        return np.where(own > _SURE / np.sqrt(np.maximum(weights, 1.0)), np.minimum(own, 0.99), 0.0)
+    error = np.sqrt((1.0 - shared**2) / np.maximum(weights, 1.0))
+    differs = (np.abs(own - shared) > _SURE * error) & (weights > 0.0)
+    return np.clip(np.where(differs, own, shared), 0.0, 0.99)
+
+
+def _correlation(stretches):
+    """Lag-one correlation, its bias −(1 + 3ρ)/n removed (Marriott & Pope, Biometrika 41, 390, 1954)."""
+    if not stretches:
+        return 0.0
+    seen = [(lag_one(q), len(q)) for q in stretches]
+    return float(np.average([r + (1.0 + 3.0 * r) / n for r, n in seen], weights=[n for _, n in seen]))
 
 
 def _quiet(trace, sigma):

@@ -1,4 +1,4 @@
-"""Starts for effects that sit at one place: finite strengths tried everywhere, judged after projection.
+"""Starts for effects that sit at one body: finite strengths tried everywhere, judged after projection.
 
 In a chain without preload a slightly lighter bead does not do the opposite of a slightly heavier one, so that
 slopes at off mislead even for small strengths. A finite change Δ of the data gains 2 b − G, with b its score
@@ -22,13 +22,18 @@ STRENGTHS = (0.03, 0.1, 0.3, 1.0, 3.0, 10.0)
 PLACES = ("bead", "contact")
 
 
+def applies(effect: Effect) -> bool:
+    """Whether an effect is tried at finite strength: those at one bead or contact, and the striker's mass."""
+    return effect.places in PLACES or any(p.name == "mass_ratio" for p in effect.parameters)
+
+
 @dataclass(frozen=True)
 class Secant:
     """One trial: place and coordinate of the strength, the χ² it should gain, and the nuisances that
     follow.
     """
 
-    place: int
+    place: int | None
     u: float
     gain: float
     nu: np.ndarray
@@ -37,13 +42,14 @@ class Secant:
 def search(
     forward: Forward, fit: Fit, effect: Effect, setup: Setup, most: int = 5, sparse: bool = False
 ) -> list[Secant]:
-    """The most promising trials of an effect beside a fitted model, best first; none for effects without
-    bead. `sparse`: every other strength.
+    """The most promising trials of an effect beside a fitted model, best first; none where none are needed.
+
+    `sparse`: every other strength.
     """
-    places = effect.candidates(setup) if effect.places in PLACES else ()
-    if not places:
+    if not applies(effect):
         return []
-    c = coordinate(next(p for p in effect.parameters if p.switches), setup)
+    places = effect.candidates(setup) if effect.places else (None,)
+    c = coordinate(_strength(effect), setup)
     ratios, strengths = RATIOS[sparse :: 1 + sparse], STRENGTHS[sparse :: 1 + sparse]
     sizes = np.array([*ratios, *(-r for r in ratios)]) if c.two_sided else np.log(strengths)
     trials = [(place, float(u)) for place in places for u in sizes if c.low < u < c.high]
@@ -51,6 +57,12 @@ def search(
     gain = 2.0 * seen.projected[0] - np.diag(seen.projected[1])
     order = np.argsort(-gain, kind="stable")[:most]
     return [Secant(*trials[k], float(gain[k]), seen.moved(k, 1.0)[1]) for k in order]
+
+
+def _strength(effect):
+    """The parameter that is tried."""
+    switches = [p for p in effect.parameters if p.switches]
+    return next((p for p in switches if p.name == "mass_ratio"), switches[0])
 
 
 def _screened(forward, fit, effect, c, trials):
@@ -61,7 +73,8 @@ def _screened(forward, fit, effect, c, trials):
     def change(setup, index, strengths):
         off = c.parameter.off_in(setup)
         value = np.where(strengths > 0.0, values[index], off)
-        return effect.apply(setup, **{c.parameter.name: value, effect.places: where[index]})
+        place = {effect.places: where[index]} if effect.places else {}
+        return effect.apply(setup, **{c.parameter.name: value, **place})
 
     family = Family(tuple(Direction(effect.id, c.parameter.name, place=p) for p, _ in trials), change)
     base = forward.columns(fit.hypothesis, fit.u[None], fit.nu[None], precise=True)

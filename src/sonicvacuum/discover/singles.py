@@ -47,7 +47,7 @@ def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
     steps = FIRST if loose else ITERATIONS
     found = []
     for effect in (e for e in CATALOGUE if e.id not in forward.experiment.excluded):
-        placed = effect.places in secants.PLACES
+        placed = secants.applies(effect)
         far = effect.id in best and abs(scores.strength[best[effect.id]]) > FAR
         grid = nonlinear or (loose and far and not effect.places)
         if loose or (placed and largest > CLEAR) or gains.get(effect.id, 0.0) > max(enough, 0.5):
@@ -120,9 +120,9 @@ def starts(forward, null: Fit, scores: Screen, effect: Effect, free, grid: bool,
     `finite` are trials of finite strength, searched where not given.
     """
     rows = _from_screen(scores, effect, free)
-    if finite is None and len(free) == 1 and float(np.square(scores.z).max()) > CLEAR:
+    if finite is None and _tried(effect, free) and float(np.square(scores.z).max()) > CLEAR:
         finite = secants.search(forward, null, effect, setup_of(forward))
-    rows += [([one.u], one.place, one.nu) for one in finite or ()]
+    rows += [([one.u], one.place, one.nu) for one in finite or () if _tried(effect, free)]
     if grid:
         rows += [(*row, np.zeros(forward.layout.size)) for row in _grid(scores, effect, free)]
     u = np.array([r[0] for r in rows]).reshape(len(rows), len(free))
@@ -130,6 +130,12 @@ def starts(forward, null: Fit, scores: Screen, effect: Effect, free, grid: bool,
         u[:, k] = u[:, k].clip(c.low + 1e-9, c.high - 1e-9)
     places = np.array([[r[1] or 0] for r in rows]) if effect.places else None
     return u, places, np.array([r[2] for r in rows]).reshape(len(rows), forward.layout.size)
+
+
+def _tried(effect, free):
+    """Whether trials of finite strength are starts of this set of parameters."""
+    names = [c.parameter.name for c in free]
+    return len(free) == 1 and (effect.places in secants.PLACES or names == ["mass_ratio"])
 
 
 def _from_screen(scores, effect, free):

@@ -65,16 +65,33 @@ def alarm(forward: Forward, fit: Fit, catalogue: screen.Screen | None = None) ->
 def simplest(forward: Forward, null: Fit) -> tuple[str, float]:
     """The one profile along the chain, or distortion of one gauge, that should gain most, and its Δχ².
 
-    An explanation out of the catalogue that gains less than one such shape is not the simplest.
+    An explanation out of the catalogue that gains less than one such shape is not the simplest. Profiles are
+    tried at finite strength, as slopes may promise too much.
     """
     if not forward.experiment.beads or not _traced(forward):
         return "", 0.0
     shapes = [s for s in distortions(forward, null) if s[0][0].effect == "gauge"]
     seen = _screened(forward, null, [_profiles()], shapes)
-    k = int(np.argmax(np.abs(seen.z)))
-    d = seen.directions[k]
-    gauge = "" if d.place is None else f" of gauge {forward.experiment.gauges[d.place].id}"
-    return f"{d.effect} {d.strength}{gauge}", float(np.square(seen.z[k]))
+    gauge = max(
+        ((np.square(z), d) for z, d in zip(seen.z, seen.directions, strict=True) if d.effect == "gauge"),
+        key=lambda f: f[0],
+    )
+    profile = max(_tried(forward, null, seen, share) for share in (0.4, 0.7, 1.0))
+    if profile[0] > gauge[0]:
+        return f"a {profile[1]} profile along the chain", profile[0]
+    return f"{gauge[1].strength} of gauge {forward.experiment.gauges[gauge[1].place].id}", float(gauge[0])
+
+
+def _tried(forward, null, seen: screen.Screen, share) -> tuple[float, str]:
+    """Δχ² of the best profile, taken `share` of its estimate far, and its name."""
+    family = _profiles()
+    strengths = share * seen.strength[: len(family.directions)]
+    columns = ways.finite(forward, null.hypothesis, null.u, null.nu, family, strengths)
+    base = forward.columns(null.hypothesis, null.u[None], null.nu[None], precise=True)
+    there = screen.from_columns(forward, null, family.directions, base, columns)
+    gain = 2.0 * there.projected[0] - np.diag(there.projected[1])
+    k = int(np.argmax(gain))
+    return float(gain[k]), family.directions[k].strength
 
 
 def _traced(forward):
@@ -84,8 +101,7 @@ def _traced(forward):
 def _screened(forward, fit, simulated, shapes) -> screen.Screen:
     """The screen of families that are simulated and of (directions, columns of each run)."""
     base = forward.columns(fit.hypothesis, fit.u[None], fit.nu[None], precise=True)
-    bare = replace(fit.hypothesis, common=False)
-    parts = [(f.directions, ways.simulate(forward, bare, fit.u, fit.nu, f)[0]) for f in simulated]
+    parts = [(f.directions, ways.simulate(forward, fit.hypothesis, fit.u, fit.nu, f)[0]) for f in simulated]
     parts += shapes
     directions = tuple(d for part in parts for d in part[0])
     slopes = [np.concatenate([part[1][run] for part in parts]) for run in range(len(base))]
@@ -136,7 +152,7 @@ def _law(present):
         changed = flexible.add(setup, contact, drag)
         return with_common_laws(changed, (*present, FLEXIBLE))
 
-    return Family(tuple(directions), change, 0.01)
+    return Family(tuple(directions), change, 0.01, common=True)
 
 
 def _places(beads):
