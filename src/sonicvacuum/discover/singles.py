@@ -78,7 +78,7 @@ def candidate(forward, null: Fit, scores: Screen, effect: Effect, plan: Plan):
         if not len(u):
             continue
         hypothesis = Hypothesis((Component(effect, free),))
-        keep = 5 if plan.grid else 3
+        keep = _kept(effect, free, plan)
         one = fit(forward, hypothesis, u, nu, places, keep, plan.steps, plan.coarse)
         if not np.isfinite(one.objective):
             continue
@@ -130,6 +130,13 @@ def starts(forward, null: Fit, scores: Screen, effect: Effect, free, grid: bool,
         u[:, k] = u[:, k].clip(c.low + 1e-9, c.high - 1e-9)
     places = np.array([[r[1] or 0] for r in rows]) if effect.places else None
     return u, places, np.array([r[2] for r in rows]).reshape(len(rows), forward.layout.size)
+
+
+def _kept(effect, free, plan):
+    """How many starts are followed: all of the striker's mass, which nuisances hide at first."""
+    if _tried(effect, free) and not effect.places:
+        return 8
+    return 5 if plan.grid else 3
 
 
 def _tried(effect, free):
