@@ -206,11 +206,13 @@ def test_a_law_with_memory_never_gives_back_more_than_it_took(id):
     assert energy[-1, TYPICAL] < energy[-1, WEAK] < energy[-1, OFF] * (1 - 1e-6)
 
 
-LOSSLESS = [(i, n) for i, n in SWITCHES if not effect(i).dissipative and i != "coating-thickness"]
+LOSSLESS = [(i, n) for i, n in SWITCHES if not effect(i).dissipative]
 
 
 @pytest.mark.parametrize(("id", "name"), LOSSLESS)
 def test_a_lossless_effect_keeps_the_energy(id, name):
     energy = batch(id, name).history.energy
-    # Blanes and Moan's scheme at a quarter of the default step.
-    np.testing.assert_allclose(energy, np.broadcast_to(energy[0], energy.shape), rtol=1e-6)
+    # Blanes and Moan's scheme at a quarter of the default step; Gauss's rule for the energy of the layer
+    # errs by 5e-6 where its factor turns straight.
+    room = 1e-5 if id == "coating-thickness" else 1e-6
+    np.testing.assert_allclose(energy, np.broadcast_to(energy[0], energy.shape), rtol=room)

@@ -130,7 +130,7 @@ class LawSet:
     def stores_energy(self) -> bool:
         """Whether the energy of the loading curve is known; it counts even where the unloading differs."""
         (base,) = self.in_slot("elastic")
-        return base.energy is not None and not self.in_slot("factor")
+        return base.energy is not None
 
     @cached_property
     def first_coefficient(self) -> dict[str, int]:
