@@ -2,6 +2,8 @@
 what the statistics say can be checked. (Data from an independent integrator are the blind study's.)
 """
 
+from dataclasses import replace
+
 import numpy as np
 
 from sonicvacuum.discover.forward import Forward
@@ -42,9 +44,11 @@ def block(speeds, orientation="horizontal"):
     }
 
 
-def made(effects=(), seed=0, speeds=(0.3, 0.9), noise=1.0):
+def made(effects=(), seed=0, speeds=(0.3, 0.9), noise=1.0, departures=()):
     """A record with hidden effects ((id, parameters), ...), nuisances and white noise drawn; the
     nuisances.
+
+    `departures` (what, place, ratio) change stiffness or mass at places, whatever the catalogue says of it.
     """
     content = parse(block(speeds))
     rng = np.random.default_rng(np.random.SeedSequence(seed))
@@ -57,7 +61,10 @@ def made(effects=(), seed=0, speeds=(0.3, 0.9), noise=1.0):
     def change(setup, index):
         for name, given in effects:
             setup = effect(name).apply(setup, **{k: np.full(setup.chain.lanes, v) for k, v in given.items()})
-        return setup
+        chain = setup.chain
+        for what, place, ratio in departures:
+            chain = chain.with_departure(what, place, ratio)
+        return replace(setup, chain=chain)
 
     found = forward.sampled(Hypothesis(), np.zeros((1, 0)), nu, change=change)
     sigma = np.array([s.sigma_N for s in content.sensors])[:, None]

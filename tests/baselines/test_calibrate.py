@@ -1,0 +1,53 @@
+"""Calibration: probabilities that come true, from cases whose truth is known."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from sonicvacuum.baselines.calibrate import Outcome, calibrate, outcomes
+from sonicvacuum.discover.calibration import Calibration, of_package
+from sonicvacuum.files import InputError
+
+NAMES = ("none", "tsuji", "gravity")
+
+
+def drawn(temper, count, seed=3):
+    """Cases whose truth follows probabilities of weights tempered by `temper`, none of them unknown."""
+    rng = np.random.default_rng(np.random.SeedSequence(seed))
+    cases = []
+    for _ in range(count):
+        logs = dict(zip(NAMES, rng.normal(0.0, 3.0, 3).tolist(), strict=True))
+        weights = np.exp(temper * np.array(list(logs.values())))
+        truth = str(rng.choice(NAMES, p=weights / weights.sum()))
+        cases.append(Outcome(logs, -20.0, truth))
+    return cases
+
+
+def test_overconfident_evidence_is_tempered():
+    found = calibrate(drawn(0.5, 2000))
+    # The standard error of the temper from 2000 cases is 0.02.
+    assert found.temper == pytest.approx(0.5, abs=0.08)
+    assert found.none == pytest.approx(0.0, abs=0.3)  # its standard error is 0.08
+    assert found.cases == 2000
+
+
+@given(st.floats(0.2, 3.0), st.floats(-3.0, 3.0), st.floats(-3.0, 3.0), st.floats(0.2, 4.0))
+def test_any_calibration_gives_probabilities(temper, none, unknown, slope):
+    p = Calibration(temper, none, unknown, slope).probabilities({"none": 0.0, "tsuji": 5.0}, -1.0)
+    assert math.isclose(sum(p.values()), 1.0, abs_tol=1e-12)  # rounding
+    assert set(p) == {"none", "tsuji", "unknown"}
+
+
+def test_the_package_is_calibrated():
+    assert of_package().cases > 200
+
+
+def test_cases_without_verdict_are_named(tmp_path):
+    (tmp_path / "truth/a").mkdir(parents=True)
+    (tmp_path / "truth/a/truth.json").write_text('{"kind": "null", "effects": []}')
+    (tmp_path / "verdicts").mkdir()
+    with pytest.raises(InputError, match="no verdict for a"):
+        outcomes(tmp_path / "truth", tmp_path / "verdicts")

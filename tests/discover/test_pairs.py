@@ -1,0 +1,59 @@
+"""Two effects, and what no effect explains: joint gains, naming of pairs, shapes outside the catalogue."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from made_records import BEADS, made
+
+from sonicvacuum.discover import pairs, session
+from sonicvacuum.discover.directions import Direction
+
+
+def screened(columns, data, two_sided):
+    """What a screen of these columns says, nothing to project out."""
+    length = np.linalg.norm(columns, axis=1)
+    return SimpleNamespace(
+        directions=tuple(Direction(f"e{k}", "s", two_sided=t) for k, t in enumerate(two_sided)),
+        projected=(columns @ data, columns @ columns.T),
+        length=length,
+        correlation=columns @ columns.T / np.outer(length, length),
+    )
+
+
+def test_the_joint_gain_of_two_directions_is_that_of_least_squares():
+    rng = np.random.default_rng(np.random.SeedSequence(7))
+    columns, data = rng.normal(size=(4, 30)), rng.normal(size=30)
+    gain, strength = pairs._planes(screened(columns, data, [True] * 4), np.arange(4))
+    for i in range(4):
+        for j in range(i + 1, 4):
+            both = columns[[i, j]].T
+            solved = np.linalg.lstsq(both, data, rcond=None)[0]
+            explained = data @ data - np.sum((data - both @ solved) ** 2)
+            assert gain[i, j] == pytest.approx(explained, rel=1e-9)  # algebra, rounding only
+            assert [strength[i, j], strength[j, i]] == pytest.approx(solved.tolist(), rel=1e-9)
+
+
+def test_a_one_sided_direction_of_the_wrong_sign_makes_no_pair():
+    columns = np.eye(3)[:2]
+    gain, _ = pairs._planes(screened(columns, np.array([1.0, -1.0, 0.0]), [True, False]), np.arange(2))
+    assert gain[0, 1] == -np.inf
+
+
+def test_two_effects_are_named_together():
+    hidden = [("viscous-drag", {"rate_per_s": 150.0}), ("wall-compliance", {"stiffness_ratio": 0.7})]
+    found = session.discover(made(hidden, seed=6)[0])
+    v = found.verdict
+    assert set(v.named) == {"viscous-drag", "wall-compliance"}
+    assert v.alarms["single"] < v.alarms["pair"]
+    ratio = v.parameters["wall-compliance"]["stiffness_ratio"]
+    assert abs(ratio.value - 0.7) < 4.0 * ratio.sigma
+    assert v.gap.fitted.after == pytest.approx(1.0, abs=4.0 * np.sqrt(2.0 / found.found.sizes.sum()))
+
+
+def test_beads_of_two_kinds_in_turn_are_outside_the_catalogue():
+    turn = [("mass", b, 1.06 if b % 2 else 0.94) for b in range(1, BEADS + 1)]
+    v = session.discover(made(departures=turn, seed=8)[0]).verdict
+    assert v.named == ["unknown"]
+    assert v.gap.fitted.before == v.gap.fitted.after  # nothing is added to what has no name
+    assert v.probabilities["unknown"] > 0.9
