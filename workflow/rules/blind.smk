@@ -12,6 +12,7 @@ wildcard_constraints:
     study="small|training|full",
     batch="[0-9]+",
     picture="|".join(PICTURES),
+    choice="|".join(CHOICES),
 
 
 rule hide:
@@ -159,3 +160,80 @@ rule publish_study:
     shell:
         "sonicvacuum publish-study --summary {input.summary} --baselines {input.baselines}"
         " --readme {params.readme} --reference {params.reference} > {log} 2>&1"
+
+
+# One more run for each case left ambiguous: the one that its verdict proposes, or a random one.
+rule follow:
+    input:
+        verdicts=f"{BLIND}/verdicts/{{batch}}",
+        sources=sources_of_data() + sources("follow"),
+    output:
+        directory(f"{BLIND}/followed/{{choice}}/{{batch}}"),
+    log:
+        "results/logs/follow/{study}-{choice}-{batch}.log",
+    benchmark:
+        "results/benchmarks/follow/{study}-{choice}-{batch}.tsv"
+    conda:
+        ENVIRONMENT
+    params:
+        batches=lambda wildcards: BATCHES[wildcards.study],
+    message:
+        "Making {wildcards.choice} runs for ambiguous cases in batch {wildcards.batch} of the {wildcards.study} study"
+    shell:
+        "sonicvacuum follow --study {wildcards.study} --batch {wildcards.batch}/{params.batches}"
+        " --verdicts {input.verdicts} --choice {wildcards.choice} --records {output} > {log} 2>&1"
+
+
+rule discover_followed:
+    input:
+        records=f"{BLIND}/records/{{batch}}",
+        followed=f"{BLIND}/followed/{{choice}}/{{batch}}",
+        sources=sources("card", "physics", "discover"),
+    output:
+        directory(f"{BLIND}/joint/{{choice}}/{{batch}}"),
+    log:
+        "results/logs/discover_followed/{study}-{choice}-{batch}.log",
+    benchmark:
+        "results/benchmarks/discover_followed/{study}-{choice}-{batch}.tsv"
+    conda:
+        ENVIRONMENT
+    message:
+        "Discovering with {wildcards.choice} runs in batch {wildcards.batch} of the {wildcards.study} study"
+    shell:
+        "mkdir -p {output}; for run in {input.followed}/*/; do [ -d $run ] || continue; id=$(basename $run);"
+        " sonicvacuum discover --together {input.records}/$id $run --out {output}/$id --no-figures;"
+        " done > {log} 2>&1"
+
+
+rule resolved:
+    input:
+        truth=batches("truth"),
+        verdicts=batches("verdicts"),
+        proposed=batches("followed/proposed"),
+        proposed_joint=batches("joint/proposed"),
+        random=batches("followed/random"),
+        random_joint=batches("joint/random"),
+        sources=sources("card", "resolved"),
+    output:
+        rows=f"{BLIND}/resolved.csv",
+        summary=f"{BLIND}/resolved_summary.csv",
+    log:
+        "results/logs/resolved/{study}.log",
+    benchmark:
+        "results/benchmarks/resolved/{study}.tsv"
+    conda:
+        ENVIRONMENT
+    params:
+        folder=lambda wildcards: f"results/blind/{wildcards.study}",
+    message:
+        "Counting the ambiguous cases of the {wildcards.study} study that one more run decides"
+    shell:
+        "sonicvacuum resolved --truth {params.folder}/truth --verdicts {params.folder}/verdicts"
+        " --proposed {params.folder}/followed/proposed {params.folder}/joint/proposed"
+        " --random {params.folder}/followed/random {params.folder}/joint/random"
+        " --out {output.rows} --summary {output.summary} > {log} 2>&1"
+
+
+rule blind_resolved:
+    input:
+        "results/blind/full/resolved.csv",

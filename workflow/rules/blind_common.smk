@@ -5,9 +5,12 @@ BATCHES = {"small": 4, "training": 4, "full": 24}
 BLIND = "results/blind/{study}"
 PICTURES = ["confusion", "accuracy", "reliability", "baselines"]
 DETAILS = ["confusion", "accuracy", "reliability", "coverage", "seconds"]
-# What only counts and compares: data and verdicts stay as they are when it changes.
-COUNTING = {"score", "shares", "summary", "breakdown", "calibrate"}
+CHOICES = ["proposed", "random"]
+# What only counts and compares, or comes after the verdicts: data and verdicts stay as they are when it changes.
+COUNTING = {"score", "shares", "summary", "breakdown", "calibrate", "followup", "resolved"}
 LAYERS["baselines"] = ["baselines", "records", "blind", "discover/locate.py", "cli/baselines.py"]
+LAYERS["follow"] = ["blind/followup.py", "cli/follow.py"]
+LAYERS["resolved"] = ["blind/resolved.py", "blind/score.py", "blind/shares.py", "cli/follow.py"]
 LAYERS["study pictures"] = ["figures/study.py", "figures/style.py", "baselines/names.py", "cli/baselines.py"]
 
 
@@ -17,7 +20,7 @@ def sources_of_data():
 
 
 def batches(part):
-    """Input function: the folders of all batches of a part (records, truth, verdicts) of a study."""
+    """Input function: the folders of all batches of a part (records, truth, verdicts, …) of a study."""
     return lambda wildcards: expand(
         f"{BLIND}/{part}/{{batch}}", study=wildcards.study, batch=range(BATCHES[wildcards.study])
     )

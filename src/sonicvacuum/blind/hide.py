@@ -29,6 +29,8 @@ ENOUGH, TRIES = 0.9, 12
 # Designs drawn in search of one in which the effects can act at all.
 DRAWS = 200
 CORRELATIONS = (0.2, 0.5, 0.8)
+# Of random numbers, by name, in the order in which they are spawned; new ones go to the end.
+STREAMS = ("case", "errors", "noise", "rule", "further run", "choice")
 
 
 @dataclass(frozen=True)
@@ -108,6 +110,42 @@ class Case:
         return all_of
 
 
+@dataclass(frozen=True)
+class Laboratory:
+    """Who measures a case: what is hidden there, and what is off with this record's strikers and gauges.
+
+    Attributes:
+        case: design and hidden effects.
+        correlation: of the noise of neighbouring samples, where it is correlated.
+        errors: of the record.
+    """
+
+    case: Case
+    correlation: float
+    errors: Errors
+
+    @property
+    def design(self) -> Design:
+        """What the laboratory knows of its record."""
+        return self.case.frame.design
+
+
+def stream(spec: Spec, name: str) -> np.random.Generator:
+    """One of the case's independent streams of random numbers, from its start."""
+    seeds = np.random.SeedSequence(spec.seed, spawn_key=(spec.place,)).spawn(len(STREAMS))
+    return np.random.default_rng(seeds[STREAMS.index(name)])
+
+
+def laboratory(spec: Spec) -> Laboratory:
+    """The laboratory of a case, the same whenever it is asked for.
+
+    Raises:
+        ValueError: where no drawn design lets the effects act.
+    """
+    case, correlation = _case(spec, stream(spec, "case"))
+    return Laboratory(case, correlation, drawn_errors(case.frame.design, stream(spec, "errors")))
+
+
 def hide(spec: Spec) -> tuple[records.Record, dict]:
     """A record with something hidden in it, and the truth.
 
@@ -116,18 +154,15 @@ def hide(spec: Spec) -> tuple[records.Record, dict]:
     Raises:
         ValueError: where no drawn design lets the effects act.
     """
-    streams = np.random.SeedSequence(spec.seed, spawn_key=(spec.place,)).spawn(4)
-    case, correlation = _case(spec, np.random.default_rng(streams[0]))
-    truth_random, noise_random, rule_random = (np.random.default_rng(s) for s in streams[1:])
-    made = case.frame.design
-    errors = _errors(made, truth_random)
-    clean = predict(made, case.change, errors, TOLERANCE)
-    traces, noise = _noisy(made, clean.traces, spec.noise, correlation, noise_random)
+    own, noise_random = laboratory(spec), stream(spec, "noise")
+    made = own.design
+    clean = predict(made, own.case.change, own.errors, TOLERANCE)
+    traces, noise = noisy(made, clean.traces, spec.noise, own.correlation, noise_random)
     sigmas = np.array([s.sigma for s in made.scalars], dtype=float)
     scalars = clean.scalars + sigmas * noise_random.standard_normal(len(sigmas))
     # The folder's name says nothing of what is inside; neither does the title.
     record = as_record(made, traces, scalars, title=f"Data set {spec.id}")
-    return record, _truth(spec, case, errors, noise, rule_random)
+    return record, _truth(spec, own.case, own.errors, noise, stream(spec, "rule"))
 
 
 def write(spec: Spec, records_folder, truth_folder) -> None:
@@ -198,14 +233,14 @@ def _visible(frame, entry):
     return places
 
 
-def _errors(made: Design, random):
+def drawn_errors(made: Design, random: np.random.Generator) -> Errors:
     """Errors of one standard deviation each, cut at 2.5."""
     size = len(Errors.of(made).vector)
     return Errors.of(made, np.clip(random.standard_normal(size), -2.5, 2.5))
 
 
-def _noisy(made: Design, traces, kind, correlation, random):
-    """Traces with noise of the stated sigma, and what the noise was."""
+def noisy(made: Design, traces: np.ndarray, kind: str, correlation: float, random) -> tuple[np.ndarray, dict]:
+    """Traces (runs, gauges, samples) in N with noise of the stated sigma, and what the noise was."""
     if not made.samples:
         return traces, {"kind": "none"}
     sigma = np.array(made.sigma)[:, None]

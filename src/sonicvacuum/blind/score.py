@@ -81,11 +81,13 @@ def score(truth_folder, verdict_folder) -> list[Row]:
     return [row(load(truths[id]), load(verdicts[id]), verdicts[id]) for id in sorted(truths)]
 
 
-def found_in(folder, name):
+def found_in(folder, name: str) -> dict[str, Path]:
+    """Id of a case → its file of that name, however deep below a folder."""
     return {path.parent.name: path for path in Path(folder).rglob(name)}
 
 
-def load(path):
+def load(path: Path) -> dict:
+    """A truth, verdict or change; InputError where it is not JSON."""
     try:
         return json.loads(path.read_text(encoding="utf-8"))
     except json.JSONDecodeError as error:

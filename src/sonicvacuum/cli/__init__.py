@@ -31,6 +31,8 @@ VERBS = {
     "compare": "discover",
     "hide": "blind",
     "score": "blind",
+    "follow": "follow",
+    "resolved": "follow",
     "calibrate": "baselines",
     "baselines": "baselines",
     "draw-study": "baselines",

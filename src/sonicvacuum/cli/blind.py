@@ -36,7 +36,7 @@ def hide(study, path, listing, batch, records_folder, truth_folder):
         raise InputError("hide: --records and --truth are both needed to make data (or --list to list cases)")
     from sonicvacuum.blind.hide import write
 
-    for spec in studies.batch(specs, *_share(batch)):
+    for spec in studies.batch(specs, *batch_of(batch)):
         try:
             write(spec, records_folder, truth_folder)
         except ValueError as error:
@@ -44,7 +44,8 @@ def hide(study, path, listing, batch, records_folder, truth_folder):
         click.echo(spec.id)
 
 
-def _share(text):
+def batch_of(text: str) -> tuple[int, int]:
+    """(k, n) of k/n; InputError where there is no such batch."""
     found = re.fullmatch(r"(\d+)/(\d+)", text)
     if not found or not int(found[1]) < int(found[2]):
         raise InputError(f"--batch: is {text!r}; write k/n with k from 0 to n - 1, such as 0/4")

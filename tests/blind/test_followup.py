@@ -1,0 +1,183 @@
+"""One more run: what is made is what discover imagines, in the laboratory of the record."""
+
+import json
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from sonicvacuum import records
+from sonicvacuum.blind import followup, study
+from sonicvacuum.blind.followup import ambiguous, follow, offers, random_change, under
+from sonicvacuum.blind.hide import TOLERANCE, Spec, hide, laboratory
+from sonicvacuum.blind.plan import G
+from sonicvacuum.blind.signature import predict
+from sonicvacuum.cli import cli
+from sonicvacuum.discover.next_experiment import changes
+from sonicvacuum.discover.problem import experiment
+from sonicvacuum.files import InputError
+
+SPEC = Spec("a", "single", "one-speed", "white", ("sensor-gain",), 10.0, 5, 40)
+SCALARS = Spec("s", "null", "scalars", "white", (), 0.0, 5, 41)
+
+
+@pytest.fixture(scope="module")
+def own():
+    """The laboratory of `SPEC`."""
+    return laboratory(SPEC)
+
+
+@pytest.fixture(scope="module")
+def imagined():
+    """[(change, experiment)] of everything that discover could propose on the record of `SPEC`."""
+    return list(changes(experiment(hide(SPEC)[0])))
+
+
+def test_the_same_changes_are_offered(own, imagined):
+    def ordered(found):
+        return sorted((k, v) for change in found for k, v in change.items())
+
+    ours, theirs = ordered(offers(own.design)), ordered(change for change, _ in imagined)
+    assert [k for k, _ in ours] == [k for k, _ in theirs]
+    for (_, one), (_, other) in zip(ours, theirs, strict=True):
+        assert one == (other if isinstance(other, str) else pytest.approx(other, rel=1e-9))  # units converted
+
+
+def test_what_is_made_is_what_is_imagined(own, imagined):
+    assert {key.split(".")[0] for change, _ in imagined for key in change} == {"striker", "chain", "sensors"}
+    for change, wanted in imagined:
+        made = experiment(follow(SPEC, own, change))
+        (run,), (batch,) = made.runs, made.batches
+        # Values are proposed to four decimals, of which speeds of 0.02 m/s and more keep 0.3 %.
+        for name in ("speed", "striker_mass", "static_force", "gravity"):
+            one, other = getattr(batch.chain, name), getattr(wanted.batches[0].chain, name)
+            assert one == pytest.approx(other, rel=3e-3), change
+        # The length follows from the rounded speed: a sample at most.
+        assert len(run.time) == pytest.approx(len(wanted.runs[0].time), abs=1), change
+        assert run.interval == pytest.approx(wanted.runs[0].interval, rel=1e-9)
+        assert run.time[0] == wanted.runs[0].time[0]
+        assert [(g.id, g.bead) for g in made.gauges] == [(g.id, g.bead) for g in wanted.gauges]
+        np.testing.assert_allclose(made.gain_rel_sigma, wanted.gain_rel_sigma)
+        assert made.modulus_rel_sigma == wanted.modulus_rel_sigma
+
+
+def test_gain_modulus_and_what_is_hidden_stay(own):
+    """Without noise and errors of speed and trigger, a run at the record's speed repeats the record."""
+    silent = replace(
+        own.design,
+        sigma=tuple(1e-12 * s for s in own.design.sigma),
+        speed_sigma=0.0,
+        trigger_sigma=0.0,
+    )
+    quiet = replace(own, case=replace(own.case, frame=replace(own.case.frame, design=silent)))
+    again = follow(SPEC, quiet, {"striker.speed_m_s": own.design.runs[-1].speed}).signals["r1"].readings
+    first = predict(silent, own.case.change, own.errors, TOLERANCE).traces[0]
+    nominal = predict(silent).traces[0]
+    for k, gauge in enumerate(own.design.reference.gauges):
+        peak = first[k].max()
+        # Noise at 1e-12 of the stated one, a hundredth of the peak.
+        np.testing.assert_allclose(again[gauge.id], first[k], atol=1e-9 * peak)
+        assert np.abs(again[gauge.id] - nominal[k]).max() > 1e-3 * peak
+
+
+def test_speed_trigger_and_noise_are_fresh(own):
+    first = hide(SPEC)[0].signals["r1"].readings
+    again = follow(SPEC, own, {"striker.speed_m_s": own.design.runs[-1].speed}).signals["r1"].readings
+    for k, gauge in enumerate(own.design.reference.gauges):
+        early = slice(0, own.design.samples // 20)  # before the wave arrives: noise alone
+        difference = again[gauge.id][early] - first[gauge.id][early]
+        # Independent noise has twice the variance; 4 standard errors of that of 24 samples.
+        assert np.mean(difference**2) / own.design.sigma[k] ** 2 == pytest.approx(
+            2.0, abs=8.0 * math.sqrt(2.0 / len(difference))
+        )
+
+
+def test_the_same_case_gives_the_same_run(own):
+    change = random_change(SPEC, own.design)
+    assert change == random_change(SPEC, laboratory(SPEC).design)
+    assert change in offers(own.design)
+    one, other = (follow(SPEC, lab, change).signals["r1"] for lab in (own, laboratory(SPEC)))
+    assert all(np.array_equal(one.readings[g], other.readings[g]) for g in one.readings)
+
+
+def test_random_changes_are_spread_over_the_offers(own):
+    specs = [Spec("x", "null", "one-speed", "white", (), 0.0, 5, k) for k in range(200)]
+    drawn = [offers(own.design).index(random_change(s, own.design)) for s in specs]
+    count = np.bincount(drawn, minlength=len(offers(own.design)))
+    mean = len(specs) / len(count)
+    # χ² with n − 1 degrees of freedom stays below its mean by 4 standard deviations with fixed seeds.
+    assert np.sum((count - mean) ** 2 / mean) < len(count) - 1 + 4.0 * math.sqrt(2.0 * len(count))
+
+
+def test_slow_pulses_are_watched_for_longer(own):
+    last = own.design.runs[-1]
+    slow = under(own.design, {"striker.speed_m_s": last.speed / 32.0})
+    assert slow.samples == pytest.approx(2 * own.design.samples, abs=1)  # 32^{1/5} = 2, cut to a whole number
+    assert under(own.design, {"striker.speed_m_s": last.speed * 3.0}).samples == own.design.samples
+
+
+def test_each_quantity_is_changed(own):
+    last = own.design.runs[-1]
+    assert under(own.design, {"striker.mass_g": 2.5}).runs[0].striker_mass == pytest.approx(2.5e-3)
+    assert under(own.design, {"chain.static_force_N": 3.0}).runs[0].static_force == 3.0
+    turned = "horizontal" if last.gravity else "vertical"
+    assert under(own.design, {"chain.orientation": turned}).runs[0].gravity == G - last.gravity
+    moved = under(own.design, {"sensors.g1.bead": 2}).runs[0].gauges
+    assert [g.bead for g in moved] == [2, *(g.bead for g in last.gauges[1:])]
+
+
+@pytest.mark.parametrize(
+    "change",
+    [{}, {"striker.colour": 1.0}, {"sensors.g9.bead": 2}, {"chain.orientation": "inclined"}],
+    ids=str,
+)
+def test_other_changes_are_refused(own, change):
+    with pytest.raises(ValueError, match="change"):
+        under(own.design, change)
+
+
+def test_records_without_traces_have_no_further_run():
+    made = laboratory(SCALARS).design
+    assert offers(made) == []
+    with pytest.raises(ValueError, match="without traces"):
+        random_change(SCALARS, made)
+    with pytest.raises(ValueError, match="with traces"):
+        under(made, {"striker.speed_m_s": 1.0})
+
+
+def verdict(named=("sensor-gain",), left=("sensor-gain", "tsuji"), change=None):
+    proposal = {"change": change or {"striker.speed_m_s": 1.0}, "delta_chi2": 50.0}
+    return {"named": list(named), "confusable": [list(left)] if left else [], "next_experiment": proposal}
+
+
+def test_ambiguous_cases():
+    assert ambiguous(SPEC, verdict())
+    assert ambiguous(SPEC, verdict(["tsuji"], ["tsuji", "sensor-gain"]))
+    assert not ambiguous(SPEC, verdict(["tsuji"], ["tsuji", "gravity"]))
+    assert not ambiguous(SPEC, verdict(left=()))
+    assert not ambiguous(SPEC, verdict(["unknown"]))
+    assert not ambiguous(SPEC, verdict(["sensor-gain", "tsuji"]))
+    assert not ambiguous(SPEC, verdict() | {"next_experiment": None})
+    assert not ambiguous(SCALARS, verdict())
+
+
+def test_command_makes_the_runs_of_ambiguous_cases(tmp_path):
+    study.write_cases([SPEC, SCALARS], tmp_path / "cases.csv")
+    given = {"a": verdict(change={"striker.mass_g": 2.5}), "s": verdict([], ())}
+    for id, content in given.items():
+        (tmp_path / "verdicts" / id).mkdir(parents=True)
+        (tmp_path / "verdicts" / id / "verdict.json").write_text(json.dumps(content))
+    call = ["follow", "--cases", "cases.csv", "--verdicts", "verdicts", "--choice", "proposed"]
+    call = [str(tmp_path / c) if c in ("cases.csv", "verdicts") else c for c in call]
+    done = CliRunner().invoke(cli, [*call, "--records", str(tmp_path / "out")], catch_exceptions=False)
+    assert done.output.split() == ["a"]
+    assert [p.name for p in (tmp_path / "out").iterdir()] == ["a"]
+    assert records.read(tmp_path / "out" / "a").runs[0].striker.mass_kg == pytest.approx(2.5e-3)
+    told = json.loads((tmp_path / "out" / "a" / followup.FILE).read_text())
+    assert told == {"choice": "proposed", "change": {"striker.mass_g": 2.5}}
+    (tmp_path / "verdicts" / "s" / "verdict.json").unlink()
+    refused = CliRunner().invoke(cli, [*call, "--records", str(tmp_path / "out")])
+    assert isinstance(refused.exception, InputError)
+    assert "no verdict for 1 of 2 cases, first s" in str(refused.exception)
