@@ -17,7 +17,7 @@ from sonicvacuum.blind.signature import Errors, predict
 from sonicvacuum.files import replacing
 
 # What discover may propose: factors on the last run's speed and striker mass, newtons added to the preload.
-SPEEDS = (0.1, 0.3, 3.0, 10.0)
+SPEEDS = (0.2, 0.5, 2.0, 5.0)
 MASSES = (0.25, 4.0)
 PRELOADS = (0.5, 5.0)
 SLOWEST, FASTEST = 0.02, 20.0  # m/s

@@ -53,6 +53,8 @@ def search(
     ratios, strengths = RATIOS[sparse :: 1 + sparse], STRENGTHS[sparse :: 1 + sparse]
     sizes = np.array([*ratios, *(-r for r in ratios)]) if c.two_sided else np.log(strengths)
     trials = [(place, float(u)) for place in places for u in sizes if c.low < u < c.high]
+    if not trials:
+        return []
     seen = _screened(forward, fit, effect, c, trials)
     gain = 2.0 * seen.projected[0] - np.diag(seen.projected[1])
     order = np.argsort(-gain, kind="stable")[:most]
