@@ -187,10 +187,11 @@ def _profiles():
         for at in range(beads + 1):
             x = 2.0 * at / max(1, beads) - 1.0
             size = np.array([_PROFILES[name](x, at) for _, name in kinds])[index]
+            ratio = np.exp(np.clip(strengths * size, -1.0, 1.0))
             stiff = np.array([what == "stiffness" for what, _ in kinds])[index]
-            chain = chain.with_departure("stiffness", at, np.where(stiff, 1.0 + strengths * size, 1.0))
+            chain = chain.with_departure("stiffness", at, np.where(stiff, ratio, 1.0))
             if at:
-                chain = chain.with_departure("mass", at, np.where(stiff, 1.0, 1.0 + strengths * size))
+                chain = chain.with_departure("mass", at, np.where(stiff, 1.0, ratio))
         return replace(setup, chain=chain)
 
     return Family(directions, change, 0.01)
