@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy import stats
 
 from sonicvacuum.blind import catalogue, design
 from sonicvacuum.blind.signature import Errors, Frame, predict
@@ -14,6 +15,7 @@ from sonicvacuum.blind.strength import (
     leftover,
     log_evidence,
     nearest,
+    pair_ceiling,
     rivals,
     scale,
 )
@@ -140,7 +142,27 @@ def test_ideal_rule_tells_right_angles_apart_and_no_copies():
     shares = ceiling(same, 8.0 * one, np.random.default_rng(1))
     assert shares["a"] > 0.99  # b could have had the other sign too: half the evidence
     nothing = ceiling(apart, 0.0 * one, np.random.default_rng(1))
-    assert nothing["none"] > 0.9
+    assert nothing["none"] == pytest.approx(0.99, abs=0.001)  # the level itself, on the same draws
+
+
+def test_ideal_rule_pays_for_a_low_rate_of_false_alarms():
+    """Two directions at right angles: the larger of two normal z passes `limit` in 1 % of data sets."""
+    one, two = np.eye(50)[:2]
+    limit = stats.norm.isf(1.0 - np.sqrt(0.99))
+    found = ceiling([Rival("a", None, one), Rival("b", None, two)], 3.0 * one, np.random.default_rng(2))
+    assert found["a"] == pytest.approx(
+        stats.norm.sf(limit - 3.0), abs=0.06
+    )  # 2000 draws, 20 beyond the limit
+
+
+def test_pair_is_as_hard_as_each_of_it_beside_the_other():
+    one, two, three = np.eye(50)[:3]
+    catalogue = [Rival("a", None, one), Rival("b", None, two), Rival("c", None, three)]
+    random = np.random.default_rng(3)
+    assert pair_ceiling(catalogue, [("a", 8.0 * one), ("b", 8.0 * two)], random) > 0.98
+    # A third effect all but like the second one, once the first is known, and the other way round: two guesses.
+    blend = [*catalogue[:2], Rival("c", None, np.sqrt(0.5) * (one + two) + 1e-4 * three)]
+    assert pair_ceiling(blend, [("a", 8.0 * one), ("b", 8.0 * two)], random) == pytest.approx(0.25, abs=0.05)
 
 
 def test_impossible_strengths_are_capped(frame):

@@ -17,7 +17,7 @@ from sonicvacuum.blind import catalogue, design, foreign
 from sonicvacuum.blind.design import Design
 from sonicvacuum.blind.record import as_record
 from sonicvacuum.blind.signature import Errors, Frame, predict
-from sonicvacuum.blind.strength import Rival, ceiling, leftover, nearest, rivals, scale
+from sonicvacuum.blind.strength import Rival, ceiling, leftover, nearest, pair_ceiling, rivals, scale
 from sonicvacuum.files import replacing
 
 KINDS = ("null", "single", "pair", "foreign")
@@ -284,7 +284,7 @@ def _truth(spec, case, errors, noise, random):
         "d_prime_all": float(np.linalg.norm(seen)),
         "leftover_d_prime": leftover(directions, seen) if directions else 0.0,
         "nearest": {"id": near[0], "leaves_d_prime": near[1]},
-        "ideal": ceiling(directions, seen, random) if len(case.hidden) == 1 else {},
+        "ideal": _ideal(spec, case.hidden, directions, random),
         "runs": len(made.runs),
         "gauges": len(made.reference.gauges),
         "noise_drawn": noise,
@@ -295,3 +295,11 @@ def _truth(spec, case, errors, noise, random):
             "triggers": errors.triggers.tolist(),
         },
     }
+
+
+def _ideal(spec, hidden, directions, random):
+    """Verdict → share of data sets in which an ideal rule gives it."""
+    if spec.kind == "pair":
+        share = pair_ceiling(directions, [(h.id, h.seen) for h in hidden], random)
+        return {"+".join(spec.effects): share}
+    return ceiling(directions, hidden[0].seen, random) if spec.kind == "single" else {}

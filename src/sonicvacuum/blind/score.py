@@ -22,7 +22,7 @@ class Row:
         reached: least d′ of the effects as hidden; 0 for null.
         leftover: d′ that no single effect of the catalogue explains.
         nearest: the other effect that explains the hidden one best.
-        ideal: share of data sets of this record in which an ideal rule gives the true name (singles).
+        ideal: share of data sets of this record in which an ideal rule gives the true names (singles, pairs).
         named: verdict, joined by `+`.
         top, confidence: most probable entry of the probabilities, and its probability.
         exact: named exactly what is hidden; nothing for null, unknown for foreign.
@@ -125,7 +125,7 @@ def _row(truth, verdict):
         reached=_reached(truth),
         leftover=truth["leftover_d_prime"],
         nearest=truth["nearest"]["id"],
-        ideal=truth["ideal"].get(effects[0], 0.0) if truth["kind"] == "single" else math.nan,
+        ideal=truth["ideal"].get("+".join(effects), 0.0) if truth["ideal"] else math.nan,
         named="+".join(named),
         top=top,
         confidence=probabilities[top],

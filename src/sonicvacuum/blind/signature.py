@@ -332,12 +332,14 @@ class Frame:
         return now
 
     def _start(self, shown, near):
-        """Errors and slopes: at the nominal model, or the best of some moduli if pulses are off."""
+        """Errors and slopes: at the nominal model, near another fit, or the best of some moduli if pulses
+        are off in all of these.
+        """
         none = np.zeros(self.slopes.shape[1])
         fits = [(none, self.base)]
         if near is not None:
             fits.append((near, self.nominal(near)))
-        elif _norm(shown - self.base) > FAR * _norm(self.base):
+        if min(_norm(shown - data) for _, data in fits) > FAR * _norm(self.base):
             fits += self.moduli
         seen = [np.concatenate([shown - data, vector]) for vector, data in fits]
         k = int(np.argmin([_norm(s) for s in seen]))

@@ -2,7 +2,7 @@
 
 import itertools
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import special
@@ -18,6 +18,10 @@ LARGEST = 30.0
 NOTHING = 1e-3
 # Where the record's errors explain all but 1/ABSORBED of a change, what they leave is its curvature.
 ABSORBED = 8.0
+# Of the ideal rule, on noise alone: what the method itself is allowed.
+FALSE_ALARM = 0.01
+# A direction that keeps less than this beside a known one is that one.
+APART = 0.05
 
 
 @dataclass(frozen=True)
@@ -168,8 +172,9 @@ def ceiling(
 ) -> dict[str, float]:
     """How often an ideal rule names each effect when data hold the signature `seen` and noise.
 
-    The rule knows all directions, takes effects (and none) as equally likely, shares an effect's probability
-    equally among its places, shapes and signs, and names the most probable.
+    The rule knows all directions, takes effects as equally likely, shares an effect's probability equally
+    among its places, shapes and signs, and names the most probable one; none unless the evidence passes what
+    noise alone reaches in a share `FALSE_ALARM` of data sets.
 
     Returns:
         Verdict ("none" or an id) → share of `draws` data sets, in descending order.
@@ -177,13 +182,44 @@ def ceiling(
     basis = np.stack([r.direction for r in directions])
     # Noise enters only through its components along the directions, whose covariance is the Gram matrix.
     values, vectors = np.linalg.eigh(basis @ basis.T)
-    noise = random.standard_normal((draws, len(basis))) * np.sqrt(np.maximum(values, 0.0))
-    log = log_evidence(basis @ seen + noise @ vectors.T)
+    noise = (random.standard_normal((draws, len(basis))) * np.sqrt(np.maximum(values, 0.0))) @ vectors.T
     ids = sorted({d.id for d in directions})
-    total = [np.zeros(draws)]
+    threshold = np.quantile(_evidence(directions, ids, noise).max(axis=0), 1.0 - FALSE_ALARM)
+    total = _evidence(directions, ids, basis @ seen + noise)
+    winner = np.where(total.max(axis=0) > threshold, np.argmax(total, axis=0), len(ids))
+    shares = {name: float(np.mean(winner == k)) for k, name in enumerate([*ids, "none"])}
+    return dict(sorted(((k, v) for k, v in shares.items() if v > 0.0), key=lambda kv: (-kv[1], kv[0])))
+
+
+def _evidence(directions, ids, z):
+    """(effects, draws) ln evidence of each effect, from data (draws, directions) along the directions."""
+    log, total = log_evidence(z), []
     for id in ids:
         own = [k for k, d in enumerate(directions) if d.id == id]
         total.append(special.logsumexp(log[:, own], axis=1) - math.log(len(own)))
-    winner = np.argmax(np.stack(total), axis=0)
-    shares = {name: float(np.mean(winner == k)) for k, name in enumerate(["none", *ids])}
-    return dict(sorted(((k, v) for k, v in shares.items() if v > 0.0), key=lambda kv: (-kv[1], kv[0])))
+    return np.stack(total)
+
+
+def pair_ceiling(
+    directions: list[Rival], hidden: list[tuple[str, np.ndarray]], random: np.random.Generator
+) -> float:
+    """How often an ideal rule names both effects of a pair: each of them, told the other.
+
+    The known effect's strength is free, so that its direction is projected out of all others; the two shares
+    are multiplied. A rule that is told nothing does no better.
+
+    Args:
+        directions: of the catalogue.
+        hidden: (id, signature) of the two effects.
+        random: for the draws.
+    """
+    shares = []
+    for (id, seen), (_, known) in (hidden, hidden[::-1]):
+        unit = known / np.linalg.norm(known)
+        left = [replace(r, direction=r.direction - (r.direction @ unit) * unit) for r in directions]
+        lengths = [np.linalg.norm(r.direction) for r in left]
+        left = [
+            replace(r, direction=r.direction / n) for r, n in zip(left, lengths, strict=True) if n > APART
+        ]
+        shares.append(ceiling(left, seen - (seen @ unit) * unit, random).get(id, 0.0))
+    return float(np.prod(shares))

@@ -115,7 +115,7 @@ def _typical(rows):
 
 def _share(measure, group, rows: list[Row], what: Callable, goal=""):
     found = share(sum(what(r) for r in rows), len(rows))
-    ideal = ideal_share(rows) if measure == "exact name" else math.nan
+    ideal = ideal_share(rows) if measure in ("exact name", "exact pair") else math.nan
     over = found[0] / ideal if ideal else math.nan
     return Line(measure, group, len(rows), *found, ideal, over, goal)
 

@@ -26,7 +26,8 @@ CAPTIONS = {
         Share of records with one hidden effect that are given its exact name, against the effect's
         signal-to-noise ratio d′: (a) traces at several speeds, (b) other records, with their median d′. Bars:
         95 % intervals (Wilson). Class level: that name, or one that the verdict calls confusable with it.
-        Dashed: what an ideal rule with full knowledge of all signatures reaches on the same records.
+        Dashed: what an ideal rule with full knowledge of all signatures reaches on the same records, alarmed
+        by 1 % of empty ones.
     """),
     "reliability": style.paragraph("""
         Stated probability of the most probable explanation against the share of cases in which it is right,
