@@ -160,7 +160,7 @@ def test_pair_is_as_hard_as_each_of_it_beside_the_other():
     catalogue = [Rival("a", None, one), Rival("b", None, two), Rival("c", None, three)]
     random = np.random.default_rng(3)
     assert pair_ceiling(catalogue, [("a", 8.0 * one), ("b", 8.0 * two)], random) > 0.98
-    # A third effect all but like the second one, once the first is known, and the other way round: two guesses.
+    # Once one effect is known, the third is all but like the other one: two guesses.
     blend = [*catalogue[:2], Rival("c", None, np.sqrt(0.5) * (one + two) + 1e-4 * three)]
     assert pair_ceiling(blend, [("a", 8.0 * one), ("b", 8.0 * two)], random) == pytest.approx(0.25, abs=0.05)
 
