@@ -83,7 +83,9 @@ def candidate(forward, null: Fit, scores: Screen, effect: Effect, plan: Plan):
         if not np.isfinite(one.objective):
             continue
         gain = null.objective - one.objective
-        alike = None if plan.grid and not effect.places else by_direction(scores, effect, gain)
+        # Far away the screen is not asked about shapes, unless one is at a bound, where widths mean nothing.
+        trusted = not plan.grid or effect.places or one.at_bound().any()
+        alike = by_direction(scores, effect, gain) if trusted else None
         logs.append(log_bayes(one, gain, alike))
         if best is None or logs[-1] > best[1]:
             best = (one, logs[-1], gain)

@@ -11,7 +11,7 @@ from sonicvacuum.observe.sweep import speed_at_amplitude as interpolated
 from sonicvacuum.observe.trace import Measured, missing
 from sonicvacuum.physics.chain import Chain
 from sonicvacuum.physics.run import simulate
-from sonicvacuum.records.assemble import passage_of, sampling_of
+from sonicvacuum.records.assemble import CROSSINGS, passage_of, sampling_of
 from sonicvacuum.records.ranges import impact_scales
 from sonicvacuum.records.record import Record
 
@@ -24,6 +24,8 @@ REACH = 2
 CLEAR = 2
 # Amplitudes grow about as striker speed to the power 6/5.
 _POWER = 5.0 / 6.0
+# Of the striker's force on a rigid surface, roughly what a gauge inside a bead reads of the wave.
+_SHARE = 0.45
 
 
 def speed_at_amplitude(
@@ -45,7 +47,7 @@ def speed_at_amplitude(
     pair = _pair(sensor, record.beads)
     if pair is None:
         return missing("short: the chain has too few beads for a speed at this gauge")
-    centre = float(chain.speed[0]) * (amplitude / impact_scales(chain)[0]) ** _POWER
+    centre = float(chain.speed[0]) * (amplitude / (_SHARE * impact_scales(chain)[0])) ** _POWER
     found = missing("outside: no striker speed gives this amplitude")
     for _ in range(TRIES):
         amplitudes, speeds = _sweep(record, chain, sensor, pair, centre * LADDER, refine)
@@ -75,7 +77,7 @@ def _sweep(record, chain, sensor, pair, speeds, refine):
     gauges = (replace(sensor, id="(gauge)"), *pair, Sensor("(end)", "wall", None))
     contacts = contacts_needed(gauges, record.beads)
     interval = sampling_of(lanes)
-    history = simulate(lanes, contacts, passage_of(lanes), interval, refine=refine)
+    history = simulate(lanes, contacts, passage_of(lanes, CROSSINGS), interval, refine=refine)
     forces = {c: history.of(c) for c in contacts}
     readings = {s.id: reading(s, forces, interval, record.beads) for s in gauges}
     geometry = Geometry(record.beads, record.diameter_m, gauges)
