@@ -5,7 +5,7 @@ import math
 from sonicvacuum.baselines.cases import Case, Cell, Single
 from sonicvacuum.blind.score import Row
 
-BLANK = dict.fromkeys(("closed", "chi2", "seconds"), math.nan)
+BLANK = dict.fromkeys(("closed", "before", "chi2", "seconds"), math.nan)
 
 
 def row(id="a", kind="single", effects="tsuji", **changes):

@@ -4,6 +4,7 @@ import csv
 import json
 import math
 
+import numpy as np
 import pytest
 from click.testing import CliRunner
 
@@ -107,6 +108,19 @@ def test_calibration_counts_how_often_the_top_is_right():
     assert (last.stated, last.value, last.count) == pytest.approx((0.98, 0.9, 10))
     line = next(one for one in summary(rows) if one.measure.startswith("calibration"))
     assert line.value == pytest.approx(0.08)
+
+
+def test_gaps_are_added_up_where_one_is_lost_in_noise():
+    """Noise of ±0.02 on gaps of 0.02, 5 % of them left: single shares scatter, their sum does not."""
+    noise = 0.02 * np.random.default_rng(5).standard_normal(400)
+    gap = {"floor": 1.0}
+    rows = [
+        row(truth(str(k), d_prime=10.0), verdict() | {"gap": {"held_out": gap | {"before": b, "after": a}}})
+        for k, (b, a) in enumerate(zip(1.02 + noise, 1.001 + noise, strict=True))
+    ]
+    line = next(one for one in summary(rows) if one.group == "traces, d' 10, gaps added up")
+    assert line.value == pytest.approx(0.95, abs=0.1)  # standard error of 400 gaps 5 %
+    assert line.low < 0.95 < line.high
 
 
 def test_summary_puts_cases_where_they_belong():

@@ -30,7 +30,8 @@ class Row:
         false_alarm: an effect of the catalogue was named that is not hidden.
         says_unknown: the verdict holds unknown.
         confident_wrong: such a name with probability 0.9 or more and no word of unknown.
-        closed, chi2: held-out gap closed, and what is left over the floor.
+        closed: held-out gap closed.
+        before, chi2: held-out mean squared residual over the floor, without and with what is named.
         inside, intervals: stated 90 % intervals of rightly named effects that hold the truth, of so many.
         seconds, simulations: what it cost.
     """
@@ -54,6 +55,7 @@ class Row:
     says_unknown: int
     confident_wrong: int
     closed: float
+    before: float
     chi2: float
     inside: int
     intervals: int
@@ -137,7 +139,8 @@ def _row(truth, verdict):
             UNKNOWN not in named and any(probabilities.get(n, 0.0) >= CONFIDENT for n in wrong)
         ),
         closed=_number(held_out.get("closed")),
-        chi2=_over_floor(held_out),
+        before=_over_floor(held_out, "before"),
+        chi2=_over_floor(held_out, "after"),
         inside=inside,
         intervals=intervals,
         seconds=_number((verdict.get("timing_s") or {}).get("total")),
@@ -155,9 +158,9 @@ def _number(value):
     return math.nan if value is None else float(value)
 
 
-def _over_floor(gap):
-    after, floor = _number(gap.get("after")), _number(gap.get("floor"))
-    return after / floor if floor else math.nan
+def _over_floor(gap, when):
+    residual, floor = _number(gap.get(when)), _number(gap.get("floor"))
+    return residual / floor if floor else math.nan
 
 
 def _class_level(effects, named, confusable):

@@ -38,6 +38,23 @@ def quantile(values, level: float) -> tuple[int, float, float, float]:
     return n, float(np.quantile(values, level)), float(values[below]), float(values[min(above, n - 1)])
 
 
+def ratio_of_sums(upper: np.ndarray, lower: np.ndarray) -> tuple[float, float, float]:
+    """Σ upper / Σ lower over cases (n,), with its interval from resampled cases (scipy.stats.bootstrap)."""
+    if len(lower) < 2:
+        return (float(upper.sum() / lower.sum()) if len(lower) else math.nan, math.nan, math.nan)
+    found = stats.bootstrap(
+        (upper, lower),
+        lambda a, b, axis: a.sum(axis=axis) / b.sum(axis=axis),
+        paired=True,
+        vectorized=True,
+        confidence_level=CONFIDENCE,
+        method="percentile",
+        rng=np.random.default_rng(np.random.SeedSequence(20061)),
+    )
+    interval = found.confidence_interval
+    return float(upper.sum() / lower.sum()), float(interval.low), float(interval.high)
+
+
 def strength_bin(row: Row) -> float:
     """The study's strength that is nearest to the d′ reached, on a logarithmic scale; 0 below 4."""
     return bin_of(row.reached)
