@@ -6,11 +6,12 @@ followed, and all pairs of the nominal screen, whose joint gains are algebra. On
 share one effect with it are tried as well.
 """
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
 
-from sonicvacuum.discover import directions, screen, secants, singles
+from sonicvacuum.discover import directions, places, screen, secants, singles
 from sonicvacuum.discover.evidence import Candidate, log_bayes
 from sonicvacuum.discover.forward import Forward
 from sonicvacuum.discover.hypothesis import Component, Hypothesis, is_law, variants
@@ -20,8 +21,8 @@ from sonicvacuum.effects import Setup, effect
 # Singles that pairs start from.
 BEAM = 4
 # Pairs refitted from the nominal screen, from single fits, and in each round of exchanges.
-LINEAR, BESIDE, EXCHANGED, ROUNDS = 3, 3, 3, 2
-# Pairs whose predicted gain is this far behind the best are not tried as exchanges.
+LINEAR, BESIDE, EXCHANGED, ROUNDS = 3, 3, 4, 2
+# Pairs this far behind the best one are not followed along the chain.
 BEHIND = 30.0
 ITERATIONS = 12
 # Signatures closer to parallel than this span no plane.
@@ -70,16 +71,39 @@ def search(forward: Forward, null: Fit, scores: screen.Screen, candidates: list[
         if best is None:
             break
         near = [s for part in (seen, asked) for s in _near(part, best)]
-        _refit(forward, null, setup, _best(near, found, EXCHANGED), found)
+        _refit(forward, null, setup, _best(near, {}, EXCHANGED), found)
         if max(found.values(), key=lambda p: p.log_bayes) is best:
             break
     return sorted(found.values(), key=lambda p: -p.log_bayes)
 
 
 def _near(starts, best: Pair):
-    """Starts of pairs that share an effect with the best pair and are not far behind the best."""
-    least = max((s.gain for s in starts), default=0.0) - BEHIND
-    return [s for s in starts if s.gain > least and len(s.effects & set(best.effects)) == 1]
+    """Starts of pairs that share an effect with the best pair, also with that effect as it is there.
+
+    Alone an effect may have been fitted at another place and strength than it takes beside a second one.
+    """
+    place = dict(zip(best.effects, (c.place or 0 for c in best.fit.hypothesis.components), strict=True))
+    own = dict(zip(best.effects, _columns(best.fit.hypothesis), strict=True))
+    for s in starts:
+        shared = s.effects & set(best.effects)
+        if len(shared) != 1:
+            continue
+        (name,) = shared
+        k = s.hypothesis.ids.index(name)
+        u, places, columns = s.u.copy(), s.places.copy(), _columns(s.hypothesis)[k]
+        values = best.fit.u[own[name]]
+        if len(values) != columns.stop - columns.start:
+            continue
+        u[:, columns], places[:, k] = values, place[name]
+        nu = np.broadcast_to(best.fit.nu, (len(u), len(best.fit.nu)))
+        both = [np.concatenate(pair) for pair in ((s.u, u), (s.nu, nu), (s.places, places))]
+        yield Start(s.gain, s.hypothesis, *both)
+
+
+def _columns(hypothesis):
+    """Columns of the coordinates of each effect."""
+    ends = np.cumsum([0, *(len(c.free) for c in hypothesis.components)])
+    return [slice(*ab) for ab in itertools.pairwise(ends)]
 
 
 def _best(starts, found, most):
@@ -176,9 +200,14 @@ def _refit(forward, null: Fit, setup: Setup, starts: list[Start], found: dict[fr
     for s in starts:
         one = fit(forward, s.hypothesis, s.u, s.nu, s.places, keep=3, iterations=ITERATIONS)
         one = one if one.settled else polish(forward, one, ITERATIONS)
+        least = min((p.fit.objective for p in found.values()), default=np.inf)
+        if places.placed(one) and one.objective < least + BEHIND:
+            one = places.settled(forward, one, setup)
         if np.isfinite(one.objective):
             gain = null.objective - one.objective
             names = s.hypothesis.ids
+            if s.effects in found and found[s.effects].gain >= gain:
+                continue
             found[s.effects] = Pair(names, one, gain, log_bayes(one, gain) - _places(names, setup))
 
 

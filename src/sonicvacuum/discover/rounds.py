@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from sonicvacuum.discover import directions, evidence, heldout, pairs, screen, singles, unknown
+from sonicvacuum.discover import directions, evidence, heldout, pairs, places, screen, singles, unknown
 from sonicvacuum.discover.evidence import Candidate
 from sonicvacuum.discover.experiment import Experiment
 from sonicvacuum.discover.forward import Forward
@@ -23,6 +23,8 @@ NULL_ALARM = 1e-3
 MARGIN, SHARE = 6.0, 0.05
 # Candidates whose Δχ² is this far behind the best are not followed to their minimum.
 NEAR = 15.0
+# Those with a place may be the best at a better one, if not further behind than this and clear of noise.
+ALONG, CLEAR = 60.0, 9.0
 COARSE = 6
 
 
@@ -170,14 +172,26 @@ def significant(candidate: Candidate, threshold: float) -> bool:
 
 
 def _polished(forward, null, found):
-    """The leading candidates followed to their minimum."""
+    """The leading candidates followed to their minimum, along the chain too."""
     result = []
+    setup = singles.setup_of(forward)
     least = max((c.gain for c in found), default=0.0) - NEAR
     for c in found:
         if c.gain > least and not c.fit.settled:
             better = polish(forward, c.fit)
-            more = null.objective - better.objective - c.gain
             flags = tuple(f for f in c.flags if f != "unsettled") + ("unsettled",) * (not better.settled)
-            c = Candidate(c.effect, better, c.gain + more, c.log_bayes + 0.5 * more, c.places, flags)
+            c = _moved(c, null, better, c.places, flags)
         result.append(c)
+    least = max((c.gain for c in result), default=0.0) - ALONG
+    for k, c in enumerate(result):
+        if c.gain > least and c.gain > CLEAR and places.placed(c.fit):
+            better = places.settled(forward, c.fit, setup)
+            if better is not c.fit:
+                result[k] = _moved(c, null, better, ((better.hypothesis.components[0].place, 1.0),), c.flags)
     return sorted(result, key=lambda c: -c.log_bayes)
+
+
+def _moved(c, null, better, where, flags):
+    """A candidate whose fit has been improved."""
+    more = null.objective - better.objective - c.gain
+    return Candidate(c.effect, better, c.gain + more, c.log_bayes + 0.5 * more, where, flags)

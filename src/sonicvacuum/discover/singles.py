@@ -43,16 +43,25 @@ def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
     nonlinear = largest > NONLINEAR
     # Few scalars with large errors leave room for large departures, which slopes do not foresee.
     loose = nonlinear or (not traced and largest > CLEAR)
-    enough = -np.inf if loose else largest - HOPELESS
     steps = FIRST if loose else ITERATIONS
-    found = []
-    for effect in (e for e in CATALOGUE if e.id not in forward.experiment.excluded):
-        placed = secants.applies(effect)
-        far = effect.id in best and abs(scores.strength[best[effect.id]]) > FAR
-        grid = nonlinear or (loose and far and not effect.places)
-        if loose or (placed and largest > CLEAR) or gains.get(effect.id, 0.0) > max(enough, 0.5):
+    left = [e for e in CATALOGUE if e.id not in forward.experiment.excluded]
+    found: list[Candidate] = []
+    best_gain = largest
+    while left:
+        # Places and strengths may not keep what slopes promise: others are measured against what was found.
+        enough = -np.inf if loose else max(best_gain - HOPELESS, 0.5)
+        always = [e for e in left if secants.applies(e) and largest > CLEAR]
+        chosen = [e for e in left if e in always or gains.get(e.id, 0.0 if loose else -np.inf) > enough]
+        for effect in chosen:
+            far = effect.id in best and abs(scores.strength[best[effect.id]]) > FAR
+            grid = nonlinear or (loose and far and not effect.places)
             plan = Plan(grid, steps, COARSE if grid and traced else 0)
             found.append(candidate(forward, null, scores, effect, plan))
+        left = [e for e in left if e not in chosen]
+        achieved = max((c.gain for c in found if c is not None), default=0.0)
+        if not chosen or achieved >= best_gain:
+            break
+        best_gain = achieved
     found = [c for c in found if c is not None]
     return sorted(found, key=lambda c: -c.log_bayes)
 

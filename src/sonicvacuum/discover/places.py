@@ -1,0 +1,75 @@
+"""The last step of finding where an effect sits: from bead to bead, or contact to contact, while χ² falls.
+
+A screen of slopes ranks places by what a small departure would do. Behind the pulse contacts stand open, so
+that a departure large enough to be seen acts a little otherwise: the best place may be the next but one, with
+another strength.
+"""
+
+import itertools
+
+import numpy as np
+
+from sonicvacuum.discover.forward import Forward
+from sonicvacuum.discover.refit import Fit, fit
+from sonicvacuum.effects import Setup
+
+# Places along the chain; a gauge is next to nothing.
+ALONG = ("bead", "contact")
+REACH = (-2, -1, 1, 2)
+# Strengths tried there, over the fitted one, and how many starts are followed.
+FACTORS = (0.6, 1.0, 1.6)
+KEEP = 6
+HOPS, ITERATIONS = 8, 6
+# In χ², less is no reason to move.
+WORTH = 0.5
+
+
+def placed(one: Fit) -> bool:
+    """Whether some effect of a fit sits somewhere along the chain."""
+    return any(c.effect.places in ALONG for c in one.hypothesis.components)
+
+
+def settled(forward: Forward, one: Fit, setup: Setup) -> Fit:
+    """The fit with each of its effects at the best place that hops of up to two beads lead to.
+
+    Args:
+        forward: the predictor.
+        one: a fit, followed to its minimum at its places.
+        setup: which knows the places.
+    """
+    for _ in range(HOPS):
+        u, places = _around(one, setup)
+        if not len(places):
+            break
+        near = fit(forward, one.hypothesis, u, one.nu[None], places, KEEP, ITERATIONS)
+        if not near.objective < one.objective - WORTH:
+            break
+        one = near
+    return one
+
+
+def _around(one, setup):
+    """(L, p) coordinates and (L, effects) places with one effect moved along the chain."""
+    components = one.hypothesis.components
+    now = [c.place or 0 for c in components]
+    first = np.cumsum([0, *(len(c.free) for c in components)])
+    rows, coordinates = [], []
+    for k, c in enumerate(components):
+        if c.effect.places not in ALONG:
+            continue
+        possible = c.effect.candidates(setup)
+        at = possible.index(c.place)
+        for step, factor in itertools.product(REACH, FACTORS):
+            if 0 <= at + step < len(possible):
+                rows.append([*now[:k], possible[at + step], *now[k + 1 :]])
+                u = one.u.copy()
+                u[first[k]] = _stronger(c.free[0], u[first[k]], factor)
+                coordinates.append(u)
+    shape = (len(rows), len(components))
+    return np.array(coordinates).reshape(len(rows), -1), np.array(rows, dtype=int).reshape(shape)
+
+
+def _stronger(coordinate, u, factor):
+    """The coordinate of a departure multiplied by a factor, within the bounds of the search."""
+    moved = u + np.log(factor) if coordinate.kind == "log" else u * factor
+    return np.clip(moved, coordinate.low, coordinate.high)
