@@ -66,7 +66,7 @@ def _around(one, setup):
                 u[first[k]] = _stronger(c.free[0], u[first[k]], factor)
                 coordinates.append(u)
     shape = (len(rows), len(components))
-    return np.array(coordinates).reshape(len(rows), -1), np.array(rows, dtype=int).reshape(shape)
+    return np.array(coordinates).reshape(len(rows), len(one.u)), np.array(rows, dtype=int).reshape(shape)
 
 
 def _stronger(coordinate, u, factor):
