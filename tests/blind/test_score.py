@@ -118,7 +118,7 @@ def test_gaps_are_added_up_where_one_is_lost_in_noise():
         row(truth(str(k), d_prime=10.0), verdict() | {"gap": {"held_out": gap | {"before": b, "after": a}}})
         for k, (b, a) in enumerate(zip(1.02 + noise, 1.001 + noise, strict=True))
     ]
-    line = next(one for one in summary(rows) if one.group == "traces, d' 10, gaps added up")
+    line = next(one for one in summary(rows) if one.group == "white noise, d' 10, gaps added up")
     assert line.value == pytest.approx(0.95, abs=0.1)  # standard error of 400 gaps 5 %
     assert line.low < 0.95 < line.high
 

@@ -22,7 +22,7 @@ def summary(rows: Iterable[Row]) -> list[Line]:
         *_outside(of["foreign"]),
         *_pairs(of["pair"]),
         *_gaps([r for r in strong if r.exact]),
-        *_gaps_together([r for r in of["single"] if r.design == "traces" and r.exact]),
+        *_gaps_together([r for r in of["single"] if r.design == "traces" and r.noise == "white" and r.exact]),
         _calibration([r for r in rows if r.kind != "pair"]),
         _intervals(rows),
         *_seconds(rows),
@@ -73,13 +73,14 @@ def _gaps(rows):
 
 def _gaps_together(rows):
     """A gap of d′² in N samples is lost in their noise, √(2 N), where d′ is 10: the share closed of one case
-    may be anything, and so may the median. Gaps added up are not.
+    may be anything, and so may the median. Gaps added up are not, where the floor is known to be 1: with
+    white noise.
     """
     for strength in (10.0, 20.0):
         chosen = [r for r in rows if strength_bin(r) == strength and not math.isnan(r.before)]
         gaps = np.array([(r.before - 1.0, r.chi2 - 1.0) for r in chosen]).reshape(-1, 2)
         found = ratio_of_sums(gaps[:, 0] - gaps[:, 1], gaps[:, 0])
-        group = f"traces, d' {strength:g}, gaps added up"
+        group = f"white noise, d' {strength:g}, gaps added up"
         yield Line("held-out gap closed", group, len(chosen), *found, math.nan, math.nan, "")
 
 
