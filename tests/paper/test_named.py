@@ -52,6 +52,15 @@ def test_the_same_chain_takes_all_of_a_model(base):
     assert chain.masses(20)[13, 0] == pytest.approx(1.2 * chain.masses(20)[12, 0], rel=1e-12)  # rounding
 
 
+def test_a_dynamic_modulus_is_the_modulus_of_the_card(base):
+    found = extended(base, model(1.1, dynamic_modulus={"modulus_ratio": 3.0}))
+    assert found.effects == {}
+    assert found.bead.surface.modulus_Pa == pytest.approx(3.3 * base.bead.surface.modulus_Pa, rel=1e-15)
+    # The effect on the handbook's chain and the card say the same.
+    one, other = study.set_up(found).chain, study.set_up(extended(base, model(3.3))).chain
+    assert one.bead.modulus[0] == pytest.approx(other.bead.modulus[0], rel=1e-15)  # rounding
+
+
 def test_a_wall_of_the_beads_material_is_stiffened_along(cases):
     steel = config.card(cases, "fig3b", "named")
     assert extended(steel, model(1.1)).wall.modulus_Pa == pytest.approx(1.1 * 193e9, rel=1e-15)  # rounding

@@ -30,6 +30,9 @@ OF_MATERIAL = (
 def extended(card: Card, model: Model, wanted: ModelBlock | None = None) -> Card:
     """The card with the model's effects and with its modulus of the beads' contact material.
 
+    A dynamic modulus becomes the card's modulus, which is all that the effect is: theory and audit of the
+    assumptions, which know no effects, then speak of the same material.
+
     Args:
         card: of the nominal model.
         model: as `sonicvacuum.discover.compare.read_model` gives it.
@@ -43,7 +46,8 @@ def extended(card: Card, model: Model, wanted: ModelBlock | None = None) -> Card
         if wanted.losses == "left-out" and effect(name).dissipative:
             continue
         effects[name] = _places_whole(name, parameters)
-    return _stiffened(replace(card, effects=effects), model.modulus_ratio)
+    ratio = model.modulus_ratio * effects.pop("dynamic-modulus", {}).get("modulus_ratio", 1.0)
+    return _stiffened(replace(card, effects=effects), ratio)
 
 
 def _places_whole(name, parameters):
