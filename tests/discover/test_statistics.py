@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 
 from sonicvacuum.discover import evidence, gauges, heldout
 from sonicvacuum.discover.experiment import lag_one
-from sonicvacuum.discover.hypothesis import Hypothesis
+from sonicvacuum.discover.hypothesis import Component, Hypothesis, variants
 from sonicvacuum.discover.normal import Normal
 from sonicvacuum.discover.parameters import coordinate
 from sonicvacuum.discover.refit import Fit
-from sonicvacuum.effects import CATALOGUE
+from sonicvacuum.effects import CATALOGUE, effect
 
 
 @given(st.floats(-3e-6, 3e-6))
@@ -73,6 +73,25 @@ def test_leaving_a_run_out_is_what_a_fit_without_it_leaves():
     expected = np.sum((data[0] - columns[0] @ solved) ** 2)
     found = heldout.held_out(Fit(Hypothesis(), normal), np.array([40, 40, 40]))
     assert found.chi2[0] == pytest.approx(expected, rel=1e-9)  # algebra, rounding only
+
+
+def test_a_run_that_alone_shows_an_effect_is_not_predicted_by_the_others(setup):
+    """Slope 10 in the first run, 0.1 in the second: without the first, the departure is below its error."""
+    drag = effect("viscous-drag")
+    free = variants(drag, setup)[0]
+    hypothesis = Hypothesis((Component(drag, free),))
+    slopes = np.array([10.0, 0.1])
+    chi2 = np.array([[50.0], [40.0]])
+    normal = Normal(
+        np.array([[0.0]]),
+        np.zeros((1, 0)),
+        chi2,
+        np.zeros((2, 1, 1)),
+        np.square(slopes)[:, None, None, None],
+    )
+    nominal = heldout.HeldOut(np.array([150.0, 40.01]), np.array([50, 40]))
+    found = heldout.held_out(Fit(hypothesis, normal), nominal.size, nominal)
+    assert found.chi2 == pytest.approx([150.0, 40.0], abs=1e-9)  # the nominal model's, the fit's own
 
 
 def test_marquardt_and_linear_algebra_agree_on_the_objective():

@@ -1,9 +1,9 @@
 """Leave one run out: what a model fitted to the other runs leaves of the one it has not seen.
 
 In the linearised model at the fit to all runs this is algebra: the run's share is taken out of the normal
-    equations,
-the parameters move, and on the run left out only the nuisances may follow, held by what the other runs say
-of them.
+equations, the parameters move, and on the run left out only the nuisances may follow, held by what the other
+runs say of them. Where the others alone do not show an effect, nothing has been learned from them: there the
+nominal model predicts.
 """
 
 from dataclasses import dataclass
@@ -27,10 +27,36 @@ class HeldOut:
         return float(self.chi2.sum() / self.size.sum())
 
 
-def held_out(fit: Fit, sizes: np.ndarray) -> HeldOut:
-    """Every run of a fit left out once; `sizes` (R,) are numbers of data."""
+def held_out(fit: Fit, sizes: np.ndarray, nominal: HeldOut | None = None) -> HeldOut:
+    """Every run of a fit left out once; `sizes` (R,) are numbers of data, `nominal` what the nominal model
+    leaves, for runs without which no effect is seen.
+    """
     chi2 = np.array([_without(fit.normal, run) for run in range(len(sizes))])
+    if nominal is not None:
+        chi2 = np.where([_seen_without(fit, run) for run in range(len(sizes))], chi2, nominal.chi2)
     return HeldOut(chi2, np.asarray(sizes))
+
+
+def _seen_without(fit: Fit, run: int) -> bool:
+    """Whether the other runs show every effect of a fit, by a departure above its standard error."""
+    _, hessian = fit.normal.total()
+    free = fit.normal.free
+    others = hessian[0] - fit.normal.hessian[run, 0]
+    cross, rest = others[:free, free:], others[free:, free:]
+    # What the others say of the parameters, nuisances fitted (the complement of Schur).
+    known = np.diag(others[:free, :free] - cross @ np.linalg.solve(rest, cross.T)) if free else np.zeros(0)
+    first = 0
+    for component in fit.hypothesis.components:
+        here = range(first, first + len(component.free))
+        first += len(component.free)
+        sizes = [
+            known[k] * (1.0 if c.kind in ("log", "inverse") else fit.u[k] ** 2)
+            for k, c in zip(here, component.free, strict=True)
+            if c.parameter.switches
+        ]
+        if max(sizes, default=0.0) < 1.0:
+            return False
+    return True
 
 
 def _without(normal: Normal, run: int) -> float:
@@ -53,8 +79,7 @@ def predictive(fit: Fit) -> np.ndarray:
     """(R,) log predictive density of each run given the others, up to a constant of the data.
 
     Unlike the χ² left, it allows for what the other runs leave open: log p(y_r | y_-r) in the linearised
-        model,
-    parameters having a wide Gaussian prior (`_width`).
+    model, parameters having a wide Gaussian prior (`_width`).
     """
     normal = fit.normal
     gradient, hessian = (part[0] for part in normal.total())

@@ -136,8 +136,7 @@ def descend(forward, hypothesis, now: Normal, places, iterations, precise=False)
     """Follow all lanes to their minimum; the normal equations there and which have settled.
 
     While a lane is far from the data, its nuisances are held by as much more as its χ² per datum exceeds 1:
-        they must
-    not do the work of the effect.
+    they must not do the work of the effect.
     """
     lanes = len(now.u)
     now = now.take(np.arange(lanes))

@@ -55,7 +55,7 @@ def discover(*records: Record, threads: int = 1) -> Result:
     limits = degenerate.limits(scores, setup)
     alike = degenerate.confusable(found.named, found.candidates, found.pairs)
     before = heldout.held_out(found.null, found.sizes)
-    left = heldout.held_out(final, found.sizes)
+    left = heldout.held_out(final, found.sizes, before)
     clock.mark("limits")
     proposal = next_experiment.propose(found, alike)
     clock.mark("next experiment")
@@ -166,7 +166,7 @@ def gap_rows(result: Result):
     found = result.found
     e = found.forward.experiment
     before = heldout.held_out(found.null, found.sizes)
-    after = heldout.held_out(found.final, found.sizes)
+    after = heldout.held_out(found.final, found.sizes, before)
     rows = []
     for k, run in enumerate(e.runs):
         size = found.sizes[k]

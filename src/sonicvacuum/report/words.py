@@ -178,6 +178,8 @@ def gap(verdict: Verdict) -> str:
     )
     if held_out is None:
         return f"{text} There is one run only, so that none could be held out."
+    if held_out.after == held_out.before:
+        return f"{text} Runs left out of the fit are predicted no better: the others alone do not show it."
     return (
         f"{text} On runs left out of the fit it falls from {held_out.before:.4g} to {held_out.after:.4g}"
         f"{_closed(held_out)}."
