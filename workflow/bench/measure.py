@@ -11,6 +11,7 @@ slows all of them alike; reported are medians. The run fails if a code disagrees
 import argparse
 import csv
 import os
+import shutil
 import statistics
 import subprocess
 import sys
@@ -219,13 +220,48 @@ simulate(p.chain, [p.contact], p.duration, INTERVAL)
 # Of this process alone: what `resource` reports includes the parent before it became another program.
 print(next(int(line.split()[1]) for line in open("/proc/self/status") if line.startswith("VmHWM")) / 1024)
 """
+# Says when it is warm, starts when told.
+TIMED = """
+import sys, time
+sys.path.insert(0, "workflow/bench")
+from measure import engine, tenfold
+run = engine(tenfold())
+run()
+print("warm", flush=True)
+input()
+begin = time.perf_counter()
+for _ in range(5):
+    run()
+print(time.perf_counter() - begin)
+"""
+
+
+def tenfold():
+    """P3 with ten times the chains, so that starting threads does not count."""
+    problem = PROBLEMS["P3"]
+    return replace(problem, moduli=np.tile(problem.moduli, 10))
+
+
+def timed_processes(count):
+    """The longest of the times in s that so many processes need for the same work, side by side."""
+    command = [sys.executable, "-c", TIMED]
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
+    running = [subprocess.Popen(command, **pipes) for _ in range(count)]
+    for one in running:
+        one.stdout.readline()
+    for one in running:
+        one.stdin.write("\n")
+        one.stdin.flush()
+    return max(float(one.communicate()[0]) for one in running)
 
 
 def measure_start(folder):
     """Seconds from the start of a process to its first result: with an empty and with a warm cache."""
     cold, warm = [], []
     for k in range(3):
-        environment = os.environ | {"SONICVACUUM_CACHE_DIR": str(folder / f"start{k}")}
+        cache = folder / f"start{k}"
+        shutil.rmtree(cache, ignore_errors=True)  # of an earlier benchmark
+        environment = os.environ | {"SONICVACUUM_CACHE_DIR": str(cache)}
         for times in (cold, warm, warm):
             begin = time.perf_counter()
             subprocess.run([sys.executable, "-c", START], check=True, env=environment)
@@ -235,17 +271,19 @@ def measure_start(folder):
 
 def measure_scaling(folder):
     """Rows of bench_scaling.csv: what, value, unit."""
-    problem = PROBLEMS["P3"]
-    # Ten times the chains, so that starting threads does not count.
-    large = replace(problem, moduli=np.tile(problem.moduli, 10))
+    large = tenfold()
     found = take_turns({threads: engine(large, threads=threads) for threads in (1, 2)})
     same = bool(np.array_equal(found[1][1], found[2][1]))
+    alone, together = (statistics.median(timed_processes(n) for _ in range(3)) for n in (1, 2))
+    long = take_turns({name: engine(PROBLEMS[name]) for name in ("P4", "P5")})
     cold, warm = measure_start(folder)
     rows = [
         *(
             [f"composed stepper over one without choices, {m.name}", effects_cost.composed_over_bare(m), ""]
             for m in (VERLET, BLANES_MOAN)
         ),
+        ["P5 over P4 in turns, default", long["P5"][0] / long["P4"][0], ""],
+        ["speed-up of two processes", 2.0 * alone / together, ""],
         ["speed-up of two threads", found[1][0] / found[2][0], ""],
         ["same bytes with two threads", same, ""],
         ["first result, empty cache", cold, "s"],
