@@ -95,13 +95,20 @@ def markdown(summary: pd.DataFrame, baselines: pd.DataFrame) -> str:
     met, missed = (sum(row[-1] == word for row in table[1]) for word in ("met", "missed"))
     return "\n\n".join(
         (
-            f"Of {met + missed} goals set beforehand {met} are met, {missed} missed; the hidden "
-            "effects were made apart from the engine (95 % intervals; what an ideal rule reaches beside):",
+            f"{cases(summary)} records. Of {met + missed} goals set beforehand {met} are met, {missed} "
+            "missed; the hidden effects were made apart from the engine (95 % intervals; what an ideal rule reaches "
+            "beside):",
             as_markdown(table),
             "The same records given to simpler rules (shares in per cent, 95 % intervals):",
             as_markdown(rivals(baselines)),
         )
     )
+
+
+def cases(summary: pd.DataFrame) -> int:
+    """Number of records of a study: every one has been timed."""
+    timed = (summary["measure"] == "seconds per record") & summary["group"].str.endswith("median")
+    return int(summary.loc[timed, "count"].astype(int).sum())
 
 
 def html(summary: pd.DataFrame, baselines: pd.DataFrame) -> str:
