@@ -96,8 +96,8 @@ def markdown(summary: pd.DataFrame, baselines: pd.DataFrame) -> str:
     return "\n\n".join(
         (
             f"{cases(summary)} records. Of {met + missed} goals set beforehand {met} are met, {missed} "
-            "missed; the hidden effects were made apart from the engine (95 % intervals; what an ideal rule reaches "
-            "beside):",
+            "missed; the hidden effects were made apart from the engine (95 % intervals; what an ideal rule "
+            "reaches beside):",
             as_markdown(table),
             "The same records given to simpler rules (shares in per cent, 95 % intervals):",
             as_markdown(rivals(baselines)),
