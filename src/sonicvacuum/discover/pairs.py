@@ -66,38 +66,47 @@ def search(forward: Forward, null: Fit, scores: screen.Screen, candidates: list[
     found: dict[frozenset, Pair] = {}
     _refit(forward, null, setup, _best(asked, found, BESIDE), found)
     _refit(forward, null, setup, _best(seen, found, LINEAR), found)
+    tried: set[tuple] = set()
     for _ in range(ROUNDS):
         best = max(found.values(), key=lambda p: p.log_bayes, default=None)
         if best is None:
             break
-        near = [s for part in (seen, asked) for s in _near(part, best)]
-        _refit(forward, null, setup, _best(near, {}, EXCHANGED), found)
+        near = [s for s in (*seen, *asked) if len(s.effects & set(best.effects)) == 1]
+        _refit(forward, null, setup, _best(near, found, EXCHANGED), found)
+        borrowed = [b for s in near if (b := _borrowed(s, best)) and _key(b, best) not in tried]
+        chosen = _best(borrowed, {}, EXCHANGED)
+        tried |= {_key(b, best) for b in chosen}
+        _refit(forward, null, setup, chosen, found)
         if max(found.values(), key=lambda p: p.log_bayes) is best:
             break
     return sorted(found.values(), key=lambda p: -p.log_bayes)
 
 
-def _near(starts, best: Pair):
-    """Starts of pairs that share an effect with the best pair, also with that effect as it is there.
+def _key(start: Start, best: Pair) -> tuple:
+    """What a borrowed start shares with the best pair, coarsely: much the same need not be fitted twice."""
+    (name,) = start.effects & set(best.effects)
+    k = start.hypothesis.ids.index(name)
+    values = start.u[0, _columns(start.hypothesis)[k]]
+    return (start.hypothesis.ids, name, int(start.places[0, k]), *np.round(values, 2).tolist())
+
+
+def _borrowed(start: Start, best: Pair) -> Start | None:
+    """The start with the effect that it shares with the best pair as it is there; None where that has other
+    parameters.
 
     Alone an effect may have been fitted at another place and strength than it takes beside a second one.
     """
-    place = dict(zip(best.effects, (c.place or 0 for c in best.fit.hypothesis.components), strict=True))
-    own = dict(zip(best.effects, _columns(best.fit.hypothesis), strict=True))
-    for s in starts:
-        shared = s.effects & set(best.effects)
-        if len(shared) != 1:
-            continue
-        (name,) = shared
-        k = s.hypothesis.ids.index(name)
-        u, places, columns = s.u.copy(), s.places.copy(), _columns(s.hypothesis)[k]
-        values = best.fit.u[own[name]]
-        if len(values) != columns.stop - columns.start:
-            continue
-        u[:, columns], places[:, k] = values, place[name]
-        nu = np.broadcast_to(best.fit.nu, (len(u), len(best.fit.nu)))
-        both = [np.concatenate(pair) for pair in ((s.u, u), (s.nu, nu), (s.places, places))]
-        yield Start(s.gain, s.hypothesis, *both)
+    (name,) = start.effects & set(best.effects)
+    k, own = start.hypothesis.ids.index(name), best.effects.index(name)
+    columns, values = _columns(start.hypothesis)[k], best.fit.u[_columns(best.fit.hypothesis)[own]]
+    if len(values) != columns.stop - columns.start:
+        return None
+    u, places = start.u.copy(), start.places.copy()
+    u[:, columns], places[:, k] = values, best.fit.hypothesis.components[own].place or 0
+    _, rows = np.unique(np.column_stack([u, places]), axis=0, return_index=True)
+    u, places = np.tile(u[rows], (2, 1)), np.tile(places[rows], (2, 1))
+    nu = np.concatenate([start.nu[rows], np.broadcast_to(best.fit.nu, start.nu[rows].shape)])
+    return Start(start.gain, start.hypothesis, u, nu, places)
 
 
 def _columns(hypothesis):

@@ -16,9 +16,10 @@ from sonicvacuum.effects import Setup
 # Places along the chain; a gauge is next to nothing.
 ALONG = ("bead", "contact")
 REACH = (-2, -1, 1, 2)
-# Strengths tried there, over the fitted one, and how many starts are followed.
-FACTORS = (0.6, 1.0, 1.6)
-KEEP = 6
+# Strengths tried there, over the fitted one: alike, or the other way round (a bead too heavy is much like the
+# next one too light). Of each kind so many starts are followed, as the second look bad at first.
+FACTORS = ((0.6, 1.0, 1.6), (-1.0,))
+KEEP = 4
 HOPS, ITERATIONS = 8, 6
 # In χ², less is no reason to move.
 WORTH = 0.5
@@ -38,17 +39,19 @@ def settled(forward: Forward, one: Fit, setup: Setup) -> Fit:
         setup: which knows the places.
     """
     for _ in range(HOPS):
-        u, places = _around(one, setup)
-        if not len(places):
+        near = [
+            fit(forward, one.hypothesis, u, one.nu[None], places, KEEP, ITERATIONS)
+            for u, places in (_around(one, setup, factors) for factors in FACTORS)
+            if len(places)
+        ]
+        best = min(near, key=lambda f: f.objective, default=None)
+        if best is None or not best.objective < one.objective - WORTH:
             break
-        near = fit(forward, one.hypothesis, u, one.nu[None], places, KEEP, ITERATIONS)
-        if not near.objective < one.objective - WORTH:
-            break
-        one = near
+        one = best
     return one
 
 
-def _around(one, setup):
+def _around(one, setup, factors):
     """(L, p) coordinates and (L, effects) places with one effect moved along the chain."""
     components = one.hypothesis.components
     now = [c.place or 0 for c in components]
@@ -59,8 +62,8 @@ def _around(one, setup):
             continue
         possible = c.effect.candidates(setup)
         at = possible.index(c.place)
-        for step, factor in itertools.product(REACH, FACTORS):
-            if 0 <= at + step < len(possible):
+        for step, factor in itertools.product(REACH, factors):
+            if 0 <= at + step < len(possible) and (factor > 0.0 or c.free[0].two_sided):
                 rows.append([*now[:k], possible[at + step], *now[k + 1 :]])
                 u = one.u.copy()
                 u[first[k]] = _stronger(c.free[0], u[first[k]], factor)

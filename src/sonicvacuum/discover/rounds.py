@@ -23,8 +23,8 @@ NULL_ALARM = 1e-3
 MARGIN, SHARE = 6.0, 0.05
 # Candidates whose Δχ² is this far behind the best are not followed to their minimum.
 NEAR = 15.0
-# Those with a place may be the best at a better one, if not further behind than this and clear of noise.
-ALONG, CLEAR = 60.0, 9.0
+# Those with a place may be the best at a better one, if they are not further behind than this.
+ALONG = 60.0
 COARSE = 6
 
 
@@ -85,7 +85,9 @@ def investigate(experiment: Experiment, threads: int = 1) -> Investigation:
     )
     threshold = scores.threshold(FALSE_ALARM)
     found = _polished(forward, null, singles.fit_all(forward, null, scores))
-    if found and significant(found[0], threshold):
+    if found and significant(found[0], threshold) and _likelier_than_none(found):
+        # Only now: other places are more tries, for which the threshold does not allow.
+        found = _along(forward, null, found)
         case = _Case(forward, null, scores, found)
         decision = case.decide()
     else:
@@ -171,10 +173,15 @@ def significant(candidate: Candidate, threshold: float) -> bool:
     return candidate.gain > threshold and candidate.log_bayes / np.log(10.0) >= LEAST_LOG10_BAYES
 
 
+def _likelier_than_none(found: list[Candidate]) -> bool:
+    """Whether the best effect is more probable than none, unknown left aside."""
+    odds = evidence.probabilities(found, 1.0)
+    return odds[found[0].effect] > odds["none"]
+
+
 def _polished(forward, null, found):
-    """The leading candidates followed to their minimum, along the chain too."""
+    """The leading candidates followed to their minimum."""
     result = []
-    setup = singles.setup_of(forward)
     least = max((c.gain for c in found), default=0.0) - NEAR
     for c in found:
         if c.gain > least and not c.fit.settled:
@@ -182,9 +189,16 @@ def _polished(forward, null, found):
             flags = tuple(f for f in c.flags if f != "unsettled") + ("unsettled",) * (not better.settled)
             c = _moved(c, null, better, c.places, flags)
         result.append(c)
-    least = max((c.gain for c in result), default=0.0) - ALONG
-    for k, c in enumerate(result):
-        if c.gain > least and c.gain > CLEAR and places.placed(c.fit):
+    return sorted(result, key=lambda c: -c.log_bayes)
+
+
+def _along(forward, null, found):
+    """The leading candidates with a place followed along the chain."""
+    result = list(found)
+    setup = singles.setup_of(forward)
+    least = max(c.gain for c in found) - ALONG
+    for k, c in enumerate(found):
+        if c.gain > least and places.placed(c.fit):
             better = places.settled(forward, c.fit, setup)
             if better is not c.fit:
                 result[k] = _moved(c, null, better, ((better.hypothesis.components[0].place, 1.0),), c.flags)

@@ -17,8 +17,9 @@ from sonicvacuum.effects import CATALOGUE, Effect, Setup
 # Beyond this misfit of the nominal model (in χ²) its slopes may point the wrong way: whole ranges are
 # searched.
 NONLINEAR = 1500.0
-# Effects whose predicted gain is this far behind the best are not refitted while slopes can be trusted.
-HOPELESS = 30.0
+# Effects whose predicted gain is this far behind the best, beyond the share by which slopes err, are not
+# refitted while slopes can be trusted.
+HOPELESS, ERR = 20.0, 0.2
 PLACES_TRIED = 5
 # Below this largest z² nothing can be named, and slopes suffice.
 CLEAR = 9.0
@@ -49,7 +50,7 @@ def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
     best_gain = largest
     while left:
         # Places and strengths may not keep what slopes promise: others are measured against what was found.
-        enough = -np.inf if loose else max(best_gain - HOPELESS, 0.5)
+        enough = -np.inf if loose else max((1.0 - ERR) * best_gain - HOPELESS, 0.5)
         always = [e for e in left if secants.applies(e) and largest > CLEAR]
         chosen = [e for e in left if e in always or gains.get(e.id, 0.0 if loose else -np.inf) > enough]
         for effect in chosen:
@@ -183,6 +184,9 @@ def _start(c, direction, shape, size):
         return 1e-3 if c.kind in ("ratio", "linear") else c.low
     if c.kind in ("log", "inverse"):
         return float(np.log(max(abs(size), 1e-12)))
+    if p.name == "modulus_ratio":
+        # Its slope is that of the modulus as a nuisance, which is log-normal.
+        return float(size * p.scale / c.unit)
     if c.kind == "ratio":
         return float(np.log(max(1.0 + size * p.scale / c.unit, 0.05)))
     return size if c.two_sided or c.high > 0.0 else -abs(size)
