@@ -57,3 +57,19 @@ def test_beads_of_two_kinds_in_turn_are_outside_the_catalogue():
     assert v.named == ["unknown"]
     assert v.gap.fitted.before == v.gap.fitted.after  # nothing is added to what has no name
     assert v.probabilities["unknown"] > 0.9
+
+
+def test_a_modulus_far_from_the_handbooks_hides_no_second_effect():
+    """e times the handbook's: slopes at the handbook's value point half as far."""
+    hidden = [("dynamic-modulus", {"modulus_ratio": 2.7}), ("sensor-lowpass", {"tau_us": 8.0})]
+    v = session.discover(made(hidden, seed=11)[0]).verdict
+    assert set(v.named) == {"dynamic-modulus", "sensor-lowpass"}
+    ratio = v.parameters["dynamic-modulus"]["modulus_ratio"]
+    assert abs(ratio.value - 2.7) < 4.0 * ratio.sigma
+
+
+def test_a_defect_beside_friction_is_found_at_its_own_bead():
+    hidden = [("mass-defect", {"mass_ratio": 1.06, "bead": 6}), ("viscous-drag", {"rate_per_s": 120.0})]
+    v = session.discover(made(hidden, seed=12)[0]).verdict
+    assert set(v.named) == {"mass-defect", "viscous-drag"}
+    assert v.parameters["mass-defect"]["bead"].value == 6
