@@ -10,6 +10,7 @@ import subprocess
 import sys
 
 import pytest
+from ball import RECORD
 
 CONFIG = """\
 ledger:
@@ -38,22 +39,6 @@ cases:
     striker: {shape: flat, material: alumina, mass_g: 0.47, speed_m_s: [0.3, 0.6]}
     sensors: [{id: g2, kind: embedded, bead: 3}, {id: wall, kind: wall}]
     duration_us: 400
-"""
-# One ball on a wall, rebounding as it should: the smallest record there is.
-RECORD = """\
-format: 1
-title: Steel ball on a steel wall
-chain:
-  beads: 0
-  orientation: vertical
-  bead: {diameter_mm: 10.0, mass_g: 4.0, material: stainless-steel}
-  wall: {material: stainless-steel}
-sensors: []
-runs:
-  - id: slow
-    striker: {shape: sphere, diameter_mm: 10.0, material: stainless-steel, mass_g: 4.0, speed_m_s: 0.5}
-    observables:
-      - {quantity: restitution, value: 0.99, sigma: 0.01, unit: 1}
 """
 TARGET = "results/metrics.csv"
 ALL = {"discover": 1, "card": 4, "simulate": 4, "observe": 4, "metrics": 1}

@@ -6,23 +6,8 @@ import subprocess
 import sys
 
 import pytest
+from ball import RECORD
 
-# One ball on a wall, rebounding as it should: the smallest record there is.
-RECORD = """\
-format: 1
-title: Steel ball on a steel wall
-chain:
-  beads: 0
-  orientation: vertical
-  bead: {diameter_mm: 10.0, mass_g: 4.0, material: stainless-steel}
-  wall: {material: stainless-steel}
-sensors: []
-runs:
-  - id: slow
-    striker: {shape: sphere, diameter_mm: 10.0, material: stainless-steel, mass_g: 4.0, speed_m_s: 0.5}
-    observables:
-      - {quantity: restitution, value: 0.99, sigma: 0.01, unit: 1}
-"""
 TRUTH = {"id": "case", "kind": "single", "effects": ["hunt-crossley"], "hidden": []}
 
 

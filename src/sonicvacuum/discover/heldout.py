@@ -45,13 +45,10 @@ def _seen_without(fit: Fit, run: int) -> bool:
     cross, rest = others[:free, free:], others[free:, free:]
     # What the others say of the parameters, nuisances fitted (the complement of Schur).
     known = np.diag(others[:free, :free] - cross @ np.linalg.solve(rest, cross.T)) if free else np.zeros(0)
-    first = 0
-    for component in fit.hypothesis.components:
-        here = range(first, first + len(component.free))
-        first += len(component.free)
+    for component, own in zip(fit.hypothesis.components, fit.hypothesis.columns, strict=True):
         sizes = [
-            known[k] * (1.0 if c.kind in ("log", "inverse") else fit.u[k] ** 2)
-            for k, c in zip(here, component.free, strict=True)
+            precision * (1.0 if c.kind in ("log", "inverse") else u**2)
+            for precision, u, c in zip(known[own], fit.u[own], component.free, strict=True)
             if c.parameter.switches
         ]
         if max(sizes, default=0.0) < 1.0:

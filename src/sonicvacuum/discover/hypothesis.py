@@ -1,5 +1,6 @@
 """A hypothesis: which effects are in force, which of their parameters are free, where they sit."""
 
+import itertools
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
@@ -57,6 +58,12 @@ class Hypothesis:
         return tuple(c for component in self.components for c in component.free)
 
     @property
+    def columns(self) -> tuple[slice, ...]:
+        """Where the free parameters of each effect stand among the coordinates."""
+        ends = np.cumsum([0, *(len(c.free) for c in self.components)]).tolist()
+        return tuple(slice(*ab) for ab in itertools.pairwise(ends))
+
+    @property
     def ids(self) -> tuple[str, ...]:
         """Ids of the effects in order."""
         return tuple(c.effect.id for c in self.components)
@@ -75,12 +82,12 @@ class Hypothesis:
 
     def change(self, u: np.ndarray, places: np.ndarray | None = None) -> Callable:
         """The change (setup, lane index of each chain) → setup for (L, p) coordinates."""
-        bounds = np.cumsum([0, *(len(c.free) for c in self.components)])
+        columns = self.columns
 
         def changed(setup: Setup, index: np.ndarray) -> Setup:
             for k, component in enumerate(self.components):
                 at = None if places is None else places[index, k]
-                given = component.parameters(u[index, bounds[k] : bounds[k + 1]], at)
+                given = component.parameters(u[index, columns[k]], at)
                 setup = component.effect.apply(setup, **given)
             return with_common_laws(setup, self.ids) if self.common else setup
 
@@ -88,10 +95,9 @@ class Hypothesis:
 
     def values(self, u: np.ndarray) -> dict[str, dict[str, float]]:
         """Effect → parameter → value (places included) at (p,) coordinates."""
-        result, first = {}, 0
-        for component in self.components:
-            free = {c.parameter.name: float(c.value(u[first + k])) for k, c in enumerate(component.free)}
-            first += len(component.free)
+        result = {}
+        for component, own in zip(self.components, self.columns, strict=True):
+            free = {c.parameter.name: float(c.value(x)) for c, x in zip(component.free, u[own], strict=True)}
             place = {component.effect.places: component.place} if component.effect.places else {}
             result[component.effect.id] = {**free, **component.fixed, **place}
         return result

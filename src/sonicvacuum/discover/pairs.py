@@ -6,7 +6,6 @@ followed, and all pairs of the nominal screen, whose joint gains are algebra. On
 share one effect with it are tried as well.
 """
 
-import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -86,7 +85,7 @@ def _key(start: Start, best: Pair) -> tuple:
     """What a borrowed start shares with the best pair, coarsely: much the same need not be fitted twice."""
     (name,) = start.effects & set(best.effects)
     k = start.hypothesis.ids.index(name)
-    values = start.u[0, _columns(start.hypothesis)[k]]
+    values = start.u[0, start.hypothesis.columns[k]]
     return (start.hypothesis.ids, name, int(start.places[0, k]), *np.round(values, 2).tolist())
 
 
@@ -98,7 +97,7 @@ def _borrowed(start: Start, best: Pair) -> Start | None:
     """
     (name,) = start.effects & set(best.effects)
     k, own = start.hypothesis.ids.index(name), best.effects.index(name)
-    columns, values = _columns(start.hypothesis)[k], best.fit.u[_columns(best.fit.hypothesis)[own]]
+    columns, values = start.hypothesis.columns[k], best.fit.u[best.fit.hypothesis.columns[own]]
     if len(values) != columns.stop - columns.start:
         return None
     u, places = start.u.copy(), start.places.copy()
@@ -107,12 +106,6 @@ def _borrowed(start: Start, best: Pair) -> Start | None:
     u, places = np.tile(u[rows], (2, 1)), np.tile(places[rows], (2, 1))
     nu = np.concatenate([start.nu[rows], np.broadcast_to(best.fit.nu, start.nu[rows].shape)])
     return Start(start.gain, start.hypothesis, u, nu, places)
-
-
-def _columns(hypothesis):
-    """Columns of the coordinates of each effect."""
-    ends = np.cumsum([0, *(len(c.free) for c in hypothesis.components)])
-    return [slice(*ab) for ab in itertools.pairwise(ends)]
 
 
 def _best(starts, found, most):

@@ -55,7 +55,7 @@ def _around(one, setup, factors):
     """(L, p) coordinates and (L, effects) places with one effect moved along the chain."""
     components = one.hypothesis.components
     now = [c.place or 0 for c in components]
-    first = np.cumsum([0, *(len(c.free) for c in components)])
+    columns = one.hypothesis.columns
     rows, coordinates = [], []
     for k, c in enumerate(components):
         if c.effect.places not in ALONG:
@@ -66,7 +66,8 @@ def _around(one, setup, factors):
             if 0 <= at + step < len(possible) and (factor > 0.0 or c.free[0].two_sided):
                 rows.append([*now[:k], possible[at + step], *now[k + 1 :]])
                 u = one.u.copy()
-                u[first[k]] = _stronger(c.free[0], u[first[k]], factor)
+                strength = columns[k].start
+                u[strength] = _stronger(c.free[0], u[strength], factor)
                 coordinates.append(u)
     shape = (len(rows), len(components))
     return np.array(coordinates).reshape(len(rows), len(one.u)), np.array(rows, dtype=int).reshape(shape)
