@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from sonicvacuum.blind import catalogue, design
+from sonicvacuum.blind.prediction import predict
 from sonicvacuum.blind.record import as_record
-from sonicvacuum.blind.signature import predict
 from sonicvacuum.effects import CATALOGUE, effect
 from sonicvacuum.records.predict import Conditions
 from sonicvacuum.records.predict import predict as engine

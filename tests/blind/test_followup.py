@@ -13,7 +13,7 @@ from sonicvacuum.blind import followup, study
 from sonicvacuum.blind.followup import ambiguous, follow, offers, random_change, under
 from sonicvacuum.blind.hide import TOLERANCE, Spec, hide, laboratory
 from sonicvacuum.blind.plan import G
-from sonicvacuum.blind.signature import predict
+from sonicvacuum.blind.prediction import predict
 from sonicvacuum.cli import cli
 from sonicvacuum.discover.next_experiment import changes
 from sonicvacuum.discover.problem import experiment

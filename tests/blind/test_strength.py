@@ -7,7 +7,8 @@ import pytest
 from scipy import stats
 
 from sonicvacuum.blind import catalogue, design
-from sonicvacuum.blind.signature import Errors, Frame, predict
+from sonicvacuum.blind.prediction import Errors, predict
+from sonicvacuum.blind.signature import Frame
 from sonicvacuum.blind.strength import (
     LARGEST,
     Rival,

@@ -12,8 +12,8 @@ from sonicvacuum import records
 from sonicvacuum.blind.design import Design
 from sonicvacuum.blind.hide import TOLERANCE, Laboratory, Spec, drawn_errors, laboratory, noisy, stream
 from sonicvacuum.blind.plan import G, Plan
+from sonicvacuum.blind.prediction import Errors, predict
 from sonicvacuum.blind.record import as_record
-from sonicvacuum.blind.signature import Errors, predict
 from sonicvacuum.files import replacing
 
 # What discover may propose: factors on the last run's speed and striker mass, newtons added to the preload.

@@ -15,8 +15,9 @@ import numpy as np
 from sonicvacuum import records
 from sonicvacuum.blind import catalogue, design, foreign
 from sonicvacuum.blind.design import Design
+from sonicvacuum.blind.prediction import Errors, predict
 from sonicvacuum.blind.record import as_record
-from sonicvacuum.blind.signature import Errors, Frame, predict
+from sonicvacuum.blind.signature import Frame
 from sonicvacuum.blind.strength import Rival, ceiling, leftover, nearest, pair_ceiling, rivals, scale
 from sonicvacuum.files import replacing
 

@@ -8,18 +8,23 @@ directions are projected out. A per cent of modulus may move traces by a hundred
 the errors are refitted through the integrator (`Frame.signature`), not only along straight lines.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from sonicvacuum.blind.design import Design
-from sonicvacuum.blind.gauges import bounce, read, scalar
-from sonicvacuum.blind.plan import Plan
+from sonicvacuum.blind.prediction import (
+    TOLERANCE,
+    Change,
+    Errors,
+    Prediction,
+    Whitener,
+    nothing,
+    predict,
+    read_again,
+)
 
-# Of the integrator, for signatures: 1e-5 of a peak, against changes of the order of 1e-2.
-TOLERANCE = 1e-7
 STEP = 2e-3  # relative, of speed and modulus differences
 # A change larger than this fraction of all data may have moved pulses by their own length; the errors are
 # then fitted from the best of these moduli, in standard deviations.
@@ -27,112 +32,6 @@ FAR = 0.15
 MODULI = (-14.0, -10.0, -7.0, -4.5, -3.0, -1.5, 0.0, 1.5, 3.0, 4.5, 7.0, 10.0, 14.0)
 # A fit ends where a step promises less than this share of d′, or the shortest of halved steps fails.
 GAIN, SMALLEST = 2e-3, 0.05
-
-Change = Callable[[Plan], Plan]
-
-
-def nothing(plan: Plan) -> Plan:
-    """The nominal plan."""
-    return plan
-
-
-@dataclass(frozen=True)
-class Errors:
-    """What is off within a record's stated errors, in units of these.
-
-    Attributes:
-        speeds, triggers: (runs,).
-        gains: (gauges,).
-        modulus: a number.
-    """
-
-    speeds: np.ndarray
-    modulus: float
-    gains: np.ndarray
-    triggers: np.ndarray
-
-    @classmethod
-    def of(cls, design: Design, vector=None) -> "Errors":
-        """Errors from one vector (speeds, modulus, gains, triggers); none without it."""
-        runs, gauges = len(design.runs), len(design.reference.gauges)
-        vector = np.zeros(2 * runs + gauges + 1) if vector is None else np.asarray(vector)
-        return cls(
-            vector[:runs],
-            float(vector[runs]),
-            vector[runs + 1 : runs + 1 + gauges],
-            vector[runs + 1 + gauges :],
-        )
-
-    @property
-    def vector(self) -> np.ndarray:
-        """All in one."""
-        return np.concatenate([self.speeds, [self.modulus], self.gains, self.triggers])
-
-
-@dataclass(frozen=True)
-class Prediction:
-    """What a design's gauges show without noise.
-
-    Attributes:
-        traces: (runs, gauges, samples) N, also where the record holds scalars only.
-        scalars: (scalars,) SI units.
-    """
-
-    traces: np.ndarray
-    scalars: np.ndarray
-
-
-def predict(
-    design: Design,
-    change: Change = nothing,
-    errors: Errors | None = None,
-    tolerance: float = TOLERANCE,
-) -> Prediction:
-    """Noise-free readings of all runs, with errors, each plan passed through `change`."""
-    errors = errors or Errors.of(design)
-    stiffness = 1.0 + design.modulus_sigma * errors.modulus
-    plans = [
-        change(replace(p, speed=p.speed * (1.0 + design.speed_sigma * e), modulus_ratio=stiffness))
-        for p, e in zip(design.runs, errors.speeds, strict=True)
-    ]
-    if design.kind == "ball":
-        found = [bounce(p, tolerance) for p in plans]
-        values = np.array([found[s.run][s.quantity] for s in design.scalars])
-        return Prediction(np.zeros((len(plans), 0, 0)), values)
-    shifts = design.trigger_sigma * errors.triggers
-    traces = np.stack([read(p, design.times(t), tolerance) for p, t in zip(plans, shifts, strict=True)])
-    traces *= 1.0 + design.gain_sigma * errors.gains[:, None]
-    return _read_again(design, traces)
-
-
-def _read_again(design, traces):
-    """A prediction from traces, its scalars read off them."""
-    values = [
-        scalar(design.runs[s.run], traces[s.run], design.times(), s.quantity, s.options)
-        for s in design.scalars
-    ]
-    return Prediction(traces, np.array(values))
-
-
-@dataclass(frozen=True)
-class Whitener:
-    """Divides by the noise; `correlation` is that of neighbouring samples (AR(1)), of variance sigma²."""
-
-    design: Design
-    correlation: float = 0.0
-
-    def vector(self, prediction: Prediction) -> np.ndarray:
-        """One vector in units of standard deviations."""
-        scalars = prediction.scalars / np.array([s.sigma for s in self.design.scalars], dtype=float)
-        if not self.design.samples:
-            return scalars
-        scaled = prediction.traces / np.array(self.design.sigma)[None, :, None]
-        if self.correlation:
-            fresh = (scaled[..., 1:] - self.correlation * scaled[..., :-1]) / np.sqrt(
-                1.0 - self.correlation**2
-            )
-            scaled = np.concatenate([scaled[..., :1], fresh], axis=-1)
-        return np.concatenate([scaled.ravel(), scalars])
 
 
 def nuisances(
@@ -161,7 +60,7 @@ def nuisances(
     for k in range(gauges):
         louder = base.traces.copy()
         louder[:, k] *= 1.0 + design.gain_sigma / (1.0 + design.gain_sigma * at.gains[k])
-        columns.append(whiten.vector(_read_again(design, louder)) - whole)
+        columns.append(whiten.vector(read_again(design, louder)) - whole)
     return np.stack([*columns, *_triggers(design, whiten, base)], axis=1)
 
 
