@@ -58,9 +58,9 @@ reproduce: env  ## regenerate figures' numbers and ledger in a clean folder and 
 bench: .venv/benched  ## measure the engine against other codes, on one core
 	LD_LIBRARY_PATH="$(CURDIR)/.venv/lib" $(BIN)/snakemake --cores 1 bench
 
-study: .venv/studied  ## the full blind study with its baselines; takes hours
+study: .venv/studied  ## the full blind study with its baselines and further runs; takes hours
 	$(BIN)/pytest workflow/study
-	$(BIN)/snakemake --cores $(CORES) blind_full
+	$(BIN)/snakemake --cores $(CORES) blind_full blind_resolved
 
 lock:  ## resolve the requirements anew; versions already locked stay unless UPGRADE=--upgrade
 	@tools=$$(mktemp -d) && trap 'rm -rf "$$tools"' EXIT && $(PYTHON) -m venv "$$tools" && \

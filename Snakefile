@@ -8,6 +8,7 @@ min_version("9.0")
 
 
 include: "workflow/rules/common.smk"
+include: "workflow/rules/blind_common.smk"
 
 
 rule all:
@@ -20,6 +21,7 @@ rule all:
         "results/blind/small/summary.csv",
         expand("results/discover/{record}/index.html", record=RECORDS),
         expand("figures/{figure}.{kind}", figure=FIGURES, kind=["csv", "svg", "png"]),
+        expand("figures/blind_{picture}.{kind}", picture=SHOWN, kind=["svg", "png"]),
 
 
 include: "workflow/rules/discover.smk"

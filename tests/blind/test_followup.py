@@ -111,6 +111,17 @@ def test_random_changes_are_spread_over_the_offers(own):
     assert np.sum((count - mean) ** 2 / mean) < len(count) - 1 + 4.0 * math.sqrt(2.0 * len(count))
 
 
+@pytest.mark.parametrize(("density", "offered"), [(7800.0, [0.25]), (3900.0, [0.25, 4.0]), (1150.0, [4.0])])
+def test_a_ball_is_not_replaced_by_one_that_no_solid_makes(own, density, offered):
+    ball = replace(own.design.runs[-1], striker_radius=2e-3)
+    ball = replace(ball, striker_mass=density * 4.0 / 3.0 * math.pi * ball.striker_radius**3)
+    made = replace(own.design, runs=(ball,))
+    masses = [c["striker.mass_g"] for c in offers(made) if "striker.mass_g" in c]
+    assert masses == [pytest.approx(f * ball.striker_mass * 1e3, rel=1e-3) for f in offered]  # four decimals
+    for mass in masses:
+        under(made, {"striker.mass_g": mass})
+
+
 def test_slow_pulses_are_watched_for_longer(own):
     last = own.design.runs[-1]
     slow = under(own.design, {"striker.speed_m_s": last.speed / 32.0})

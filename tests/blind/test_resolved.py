@@ -54,6 +54,9 @@ def test_shares_by_choice():
     assert found["resolved by one more run", "random"].value == pytest.approx(1 / 3)
     assert found["resolved by this run alone", "proposed"].value == pytest.approx(2 / 3)
     assert found["resolved by this run alone", "random"].value == 0.0
+    ratio = found["resolved, ratio", "proposed over random"]
+    assert (ratio.count, ratio.value) == (3, pytest.approx(3.0))
+    assert ratio.low <= 3.0 <= ratio.high or ratio.high == math.inf
     exact = {g: line.value for (m, g), line in found.items() if m.startswith("exact name")}
     assert exact == pytest.approx({"before": 0.0, "proposed": 1.0, "random": 2 / 3})
 

@@ -48,7 +48,7 @@ def told(folder):
 SENTENCES = {
     "none": (
         "Nothing is named: the nominal model explains these data",
-        "That nothing is missing is probable (0.91)",
+        "That none of the effects that these data could show is missing is probable (0.91)",
         "Nowhere: of 8 comparisons",
         "The nearest single effects: tsuji (0.08)",
         "No proposal: no rivals are left",
@@ -169,6 +169,17 @@ def test_a_modulus_that_had_to_move_far_is_told_first():
     assert "has to be 3.07 times as large as recorded" in words.moved_modulus(KINDS["none"], far)
     assert words.moved_modulus(KINDS["none"], replace(far, modulus_ratio=1.1)) == ""
     assert words.moved_modulus(KINDS["single"], far) == ""
+
+
+def test_data_in_which_nothing_would_show_are_not_called_free_of_effects():
+    blind = {"named": [], "parameters": {}, "upper_limits": {}, "not_testable": ["gravity", "tsuji"]}
+    odds = {"none": 0.999, "unknown": 0.001}
+    text = words.headline(verdict(**blind, probabilities=odds))
+    assert "no effect of the catalogue would show" in text
+    assert "certain" not in text
+    some = blind | {"upper_limits": {"tsuji": {"gamma": 0.1}}, "not_testable": ["gravity"]}
+    text = words.headline(verdict(**some, probabilities=odds))
+    assert "none of the effects that these data could show is missing is practically certain" in text
 
 
 def test_none_that_is_less_probable_than_an_effect_says_so():

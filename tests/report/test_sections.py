@@ -6,7 +6,7 @@ from made_verdicts import write
 
 from sonicvacuum.figures import discovery
 from sonicvacuum.files import InputError
-from sonicvacuum.report import blind, publish, tables
+from sonicvacuum.report import publish, study, tables
 from sonicvacuum.report.page import CLAIMS, build
 
 FIRST = ("measure", "group", "count", "value", "low", "high", "goal")
@@ -20,7 +20,7 @@ SUMMARY = [
 @pytest.fixture
 def summary(tmp_path):
     path = tmp_path / "summary.csv"
-    table = pd.DataFrame(SUMMARY, columns=FIRST).reindex(columns=blind.SUMMARY, fill_value="nan")
+    table = pd.DataFrame(SUMMARY, columns=FIRST).reindex(columns=study.SUMMARY, fill_value="nan")
     table.to_csv(path, index=False)
     return path
 
@@ -37,7 +37,7 @@ def empty(tmp_path):
 def test_the_report_holds_the_section_of_each_record_and_both_studies(empty, summary, tmp_path):
     folder = write(tmp_path / "found", "single")
     discovery.draw(folder)
-    page = build(*empty, [], [], [], [folder], summary, tmp_path / "none.csv")
+    page = build(*empty, [], [], [], [folder], summary)
     assert 'id="record-made"' in page
     assert "What is missing: Viscoelastic Hertz contact (kuwabara-kono)" in page
     assert "<td>named on null</td><td>white</td>" in page
@@ -51,15 +51,24 @@ def test_a_report_without_discoveries_says_so(empty):
 
 
 def test_rows_without_cases_and_times_are_left_out(summary):
-    (row,) = blind.shown(summary)
-    assert (row["measure"], row["interval"], row["ideal"]) == ("named on null", "0 to 0.324", "")
+    (row,) = study.findings(tables.read(summary, study.SUMMARY)).rows
+    assert row == ["named on null", "white", "8", "0", "0 to 0.324", ""]
 
 
 def test_a_summary_with_other_columns_is_refused(tmp_path):
     path = tmp_path / "summary.csv"
     path.write_text("measure,share\nnamed,1\n")
     with pytest.raises(InputError, match=r"summary\.csv: columns are measure,share"):
-        blind.shown(path)
+        study.read(tmp_path)
+
+
+def test_the_full_study_stands_with_its_pictures_before_the_small_one(empty, summary, tmp_path):
+    drawing = tmp_path / "blind_accuracy.svg"
+    drawing.write_text('<svg width="500pt"><g id="a"/></svg>')
+    page = build(*empty, [], [], [], [], summary, tmp_path, [(drawing, "What the picture shows.")])
+    assert "36 records. Of 1 goals set beforehand 1 are met, 0 missed." in page
+    assert page.index("What the picture shows.") < page.index("The small study of this run")
+    assert "No table of this study has been made." not in page
 
 
 def test_what_is_kept_of_a_study_is_its_naming(tmp_path):

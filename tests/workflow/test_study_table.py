@@ -17,10 +17,11 @@ README = f"# Title\n\n{study.BEGIN}\nformer text\n{study.END}\n\nafter\n"
 
 
 @pytest.fixture
-def paths(tmp_path):
-    """Paths of a summary and a table of baselines."""
+def folder(tmp_path):
+    """Folder with all tables of a study."""
     lines = [
         Line("exact name", "traces, d' 10", 200, 0.96, 0.92, 0.98, 0.97, 0.99, ">= 0.95"),
+        Line("exact name", "traces, d' 20", 200, 0.97, 0.94, 0.99, 0.98, 0.99, ">= 0.99"),
         Line("named on null", "white", 300, 0.02, 0.01, 0.05, NAN, NAN, "<= 0.01"),
         Line("90 % interval holds truth", "named rightly", 50, 0.9, 0.8, 0.96, NAN, NAN, "0.87 to 0.93"),
         Line("exact name", "scalars", 0, NAN, NAN, NAN, NAN, NAN, ">= 0.83"),
@@ -34,59 +35,95 @@ def paths(tmp_path):
         Baseline("bic", names.ALARM, names.NULLS, 40, 0.5, 0.35, 0.65, ""),
         Baseline("ideal rule", names.EXACT, names.SINGLES, 220, 0.97, NAN, NAN, "computed"),
     ]
-    found = tmp_path / "summary.csv", tmp_path / "baselines.csv"
-    write_table(lines, Line, found[0])
-    write_table(rivals, Baseline, found[1])
-    return found
+    followed = [
+        Line("resolved by one more run", "proposed", 40, 0.85, 0.71, 0.93, NAN, NAN, ">= 0.8"),
+        Line("resolved by one more run", "random", 40, 0.4, 0.26, 0.55, NAN, NAN, ""),
+    ]
+    made = tmp_path / "made"
+    for name, rows, kind in (
+        ("summary", lines, Line),
+        ("baselines", rivals, Baseline),
+        ("resolved_summary", followed, Line),
+    ):
+        write_table(rows, kind, made / f"{name}.csv")
+    for name in ("confusion", "accuracy", "reliability", "coverage"):
+        (made / f"{name}.csv").write_text(f"{name}\n")
+    return made
 
 
-def test_goals_are_held_against_what_was_found(paths):
-    header, rows = study.results(study.read(*paths)[0])
-    assert len(header) == len(rows[0])
-    assert [row[-1] for row in rows][:3] == ["met", "missed", "met"]
-    assert rows[0][3:7] == ["0.96", "0.92 to 0.98", "0.97", "≥ 0.95"]
+def test_goals_are_held_against_what_was_found(folder):
+    found = study.results(study.read(folder).summary)
+    assert len(found.header) == len(found.rows[0])
+    assert [row[-1] for row in found.rows][:3] == [
+        "met",
+        "missed, by the ideal rule too",
+        "missed",
+    ]
+    assert found.rows[0][3:7] == ["0.96", "0.92 to 0.98", "0.97", "≥ 0.95"]
 
 
-def test_rules_stand_in_one_line_each_in_the_order_of_the_words(paths):
-    header, rows = study.rivals(study.read(*paths)[1])
-    assert header == ["rule", "exact name", "false alarm", "wrong name", "remarks"]
+def test_a_small_study_is_shown_without_judgement_and_times(folder):
+    found = study.findings(study.read(folder).summary)
+    assert [row[0] for row in found.rows] == ["exact name"] * 2 + [
+        "named on null",
+        "90 % interval holds truth",
+    ]
+    assert not {"met", "missed"} & {cell for row in found.rows for cell in row}
+
+
+def test_rules_stand_in_one_line_each_in_the_order_of_the_words(folder):
+    found = study.rivals(study.read(folder).baselines)
+    rows = found.rows
+    assert found.header == ["rule", "exact name", "false alarm", "wrong name", "remarks"]
     assert [row[0] for row in rows] == ["this method", "ideal rule (computed)", "BIC"]
     assert rows[1][1] == "97.0 %, 220 cases"
     assert rows[2][1:4] == ["70.0 % (64.0 to 76.0), 220 cases", "50.0 % (35.0 to 65.0), 40 cases", "–"]
 
 
-def test_markdown_and_html_hold_the_same_cells(paths):
-    tables = study.read(*paths)
-    text, page = study.markdown(*tables), study.html(*tables)
-    assert text.startswith("520 records. Of 4 goals set beforehand 3 are met, 1 missed")
-    assert text.count("\n| ") + text.startswith("| ") == 4 + 1 + 7 + 1
-    assert page.count("<tr>") == 7 + 4
-    assert "&lt;" not in page
-    assert "95 % intervals" in text
+def test_the_readme_holds_all_tables_and_counts_the_goals(folder):
+    text = study.markdown(study.read(folder))
+    # Lines with cases, then rules, then further runs; each table with a header.
+    assert text.startswith("520 records. Of 6 goals set beforehand 4 are met, 2 missed")
+    assert text.count("\n| ") == (7 + 2) + (3 + 2) + (2 + 2)
+    assert "figures/blind_accuracy.png" in text
+    assert "| resolved by one more run | proposed | 40 | 0.85 | 0.71 to 0.93 | ≥ 0.8 | met |" in text
 
 
-def test_publish_keeps_tables_and_renews_the_readme(paths, tmp_path):
-    readme, reference = tmp_path / "README.md", tmp_path / "reference"
+def test_publish_keeps_tables_and_renews_the_readme(folder, tmp_path):
+    readme, kept = tmp_path / "README.md", tmp_path / "kept"
     readme.write_text(README)
-    reference.mkdir()
-    files = [f"--summary={paths[0]}", f"--baselines={paths[1]}"]
-    done = CliRunner().invoke(
-        cli, ["publish-study", *files, f"--readme={readme}", f"--reference={reference}"]
-    )
+    call = ["publish-study", str(folder), f"--readme={readme}", f"--keep={kept}"]
+    done = CliRunner().invoke(cli, call)
     assert done.exit_code == 0, done.output
-    assert (reference / "blind_full.csv").read_bytes() == paths[0].read_bytes()
-    assert (reference / "blind_full_baselines.csv").read_bytes() == paths[1].read_bytes()
+    names = sorted(path.name for path in folder.iterdir())
+    assert sorted(path.name for path in kept.iterdir()) == names
+    assert all((kept / name).read_bytes() == (folder / name).read_bytes() for name in names)
     assert "former text" not in readme.read_text()
     assert readme.read_text().endswith(f"{study.END}\n\nafter\n")
 
 
-def test_readme_without_markers_leaves_everything_as_it_was(paths, tmp_path):
+def test_a_table_that_is_no_longer_made_is_not_kept(folder, tmp_path):
     readme = tmp_path / "README.md"
-    readme.write_text("# Title\n")
-    with pytest.raises(InputError, match="markers are missing"):
-        study.publish(*paths, readme, tmp_path)
-    assert readme.read_text() == "# Title\n"
-    assert not (tmp_path / "blind_full.csv").exists()
+    readme.write_text(README)
+    study.publish(folder, readme, tmp_path / "kept")
+    (folder / "resolved_summary.csv").unlink()
+    study.publish(folder, readme, tmp_path / "kept")
+    assert not (tmp_path / "kept" / "resolved_summary.csv").exists()
+    assert "one more run" not in readme.read_text()
+
+
+@pytest.mark.parametrize("fault", ["no markers", "no table"])
+def test_what_is_missing_leaves_everything_as_it_was(folder, tmp_path, fault):
+    readme = tmp_path / "README.md"
+    readme.write_text("# Title\n" if fault == "no markers" else README)
+    before = readme.read_text()
+    if fault == "no table":
+        (folder / "coverage.csv").unlink()
+    expected = "markers are missing" if fault == "no markers" else r"coverage\.csv: No such file"
+    with pytest.raises(InputError, match=expected):
+        study.publish(folder, readme, tmp_path / "kept")
+    assert readme.read_text() == before
+    assert not (tmp_path / "kept").exists()
 
 
 def test_committed_readme_has_the_markers(pytestconfig):

@@ -4,8 +4,9 @@
 
 writes bench.csv (work done), bench_accuracy.csv (cost against accuracy), bench_length.csv and
 bench_lanes.csv (cost against beads and chains), bench_effects.csv (cost of each effect), bench_scaling.csv
-(cores, memory, start) and bench.md (the table for the README). Codes take turns, so that a busy machine
-slows all of them alike; reported are medians. The run fails if a code disagrees on P1.
+(cores, memory, start), bench_inference.csv (a whole search for what is missing) and bench.md (the table for
+the README). Codes take turns, so that a busy machine slows all of them alike; reported are medians. The run
+fails if a code disagrees on P1.
 """
 
 import argparse
@@ -21,6 +22,7 @@ from functools import partial
 from pathlib import Path
 
 import effects_cost
+import inference
 import native
 import numpy as np
 import peers
@@ -362,7 +364,9 @@ def main():
         print(f"absent: {name}: {why}", flush=True)
     rows = [row for problem in PROBLEMS.values() for row in measure_problem(problem, present)]
     write(out / "bench.csv", COLUMNS, rows + [["", name, "", "", "", "", ""] for name in absent])
-    (out / "bench.md").write_text(markdown(rows, absent), encoding="utf-8")
+    search = inference.measure_inference()
+    write(out / "bench_inference.csv", inference.COLUMNS, search)
+    (out / "bench.md").write_text(markdown(rows, absent) + inference.sentence(search), encoding="utf-8")
     accuracy = [row for name in ("P1", "P3") for row in measure_accuracy(PROBLEMS[name])]
     columns = ["problem", "contestant", "setting", "median_s", "peak_error", "arrival_error_s"]
     write(out / "bench_accuracy.csv", columns, accuracy)

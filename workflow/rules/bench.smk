@@ -3,13 +3,16 @@
 
 rule bench:
     input:
-        sources("physics"),
+        sources("card", "physics", "discover", "blind"),
         bench=Path("workflow/bench").glob("*.[pc]*"),
         drawing="src/sonicvacuum/figures/bench.py",
     output:
         "results/bench.csv",
         "results/bench.md",
-        expand("results/bench_{table}.csv", table=["accuracy", "length", "lanes", "effects", "scaling"]),
+        expand(
+            "results/bench_{table}.csv",
+            table=["accuracy", "length", "lanes", "effects", "scaling", "inference"],
+        ),
         expand("results/bench_{figure}.{kind}", figure=["accuracy", "cost"], kind=["svg", "png"]),
     log:
         "results/logs/bench.log",

@@ -5,9 +5,6 @@ folders that discover is given. Simpler rules see the same cases; two of them ne
 """
 
 
-include: "blind_common.smk"
-
-
 wildcard_constraints:
     study="small|training|full",
     batch="[0-9]+",
@@ -124,6 +121,26 @@ rule draw_study:
         "sonicvacuum draw-study {params.folder} --picture {wildcards.picture} > {log} 2>&1"
 
 
+# What is kept in git of the full study.
+rule draw_kept:
+    input:
+        table=f"{KEPT}/{{picture}}.csv",
+        sources=sources("card", "study pictures"),
+    output:
+        svg="figures/blind_{picture}.svg",
+        png="figures/blind_{picture}.png",
+    log:
+        "results/logs/draw_kept/{picture}.log",
+    conda:
+        ENVIRONMENT
+    params:
+        folder=KEPT,
+    message:
+        "Drawing {wildcards.picture} of the full study as kept in git"
+    shell:
+        "sonicvacuum draw-study {params.folder} --picture {wildcards.picture} --out figures --prefix blind_ > {log} 2>&1"
+
+
 # The small study with what the default environment can draw; its baselines: blind_small_baselines.
 rule blind_small:
     input:
@@ -145,8 +162,8 @@ rule blind_full:
 # Run on purpose: the tables of this run become those that README and report quote.
 rule publish_study:
     input:
-        summary="results/blind/full/summary.csv",
-        baselines="results/blind/full/baselines.csv",
+        tables=expand("results/blind/full/{table}.csv", table=["summary", "baselines", *DETAILS]),
+        resolved="results/blind/full/resolved_summary.csv",
     log:
         "results/logs/publish_study.log",
     localrule: True
@@ -154,12 +171,12 @@ rule publish_study:
         ENVIRONMENT
     params:
         readme="README.md",
-        reference="workflow/resources/reference",
+        folder="results/blind/full",
+        keep=KEPT,
     message:
         "Keeping the blind study in git and in the README"
     shell:
-        "sonicvacuum publish-study --summary {input.summary} --baselines {input.baselines}"
-        " --readme {params.readme} --reference {params.reference} > {log} 2>&1"
+        "sonicvacuum publish-study {params.folder} --readme {params.readme} --keep {params.keep} > {log} 2>&1"
 
 
 # One more run for each case left ambiguous: the one that its verdict proposes, or a random one.
@@ -209,10 +226,10 @@ rule resolved:
     input:
         truth=batches("truth"),
         verdicts=batches("verdicts"),
-        proposed=batches("followed/proposed"),
-        proposed_joint=batches("joint/proposed"),
-        random=batches("followed/random"),
-        random_joint=batches("joint/random"),
+        proposed=some_batches("followed/proposed"),
+        proposed_joint=some_batches("joint/proposed"),
+        random=some_batches("followed/random"),
+        random_joint=some_batches("joint/random"),
         sources=sources("card", "resolved"),
     output:
         rows=f"{BLIND}/resolved.csv",

@@ -2,8 +2,14 @@
 
 # Study → number of batches.
 BATCHES = {"small": 4, "training": 4, "full": 24}
+# Study → of how many batches ambiguous records get one more run, which takes two joint verdicts for every such record.
+# Effects take turns among the cases, so that a batch holds every second one: an even number of batches holds all alike.
+FOLLOWED = {"small": 4, "training": 4, "full": 4}
 BLIND = "results/blind/{study}"
 PICTURES = ["confusion", "accuracy", "reliability", "baselines"]
+# The full study takes hours: its tables are kept in git and drawn from there, in the order of the report.
+KEPT = "workflow/resources/reference/blind_full"
+SHOWN = ["accuracy", "confusion", "reliability", "baselines"]
 DETAILS = ["confusion", "accuracy", "reliability", "coverage", "seconds"]
 CHOICES = ["proposed", "random"]
 # What only counts and compares, or comes after the verdicts: data and verdicts stay as they are when it changes.
@@ -23,6 +29,13 @@ def batches(part):
     """Input function: the folders of all batches of a part (records, truth, verdicts, …) of a study."""
     return lambda wildcards: expand(
         f"{BLIND}/{part}/{{batch}}", study=wildcards.study, batch=range(BATCHES[wildcards.study])
+    )
+
+
+def some_batches(part):
+    """The same of the batches of which ambiguous records are followed by one more run."""
+    return lambda wildcards: expand(
+        f"{BLIND}/{part}/{{batch}}", study=wildcards.study, batch=range(FOLLOWED[wildcards.study])
     )
 
 

@@ -2,8 +2,6 @@
 
 CLAIMS = "workflow/resources/claims.csv"
 ASSUMPTIONS = "workflow/resources/assumptions.csv"
-# The full study takes hours: its table is kept in git, once it has been made.
-BLIND_FULL = "workflow/resources/reference/blind_full.csv"
 
 
 rule ledger:
@@ -65,7 +63,8 @@ rule page:
         locks=LOCKS,
         discoveries=expand("results/discover/{record}/index.html", record=RECORDS),
         blind_small="results/blind/small/summary.csv",
-        blind_full=[BLIND_FULL] if Path(BLIND_FULL).exists() else [],
+        blind_full=sorted(Path(KEPT).glob("*.csv")),
+        pictures=expand("figures/blind_{picture}.svg", picture=SHOWN),
         sources=sources("card", "report", "figures", "discover"),
     output:
         report("results/report.html", category="Report", caption="../report/page.rst"),
@@ -82,14 +81,15 @@ rule page:
         discoveries=lambda wildcards, input: [
             f"--discovery {Path(path).parent}" for path in input.discoveries
         ],
-        blind_full=lambda wildcards, input: f"--blind-full {input.blind_full}" if input.blind_full else "",
+        blind_full=KEPT,
+        pictures=lambda wildcards, input: [f"--picture {path}" for path in input.pictures],
     message:
         "Writing the report"
     shell:
         "sonicvacuum report --ledger {input.ledger} --assumptions {input.assumptions}"
         " --metrics {input.metrics} --claims {input.claims} {params.figures}"
         " {params.cards} {params.locks} {params.discoveries} --blind-small {input.blind_small}"
-        " {params.blind_full} --out {output} 2> {log}"
+        " --blind-full {params.blind_full} {params.pictures} --out {output} 2> {log}"
 
 
 rule timings:

@@ -1,5 +1,13 @@
-"""What the rules and the three counts of the baselines' table are called where people read them."""
+"""What kinds of record, rules and the three counts of the baselines' table are called where people read."""
 
+# Kind of record → words.
+DESIGNS = {
+    "traces": "traces, several speeds",
+    "varied": "other set-ups",
+    "one-speed": "one speed",
+    "scalars": "scalars only",
+    "ball": "one ball",
+}
 EXACT, ALARM, WRONG = "exact name", "named on null", "wrong name"
 SINGLES, NULLS, OUTSIDE = "singles, all", "nulls", "outside the catalogue"
 # Rule in the table → words, in the order shown.

@@ -15,6 +15,7 @@ from sonicvacuum.blind.plan import G, Plan
 from sonicvacuum.blind.prediction import Errors, predict
 from sonicvacuum.blind.record import as_record
 from sonicvacuum.files import replacing
+from sonicvacuum.records.ranges import likely_ball
 
 # What discover may propose: factors on the last run's speed and striker mass, newtons added to the preload.
 SPEEDS = (0.2, 0.5, 2.0, 5.0)
@@ -50,7 +51,8 @@ def offers(made: Design) -> list[Change]:
     last = made.runs[-1]
     speeds = [last.speed * f for f in SPEEDS if SLOWEST <= last.speed * f <= FASTEST]
     found: list[Change] = [{"striker.speed_m_s": round(v, 4)} for v in speeds]
-    found += [{"striker.mass_g": round(last.striker_mass * f * 1e3, 4)} for f in MASSES]
+    masses = [last.striker_mass * f for f in MASSES]
+    found += [{"striker.mass_g": round(m * 1e3, 4)} for m in masses if likely_ball(m, last.striker_radius)]
     found += [{"chain.static_force_N": last.static_force + f} for f in PRELOADS]
     found.append({"chain.orientation": "horizontal" if last.gravity else "vertical"})
     return found + _moves(last)

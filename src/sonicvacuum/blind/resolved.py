@@ -6,9 +6,11 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+import numpy as np
+
 from sonicvacuum.blind.followup import CHOICES, FILE
 from sonicvacuum.blind.score import Line, found_in, load
-from sonicvacuum.blind.shares import share
+from sonicvacuum.blind.shares import ratio_of_sums, share
 from sonicvacuum.files import InputError
 
 
@@ -115,11 +117,20 @@ def _left(verdict):
 
 
 def summary(rows: Iterable[Followed]) -> list[Line]:
-    """Shares with 95 % intervals: resolved by each choice, by it alone; exact names before and after."""
+    """Shares with 95 % intervals: resolved by each choice, by it alone; how much oftener by the proposed run;
+    exact names before and after.
+    """
     rows = list(rows)
     of = {choice: {r.id: r for r in rows if r.choice == choice} for choice in CHOICES}
     both = [id for id in of["proposed"] if id in of["random"]]
-    lines = [_line("resolved by one more run", c, [r.resolved for r in of[c].values()]) for c in CHOICES]
+    goals = {"proposed": ">= 0.8"}
+    lines = [
+        _line("resolved by one more run", c, [r.resolved for r in of[c].values()], goals.get(c, ""))
+        for c in CHOICES
+    ]
+    if any(of["random"][id].resolved for id in both):
+        hits = (np.array([of[c][id].resolved for id in both]) for c in CHOICES)
+        lines.append(_of("resolved, ratio", "proposed over random", len(both), ratio_of_sums(*hits), ">= 2"))
     for one, other in (CHOICES, CHOICES[::-1]):
         alone = [of[one][id].resolved and not of[other][id].resolved for id in both]
         lines.append(_line("resolved by this run alone", one, alone))
@@ -129,5 +140,9 @@ def summary(rows: Iterable[Followed]) -> list[Line]:
     return lines
 
 
-def _line(measure, group, hits):
-    return Line(measure, group, len(hits), *share(int(sum(hits)), len(hits)), math.nan, math.nan, "")
+def _line(measure, group, hits, goal=""):
+    return _of(measure, group, len(hits), share(int(sum(hits)), len(hits)), goal)
+
+
+def _of(measure, group, count, found, goal):
+    return Line(measure, group, count, *found, math.nan, math.nan, goal)

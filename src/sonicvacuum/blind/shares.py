@@ -42,17 +42,25 @@ def ratio_of_sums(upper: np.ndarray, lower: np.ndarray) -> tuple[float, float, f
     """Σ upper / Σ lower over cases (n,), with its interval from resampled cases (scipy.stats.bootstrap)."""
     if len(lower) < 2:
         return (float(upper.sum() / lower.sum()) if len(lower) else math.nan, math.nan, math.nan)
-    found = stats.bootstrap(
-        (upper, lower),
-        lambda a, b, axis: a.sum(axis=axis) / b.sum(axis=axis),
-        paired=True,
-        vectorized=True,
-        confidence_level=CONFIDENCE,
-        method="percentile",
-        rng=np.random.default_rng(np.random.SeedSequence(20061)),
-    )
+    # The standard error, which scipy works out besides, does not exist where a resample gives infinity.
+    with np.errstate(invalid="ignore"):
+        found = stats.bootstrap(
+            (upper, lower),
+            _ratio,
+            paired=True,
+            vectorized=True,
+            confidence_level=CONFIDENCE,
+            method="percentile",
+            rng=np.random.default_rng(np.random.SeedSequence(20061)),
+        )
     interval = found.confidence_interval
     return float(upper.sum() / lower.sum()), float(interval.low), float(interval.high)
+
+
+def _ratio(upper, lower, axis):
+    above, below = upper.sum(axis=axis), lower.sum(axis=axis)
+    # A resample may hold none of the cases that count below.
+    return np.divide(above, below, out=np.full(np.shape(above), math.inf), where=below != 0.0)
 
 
 def strength_bin(row: Row) -> float:

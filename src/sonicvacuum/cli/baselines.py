@@ -70,21 +70,22 @@ def calibrate(truth, verdicts, out):
     type=click.Choice(["confusion", "accuracy", "reliability", "baselines"]),
     help="Only these; repeat.",
 )
-def draw_study(folder, wanted):
+@click.option("--out", type=click.Path(file_okay=False), help="Folder for the pictures instead of FOLDER.")
+@click.option("--prefix", default="", help="Put before their names.")
+def draw_study(folder, wanted, out, prefix):
     """Draw the tables of a blind study in FOLDER: confusion, accuracy, reliability, baselines."""
     from sonicvacuum.figures.study import draw
 
-    for path in draw(Path(folder), wanted):
+    for path in draw(Path(folder), wanted, out, prefix):
         click.echo(str(path))
 
 
 @click.command()
-@click.option("--summary", required=True, type=existing(), help="Table of sonicvacuum score.")
-@click.option("--baselines", "rivals", required=True, type=existing(), help="Table of sonicvacuum baselines.")
+@click.argument("folder", type=_FOLDER)
 @click.option("--readme", required=True, type=existing(), help="README whose part on the study is renewed.")
-@click.option("--reference", required=True, type=_FOLDER, help="Where the tables are kept in git.")
-def publish_study(summary, rivals, readme, reference):
-    """Keep the tables of a blind study in git and in the README."""
+@click.option("--keep", required=True, type=click.Path(file_okay=False), help="Where the tables are kept.")
+def publish_study(folder, readme, keep):
+    """Keep the tables of the blind study in FOLDER in git, and in the README."""
     from sonicvacuum.report.study import publish
 
-    publish(summary, rivals, readme, reference)
+    publish(folder, readme, keep)

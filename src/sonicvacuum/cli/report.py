@@ -9,6 +9,7 @@ from sonicvacuum.cli.card import read_card
 from sonicvacuum.files import InputError, replacing
 
 _FILE = existing()
+_FOLDER = click.Path(exists=True, file_okay=False)
 
 
 @click.command()
@@ -23,23 +24,36 @@ _FILE = existing()
     "--discovery",
     "discoveries",
     multiple=True,
-    type=click.Path(exists=True, file_okay=False),
+    type=_FOLDER,
     help="Folder that discover wrote; repeat.",
 )
 @click.option("--blind-small", type=_FILE, help="Summary of the small blind study.")
-@click.option("--blind-full", type=click.Path(dir_okay=False), help="That of the full one, where it is kept.")
+@click.option("--blind-full", type=_FOLDER, help="Folder of the full one's tables.")
+@click.option("--picture", "pictures", multiple=True, type=_FILE, help="SVG of the full study; repeat.")
 @click.option("--out", required=True, type=click.Path(dir_okay=False), help="Page (HTML) to write.")
 def report(
-    ledger, assumptions, metrics, claims, figures, cards, locks, discoveries, blind_small, blind_full, out
+    ledger,
+    assumptions,
+    metrics,
+    claims,
+    figures,
+    cards,
+    locks,
+    discoveries,
+    blind_small,
+    blind_full,
+    pictures,
+    out,
 ):
     """Write the self-contained page with figures, ledger, audit, discoveries and provenance."""
-    from sonicvacuum.figures import caption
+    from sonicvacuum.figures import caption, study_caption
     from sonicvacuum.report.page import build
 
     captioned = [(figure, caption(Path(figure).stem)) for figure in figures]
     read = [read_card(card) for card in cards]
     tables = (ledger, assumptions, metrics, claims)
-    text = build(*tables, captioned, read, locks, discoveries, blind_small, blind_full)
+    seen = [(picture, study_caption(Path(picture).stem)) for picture in pictures]
+    text = build(*tables, captioned, read, locks, discoveries, blind_small, blind_full, seen)
     with replacing(out) as stream:
         stream.write(text)
 

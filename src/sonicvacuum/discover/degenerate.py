@@ -1,10 +1,9 @@
 """What this data cannot tell from what was named, and how large every other effect could be.
 
 Two effects are confusable where their evidences differ by less than a χ² of 9 would make (three standard
-deviations).
-Limits come from the screen at the final model: the largest strength, over places and shapes, that 95 %
-    confidence
-leaves; where that lies beyond the bounds of the search the effect is not testable with this data.
+deviations). Limits come from the screen at the final model: the largest strength, over places and shapes,
+that 95 % confidence leaves; where that lies beyond the bounds of the search the effect is not testable with
+this data.
 """
 
 from dataclasses import dataclass

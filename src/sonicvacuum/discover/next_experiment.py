@@ -15,6 +15,7 @@ from sonicvacuum.discover.forward import Forward
 from sonicvacuum.discover.rounds import Investigation
 from sonicvacuum.discover.verdict import Next
 from sonicvacuum.physics.chain import GRAVITY
+from sonicvacuum.records.ranges import likely_ball
 
 SPEEDS = (0.2, 0.5, 2.0, 5.0)
 MASSES = (0.25, 4.0)
@@ -77,9 +78,11 @@ def changes(experiment: Experiment):
                 _with(experiment, batch, run, changed, factor),
             )
     for factor in MASSES:
-        changed = replace(chain, striker_mass=chain.striker_mass * factor)
-        mass = round(float(chain.striker_mass[0]) * factor * 1e3, 4)
-        yield {"striker.mass_g": mass}, _with(experiment, batch, run, changed)
+        mass = float(chain.striker_mass[0]) * factor
+        # The contact keeps its radius, so that a ball keeps its size.
+        if likely_ball(mass, float(np.max(chain.striker_radius))):
+            changed = replace(chain, striker_mass=chain.striker_mass * factor)
+            yield {"striker.mass_g": round(mass * 1e3, 4)}, _with(experiment, batch, run, changed)
     for force in PRELOADS:
         changed = replace(chain, static_force=chain.static_force + force)
         yield {"chain.static_force_N": float(changed.static_force[0])}, _with(experiment, batch, run, changed)

@@ -104,6 +104,11 @@ class Verdict(_Part, kw_only=True):
     timing_s: dict[str, float]
     simulations: int
 
+    @property
+    def sees_nothing(self) -> bool:
+        """Whether no effect of the catalogue would show in these data."""
+        return not (self.named or self.upper_limits) and bool(self.not_testable)
+
 
 class Model(_Part, kw_only=True):
     """The extended model: effects with their parameters (places included) and the record's nuisances as

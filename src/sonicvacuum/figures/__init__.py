@@ -51,6 +51,23 @@ def caption(name: str) -> str:
     return _module(name).CAPTION
 
 
+# Pictures of the full blind study, drawn from the tables that are kept of it: stem → what it shows.
+STUDY = {
+    "blind_accuracy": "Blind study: right names",
+    "blind_confusion": "Blind study: what is taken for what",
+    "blind_reliability": "Blind study: stated probabilities",
+    "blind_baselines": "Blind study: simpler rules",
+}
+STUDY_TABLES = "workflow/resources/reference/blind_full"
+
+
+def study_caption(name: str) -> str:
+    """Caption of a picture of the blind study; InputError for an unknown one."""
+    if name not in STUDY:
+        raise InputError(f"picture {name!r}: unknown; use one of {', '.join(STUDY)}")
+    return import_module(f"{__name__}.study").CAPTIONS[name.removeprefix("blind_")]
+
+
 def readme(claims) -> str:
     """Text of `figures/README.md`: figure, cards, rule and claims, with the captions.
 
@@ -70,6 +87,15 @@ def readme(claims) -> str:
             f"* Cards: {', '.join(f'`{card}`' for card in CARDS[name])}",
             f"* Claims: {', '.join(f'`{claim}`' for claim in found[name])}\n",
         ]
+    for name, title in STUDY.items():
+        table = f"{STUDY_TABLES}/{name.removeprefix('blind_')}.csv"
+        lines += [
+            f"## {title}\n",
+            f"![{title}]({name}.png)\n",
+            f"{study_caption(name)}\n",
+            f"* Files: [{name}.svg]({name}.svg), [{name}.png]({name}.png); table: [{table}](../{table})",
+            "* Module: `src/sonicvacuum/figures/study.py`; rule: `draw_kept` in `workflow/rules/blind.smk`\n",
+        ]
     return "\n".join(lines)
 
 
@@ -85,9 +111,10 @@ def _claims(path) -> dict[str, list[str]]:
 
 _README_HEAD = """# Figures
 
-Each figure is drawn from the CSV beside it, which the rule `draw` writes first; nothing else enters the
-picture. Make all of them with `snakemake --cores 2`, one with `snakemake --cores 2 figures/fig3.png`. The
-captions stand in the modules named below; this page is made from them by `sonicvacuum.figures.readme`.
+Figures 3–6 are drawn from the CSV beside each, which the rule `draw` writes first; nothing else enters the
+picture. Those of the blind study are drawn from the tables that are kept of it. Make all of them with
+`snakemake --cores 2`, one with `snakemake --cores 2 figures/fig3.png`. The captions stand in the modules
+named below; this page is made from them by `sonicvacuum.figures.readme`.
 
 The pictures of a record that `sonicvacuum discover` looked into are not kept here: they lie beside its
 verdict, in `results/discover/NAME`, drawn from the tables there by `figures/discovery.py` of the package, and

@@ -10,12 +10,11 @@ import numpy as np
 import pandas
 from matplotlib.figure import Figure
 
-from sonicvacuum.baselines.names import PANELS, RULES
+from sonicvacuum.baselines.names import DESIGNS, PANELS, RULES
 from sonicvacuum.figures import style
 from sonicvacuum.files import InputError
 
 BLUE, ORANGE, GREEN = "#0072B2", "#D55E00", "#009E73"
-DESIGNS = {"one-speed": "one speed", "scalars": "scalars only", "ball": "one ball"}
 CAPTIONS = {
     "confusion": style.paragraph("""
         What is hidden (rows, with the number of cases) and what is named (columns): number of cases, shade by
@@ -24,10 +23,11 @@ CAPTIONS = {
     """),
     "accuracy": style.paragraph("""
         Share of records with one hidden effect that are given its exact name, against the effect's
-        signal-to-noise ratio d′: (a) traces at several speeds, (b) other records, with their median d′. Bars:
-        95 % intervals (Wilson). Class level: that name, or one that the verdict calls confusable with it.
-        Dashed: what an ideal rule with full knowledge of all signatures reaches on the same records, alarmed
-        by 1 % of empty ones.
+        signal-to-noise ratio d′: (a) traces of three gauges at several speeds, (b) other records, with their
+        median d′; other set-ups: one or two gauges, 8 to 40 beads, 2 to 5 runs, half of them under a preload.
+        Bars: 95 % intervals (Wilson). Class level: that name, or one that the verdict calls confusable with
+        it. Dashed: what an ideal rule with full knowledge of all signatures reaches on the same records,
+        alarmed by 1 % of empty ones.
     """),
     "reliability": style.paragraph("""
         Stated probability of the most probable explanation against the share of cases in which it is right,
@@ -42,13 +42,20 @@ CAPTIONS = {
 }
 
 
-def draw(folder: Path, wanted=()) -> list[Path]:
+def draw(folder: Path, wanted=(), out: Path | None = None, prefix: str = "") -> list[Path]:
     """Draw the wanted pictures, or all whose tables are in the folder; the SVG files, each with its PNG.
+
+    Args:
+        folder: of the tables.
+        wanted: of `CAPTIONS`.
+        out: folder for the pictures, that of the tables unless given.
+        prefix: of the pictures' names.
 
     Raises:
         InputError: where a wanted table, or every table, is missing.
     """
     folder, written = Path(folder), []
+    stem = f"{folder if out is None else out}/{prefix}"
     chosen = list(wanted) or [name for name in CAPTIONS if (folder / f"{name}.csv").exists()]
     missing = [name for name in chosen or CAPTIONS if not (folder / f"{name}.csv").exists()]
     if missing:
@@ -62,8 +69,8 @@ def draw(folder: Path, wanted=()) -> list[Path]:
     }
     for name in chosen:
         figure = makers[name](_read(folder / f"{name}.csv"))
-        written.append(folder / f"{name}.svg")
-        style.save(figure, written[-1], folder / f"{name}.png")
+        written.append(Path(f"{stem}{name}.svg"))
+        style.save(figure, written[-1], Path(f"{stem}{name}.png"))
     return written
 
 
@@ -112,9 +119,9 @@ def _grid(axes, rows, columns):
 def accuracy(table: pandas.DataFrame) -> Figure:
     """Shares of right names against d′, from accuracy.csv."""
     with style.context():
-        figure = style.canvas(style.DOUBLE, 74.0)
+        figure = style.canvas(style.DOUBLE, 76.0)
         traces = table[(table.design == "traces") & (table.strength > 0)]
-        axes = style.panel(figure, (14.0, 20.0, 88.0, 47.0))
+        axes = style.panel(figure, (14.0, 22.0, 88.0, 47.0))
         style.title(figure, 14.0, "(a) Traces, several speeds")
         _shares(axes, traces.d_prime.to_numpy(float), traces, 1.02)
         axes.set_xscale("log")
@@ -125,10 +132,11 @@ def accuracy(table: pandas.DataFrame) -> Figure:
         axes.set_ylabel("share of records")
         handles, labels = axes.get_legend_handles_labels()
         others = _others(table)
-        side = style.panel(figure, (116.0, 20.0, 55.0, 47.0))
+        side = style.panel(figure, (116.0, 22.0, 55.0, 47.0))
         style.title(figure, 116.0, "(b) Other records")
         _shares(side, np.arange(len(others), dtype=float), others, None)
-        names = [f"{DESIGNS.get(r.design, r.design)}\nd′ {r.d_prime:.2g}" for r in others.itertuples()]
+        words = [DESIGNS.get(d, d).replace(" ", "\n") for d in others.design]
+        names = [f"{w}\nd′ {d:.2g}" for w, d in zip(words, others.d_prime, strict=True)]
         side.set_xticks(range(len(others)), names)
         side.set_xlim(-0.5, max(len(others), 1) - 0.5)
         bottom = min(0.4, *table.exact_low.astype(float) - 0.05)

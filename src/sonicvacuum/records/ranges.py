@@ -158,6 +158,11 @@ def max_of(values) -> float:
     return float(values.max())
 
 
+def likely_ball(mass: float, radius: float) -> bool:
+    """Whether a common solid makes a ball of so many kg and m; any flat striker (infinite radius) can be."""
+    return math.isinf(radius) or _likely(_density(1e3 * mass, 2e3 * radius))
+
+
 def _density(mass_g, diameter_mm):
     return mass_g * 1e-3 / (math.pi / 6.0 * (diameter_mm * 1e-3) ** 3)
 

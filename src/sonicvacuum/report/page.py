@@ -4,7 +4,7 @@ from pathlib import Path
 
 from sonicvacuum.card import Card
 from sonicvacuum.effects import IDS
-from sonicvacuum.report import blind, inline, provenance, record, tables
+from sonicvacuum.report import inline, provenance, record, study, tables
 
 
 def build(
@@ -18,6 +18,7 @@ def build(
     discoveries=(),
     blind_small=None,
     blind_full=None,
+    pictures=(),
 ) -> str:
     """The page as HTML text, figures inside.
 
@@ -27,7 +28,9 @@ def build(
         cards: resolved `Card`s.
         locks: lock files of the environment.
         discoveries: folders that `sonicvacuum discover` wrote.
-        blind_small, blind_full: summaries that `sonicvacuum score` wrote, None where there is none.
+        blind_small: summary of the small blind study, None where there is none.
+        blind_full: folder of the full study's tables, None where there is none.
+        pictures: of the full study: pairs of an SVG file and its caption.
 
     Raises:
         InputError: when a table has other columns than it should.
@@ -51,7 +54,9 @@ def build(
             cards=[_card_row(card, metrics) for card in cards],
             catalogue=len(IDS),
             discoveries=[record.section(folder) for folder in discoveries],
-            tested={"small": blind.shown(blind_small), "full": blind.shown(blind_full)},
+            full=blind_full and _full(study.read(blind_full)),
+            pictures=[_figure(svg, caption) for svg, caption in pictures],
+            small=blind_small and study.findings(tables.read(blind_small, study.SUMMARY)),
             versions=provenance.versions(),
             source=provenance.source_digest(),
             lock=provenance.digest(locks),
@@ -81,7 +86,19 @@ def _figure(svg, caption):
         "name": name,
         "number": name.removeprefix("fig"),
         "svg": inline.svg(svg, name),
+        "narrow": inline.is_narrow(svg),
         "caption": inline.with_subscripts(caption),
+    }
+
+
+def _full(found):
+    """What the page shows of the full study."""
+    return {
+        "cases": found.cases,
+        "goals": found.goals,
+        "results": study.results(found.summary),
+        "baselines": None if found.baselines is None else study.rivals(found.baselines),
+        "followed": None if found.resolved is None else study.followed(found.resolved),
     }
 
 

@@ -1,18 +1,17 @@
-"""The blind study as README and report show it, and what of it is kept in git.
+"""The blind studies as README and report show them, and what of the full one is kept in git.
 
-Tables come from `sonicvacuum score` (summary.csv) and `sonicvacuum baselines` (baselines.csv); both are
-rendered as Markdown and as HTML from the same cells.
+Tables come from `sonicvacuum score` (summary.csv and those of the pictures), `sonicvacuum baselines`
+(baselines.csv) and `sonicvacuum resolved` (resolved_summary.csv); README and report show the same cells.
 """
 
 import math
 import re
-from dataclasses import fields
-from html import escape
+from dataclasses import dataclass, fields
 from pathlib import Path
 
 import pandas as pd
 
-from sonicvacuum.baselines.names import PANELS, RULES
+from sonicvacuum.baselines.names import DESIGNS, PANELS, RULES
 from sonicvacuum.baselines.table import Line as Baseline
 from sonicvacuum.blind.score import Line
 from sonicvacuum.files import InputError, read_text, replacing
@@ -22,23 +21,115 @@ SUMMARY = [f.name for f in fields(Line)]
 BASELINES = [f.name for f in fields(Baseline)]
 BEGIN = "<!-- study: made by `snakemake publish_study`, do not edit -->"
 END = "<!-- end of study -->"
-REFERENCE = ("blind_full.csv", "blind_full_baselines.csv")
+# What is kept of a study: what must be there, and what may.
+KEPT = ("summary", "baselines", "confusion", "accuracy", "reliability", "coverage")
+ALSO_KEPT = ("resolved_summary",)
+# Where the README finds the pictures drawn from these tables.
+PICTURE = "figures/blind_{}.png"
 
-Table = tuple[list[str], list[list[str]]]
+
+@dataclass(frozen=True)
+class Table:
+    """What people read: header, cells, and how many columns after the second hold numbers."""
+
+    header: list[str]
+    rows: list[list[str]]
+    numbers: int = 0
+
+    @property
+    def markdown(self) -> str:
+        """The table in Markdown."""
+        rules = ["---:" if 2 <= k < 2 + self.numbers else "---" for k in range(len(self.header))]
+        lines = [self.header, rules, *([c.replace("|", "\\|") for c in row] for row in self.rows)]
+        return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+
+
+@dataclass(frozen=True)
+class Study:
+    """Tables of a study, as text; those not made are None.
+
+    Attributes:
+        summary: of the score.
+        baselines: of the simpler rules.
+        resolved: of one more run for ambiguous cases.
+    """
+
+    summary: pd.DataFrame
+    baselines: pd.DataFrame | None = None
+    resolved: pd.DataFrame | None = None
+
+    @property
+    def cases(self) -> int:
+        """Number of records: every one has been timed."""
+        timed = self.summary["measure"] == "seconds per record"
+        timed &= self.summary["group"].str.endswith("median")
+        return int(self.summary.loc[timed, "count"].astype(int).sum())
+
+    @property
+    def goals(self) -> tuple[int, int]:
+        """Numbers of goals met and missed."""
+        rows = [*self.summary.to_dict("records")]
+        rows += [] if self.resolved is None else self.resolved.to_dict("records")
+        found = [reached(row) for row in rows if row["count"] not in ("", "0")]
+        return found.count("met"), found.count("missed")
+
+
+def read(folder) -> Study:
+    """The tables in a folder; InputError where there is no summary.csv or one has other columns."""
+    folder = Path(folder)
+    found = {
+        name: tables.read(folder / f"{name}.csv", columns)
+        for name, columns in (("baselines", BASELINES), ("resolved_summary", SUMMARY))
+        if (folder / f"{name}.csv").exists()
+    }
+    summary = tables.read(folder / "summary.csv", SUMMARY)
+    return Study(summary, found.get("baselines"), found.get("resolved_summary"))
 
 
 def results(summary: pd.DataFrame) -> Table:
-    """Header and cells of what was asked and found; lines without cases are left out."""
+    """What was asked and found, held against the goals; lines without cases are left out."""
     header = ["asked", "of", "cases", "found", "95 %", "ideal rule", "goal", ""]
-    rows = [_result(row) for row in summary.to_dict("records") if row["count"] not in ("", "0")]
-    return header, rows
+    return Table(header, [_result(row) for row in _filled(summary)], 5)
+
+
+def findings(summary: pd.DataFrame) -> Table:
+    """What was asked and found, without judgement and times, for a study too small for either.
+
+    Times differ from run to run, and the page must not.
+    """
+    header = ["asked", "of", "cases", "found", "95 %", "ideal rule"]
+    rows = [row for row in _filled(summary) if not row["measure"].startswith("seconds")]
+    return Table(header, [_result(row)[:6] for row in rows], 4)
+
+
+def followed(resolved: pd.DataFrame) -> Table:
+    """What one more run decides."""
+    header = ["asked", "run", "cases", "found", "95 %", "goal", ""]
+    rows = [_result(row) for row in _filled(resolved)]
+    return Table(header, [[*row[:5], *row[6:]] for row in rows], 4)
+
+
+def _filled(table):
+    return [row for row in table.to_dict("records") if row["count"] not in ("", "0")]
 
 
 def _result(row):
     found, low, high, ideal = (tables.number(row[key], 3) for key in ("value", "low", "high", "ideal"))
     interval = f"{low} to {high}" if low else ""
     goal = row["goal"].replace("<=", "≤").replace(">=", "≥")
-    return [row["measure"], row["group"], row["count"], found, interval, ideal, goal, reached(row)]
+    group = row["group"].replace("d'", "d′")
+    for name, words in DESIGNS.items():
+        group = re.sub(rf"^{name}\b", words, group)
+    return [row["measure"], group, row["count"], found, interval, ideal, goal, judgement(row)]
+
+
+def judgement(row: dict) -> str:
+    """Whether a line meets its goal, in words; where not, whether the ideal rule misses it too."""
+    found = reached(row)
+    known = row["ideal"] not in ("", "nan")
+    if found == "missed" and known and reached({**row, "value": row["ideal"]}) == "missed":
+        return "missed, by the ideal rule too"
+    return found
 
 
 def reached(row: dict) -> str:
@@ -54,7 +145,7 @@ def reached(row: dict) -> str:
 
 
 def rivals(baselines: pd.DataFrame) -> Table:
-    """Header and cells of the simpler rules: one line for each rule, shares in per cent with intervals."""
+    """The simpler rules: one line for each, shares in per cent with intervals."""
     header = ["rule", *(title.split(" ", 1)[1].lower() for *_, title, _ in PANELS), "remarks"]
     cells = {(r["rule"], r["measure"], r["group"]): r for r in baselines.to_dict("records")}
     rows = []
@@ -63,7 +154,7 @@ def rivals(baselines: pd.DataFrame) -> Table:
         if any(own):
             note = next(r["note"] for r in own if r)
             rows.append([name, *(_percent(r) for r in own), note])
-    return header, rows
+    return Table(header, rows)
 
 
 def _percent(row):
@@ -74,64 +165,50 @@ def _percent(row):
     return f"{value:.1f} %{interval}, {row['count']} cases"
 
 
-def as_markdown(table: Table) -> str:
-    """A table in Markdown."""
-    header, rows = table
-    lines = [header, ["---"] * len(header), *([c.replace("|", "\\|") for c in row] for row in rows)]
-    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
-
-
-def as_html(table: Table) -> str:
-    """A table in HTML, every cell escaped."""
-    header, rows = table
-    head = "".join(f"<th>{escape(c)}</th>" for c in header)
-    body = "\n".join("<tr>" + "".join(f"<td>{escape(c)}</td>" for c in row) + "</tr>" for row in rows)
-    return f"<table><thead><tr>{head}</tr></thead>\n<tbody>{body}</tbody></table>"
-
-
-def markdown(summary: pd.DataFrame, baselines: pd.DataFrame) -> str:
-    """Both tables with a sentence each."""
-    table = results(summary)
-    met, missed = (sum(row[-1] == word for row in table[1]) for word in ("met", "missed"))
-    return "\n\n".join(
-        (
-            f"{cases(summary)} records. Of {met + missed} goals set beforehand {met} are met, {missed} "
-            "missed; the hidden effects were made apart from the engine (95 % intervals; what an ideal rule "
-            "reaches beside):",
-            as_markdown(table),
+def markdown(study: Study) -> str:
+    """The README's part: tables and pictures, with a sentence each."""
+    met, missed = study.goals
+    parts = [
+        f"{study.cases} records. Of {met + missed} goals set beforehand {met} are met, {missed} "
+        "missed; the hidden effects were made apart from the engine (95 % intervals; what an ideal rule "
+        "reaches beside):",
+        results(study.summary).markdown,
+        f"![Share of right names against the strength of what is hidden]({PICTURE.format('accuracy')})",
+        "What is taken for what, and whether stated probabilities come true: "
+        "[figures/README.md](figures/README.md).",
+    ]
+    if study.baselines is not None:
+        parts += [
             "The same records given to simpler rules (shares in per cent, 95 % intervals):",
-            as_markdown(rivals(baselines)),
-        )
-    )
+            rivals(study.baselines).markdown,
+        ]
+    if study.resolved is not None:
+        parts += [
+            "Records of which several effects were left, taken together with one more run, the one that the "
+            "verdict proposes or one drawn from all that it could propose:",
+            followed(study.resolved).markdown,
+        ]
+    return "\n\n".join(parts)
 
 
-def cases(summary: pd.DataFrame) -> int:
-    """Number of records of a study: every one has been timed."""
-    timed = (summary["measure"] == "seconds per record") & summary["group"].str.endswith("median")
-    return int(summary.loc[timed, "count"].astype(int).sum())
-
-
-def html(summary: pd.DataFrame, baselines: pd.DataFrame) -> str:
-    """Both tables one after the other."""
-    return f"{as_html(results(summary))}\n{as_html(rivals(baselines))}"
-
-
-def read(summary_path, baselines_path) -> tuple[pd.DataFrame, pd.DataFrame]:
-    """Both tables; InputError for other columns."""
-    return tables.read(summary_path, SUMMARY), tables.read(baselines_path, BASELINES)
-
-
-def publish(summary_path, baselines_path, readme_path, reference_folder) -> None:
-    """Copy both tables to their place in git and renew the README's part.
+def publish(folder, readme_path, kept_folder) -> None:
+    """Copy a study's tables to their place in git and renew the README's part.
 
     Raises:
-        InputError: where a table has other columns or the README lacks the markers; nothing is written then.
+        InputError: where a table is missing or has other columns, or the README lacks the markers; nothing
+            is written then.
     """
-    text = markdown(*read(summary_path, baselines_path))
-    renewed = with_study(read_text(readme_path), text)
-    for source, name in zip((summary_path, baselines_path), REFERENCE, strict=True):
-        with replacing(Path(reference_folder) / name) as stream:
-            stream.write(read_text(source))
+    folder, kept_folder = Path(folder), Path(kept_folder)
+    texts = {name: read_text(folder / f"{name}.csv") for name in KEPT}
+    texts |= {n: read_text(folder / f"{n}.csv") for n in ALSO_KEPT if (folder / f"{n}.csv").exists()}
+    renewed = with_study(read_text(readme_path), markdown(read(folder)))
+    for name in (*KEPT, *ALSO_KEPT):
+        path = kept_folder / f"{name}.csv"
+        if name in texts:
+            with replacing(path) as stream:
+                stream.write(texts[name])
+        else:
+            path.unlink(missing_ok=True)
     with replacing(readme_path) as stream:
         stream.write(renewed)
 

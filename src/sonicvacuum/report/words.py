@@ -66,7 +66,7 @@ def headline(verdict: Verdict) -> str:
     found, odds = effects_of(verdict), verdict.probabilities
     unknown = "unknown" in verdict.named
     if not found and not unknown:
-        return _nothing(odds)
+        return _nothing(verdict)
     if not found:
         return (
             "Something is missing, and it is unknown: a real misfit is left that no effect of the catalogue, "
@@ -94,14 +94,20 @@ def _one_of(verdict, told):
     )
 
 
-def _nothing(odds):
+def _nothing(verdict):
+    odds = verdict.probabilities
     best = max(odds, key=odds.get)
     text = "Nothing is named: the nominal model explains these data as far as they go."
     if best == "none":
+        if verdict.sees_nothing:
+            return f"{text} That says little: no effect of the catalogue would show in them."
+        what = "That nothing is missing"
+        if verdict.not_testable:
+            what = "That none of the effects that these data could show is missing"
         if odds["none"] >= 0.5:
-            return f"{text} That nothing is missing is {in_words(odds['none'])}."
+            return f"{text} {what} is {in_words(odds['none'])}."
         chance = f"has the probability {share(odds['none'])}"
-        return f"{text} That nothing is missing {chance}, more than any single rival, less than all together."
+        return f"{text} {what} {chance}, more than any single rival, less than all together."
     against = f"{share(odds[best])} against {share(odds.get('none', 0.0))} for none"
     return f"Nothing is named: the likeliest explanation, {best} ({against}), did not pass all tests."
 
