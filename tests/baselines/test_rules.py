@@ -28,15 +28,22 @@ def test_bic_pays_for_every_parameter():
 def test_nearest_shape_goes_by_the_size_of_the_cosine_alone():
     made = case([single("tsuji", 90.0, cosine=0.3), single("gravity", 2.0, cosine=-0.5), single("x", 1.0)])
     assert rules.nearest_shape(made) == "gravity"
-    assert rules.nearest_shape(made, least=0.5) == "none"
-    assert rules.likeness(made) == 0.5
+    assert rules.likeness(made) == pytest.approx(0.5 * 1000**0.5)
+    assert rules.nearest_shape(made, least=rules.likeness(made)) == "none"
     assert rules.likeness(case()) == 0.0
+
+
+def test_likeness_is_that_beyond_the_chance_of_so_many_data():
+    """A cosine of 0.9 with four data says less than one of 0.1 with a thousand."""
+    few = case([single("tsuji", 1.0, cosine=0.9)], data=4)
+    many = case([single("tsuji", 1.0, cosine=0.1)], data=1000)
+    assert rules.likeness(few) < rules.likeness(many)
 
 
 def test_least_likeness_lets_one_null_in_a_hundred_through():
     nulls = [case([single("tsuji", 1.0, cosine=k / 1000)]) for k in range(1001)]
     least = rules.least_likeness(nulls)
-    assert least == pytest.approx(0.99)
+    assert least == pytest.approx(0.99 * 1000**0.5)
     assert sum(rules.nearest_shape(c, least) != "none" for c in nulls) == 10
     assert rules.least_likeness([]) == 0.0
 

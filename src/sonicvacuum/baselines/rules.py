@@ -22,14 +22,19 @@ def bic(case: Case) -> str:
 
 
 def likeness(case: Case) -> float:
-    """Largest |cosine| between the residual and a signature, 0 where there is none."""
-    return max((abs(s.cosine) for s in case.singles if not math.isnan(s.cosine)), default=0.0)
+    """Largest |cosine| between the residual and a signature, 0 where there is none, times √N of N data.
+
+    By chance alone a cosine is of the order 1/√N: so scaled, records of few and of many data compare.
+    """
+    cosines = (abs(s.cosine) for s in case.singles if not math.isnan(s.cosine))
+    return math.sqrt(case.data) * max(cosines, default=0.0)
 
 
 def nearest_shape(case: Case, least: float = 0.0) -> str:
-    """The effect whose signature is most like the residual, none where the likeness is not above `least`."""
-    cosines = {s.effect: abs(s.cosine) for s in case.singles if not math.isnan(s.cosine)}
-    return _largest({effect: value - least for effect, value in cosines.items()})
+    """The effect whose signature is most like the residual, none where `likeness` is not above `least`."""
+    if likeness(case) <= least:
+        return NONE
+    return _largest({s.effect: abs(s.cosine) for s in case.singles if not math.isnan(s.cosine)})
 
 
 def least_likeness(nulls: list[Case]) -> float:
