@@ -1,6 +1,8 @@
 """The command: every verb explains itself, and bad input ends in one line and exit code 2."""
 
 import json
+import os
+import subprocess
 import sys
 
 import numpy as np
@@ -18,6 +20,16 @@ def call(monkeypatch, *arguments):
     except SystemExit as end:
         return end.code or 0
     return 0
+
+
+def test_linear_algebra_gets_one_thread_before_it_is_loaded():
+    """With several, the last digits of a verdict depend on the machine's load."""
+    code = (
+        "import os, sys, sonicvacuum.cli; print(os.environ['OPENBLAS_NUM_THREADS'], 'numpy' in sys.modules)"
+    )
+    free = {k: v for k, v in os.environ.items() if k != "OPENBLAS_NUM_THREADS"}
+    seen = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, env=free)
+    assert seen.stdout.split() == ["1", "False"]
 
 
 CONFIG = """\

@@ -3,12 +3,17 @@
 Bad input ends in one line on standard error and exit code 2, never in a traceback.
 """
 
+import os
 import sys
 from importlib import import_module
 
 import click
 
 from sonicvacuum.files import InputError
+
+# Sums must not depend on the number of processors, and a record keeps one of them busy: numpy's linear
+# algebra gets one thread. It reads this when it is loaded, which no verb has done yet.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 # Verb → module that holds it; the order is the order of the work.
 VERBS = {
