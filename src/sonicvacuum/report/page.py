@@ -97,6 +97,7 @@ def _full(found):
         "cases": found.cases,
         "goals": found.goals,
         "results": study.results(found.summary),
+        "held_out": study.HELD_OUT,
         "baselines": None if found.baselines is None else study.rivals(found.baselines),
         "followed": None if found.resolved is None else study.followed(found.resolved),
     }

@@ -24,6 +24,11 @@ END = "<!-- end of study -->"
 # What is kept of a study: what must be there, and what may.
 KEPT = ("summary", "baselines", "confusion", "accuracy", "reliability", "coverage")
 ALSO_KEPT = ("resolved_summary",)
+# Of the lines on held-out gaps: χ² of N data scatters by √(2N).
+HELD_OUT = (
+    "A held-out gap of d′² in N data drowns in the scatter of χ², √(2N), while d′ is below (2N)^¼, about 10 "
+    "here: the median of single records shows that scatter, the gaps added up show what is closed."
+)
 # Where the README finds the pictures drawn from these tables.
 PICTURE = "figures/blind_{}.png"
 
@@ -173,6 +178,7 @@ def markdown(study: Study) -> str:
         "missed; the hidden effects were made apart from the engine (95 % intervals; what an ideal rule "
         "reaches beside):",
         results(study.summary).markdown,
+        HELD_OUT,
         f"![Share of right names against the strength of what is hidden]({PICTURE.format('accuracy')})",
         "What is taken for what, and whether stated probabilities come true: "
         "[figures/README.md](figures/README.md).",
