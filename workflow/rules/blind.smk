@@ -134,7 +134,7 @@ rule draw_kept:
     conda:
         ENVIRONMENT
     params:
-        folder=KEPT,
+        folder=lambda wildcards, input: Path(input.table).parent,
     message:
         "Drawing {wildcards.picture} of the full study as kept in git"
     shell:
@@ -171,7 +171,7 @@ rule publish_study:
         ENVIRONMENT
     params:
         readme="README.md",
-        folder="results/blind/full",
+        folder=lambda wildcards, input: Path(input.resolved).parent,
         keep=KEPT,
     message:
         "Keeping the blind study in git and in the README"

@@ -81,7 +81,7 @@ rule page:
         discoveries=lambda wildcards, input: [
             f"--discovery {Path(path).parent}" for path in input.discoveries
         ],
-        blind_full=KEPT,
+        blind_full=lambda wildcards, input: Path(input.blind_full[0]).parent,
         pictures=lambda wildcards, input: [f"--picture {path}" for path in input.pictures],
     message:
         "Writing the report"

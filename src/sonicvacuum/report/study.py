@@ -190,8 +190,8 @@ def markdown(study: Study) -> str:
         ]
     if study.resolved is not None:
         parts += [
-            "Records of which several effects were left, taken together with one more run, the one that the "
-            "verdict proposes or one drawn from all that it could propose:",
+            "Records of which several effects were left (of a part of the study), taken together with one "
+            "more run, the one that the verdict proposes or one drawn from all that it could propose:",
             followed(study.resolved).markdown,
         ]
     return "\n\n".join(parts)
