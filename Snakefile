@@ -21,7 +21,7 @@ rule all:
         "results/blind/small/summary.csv",
         expand("results/discover/{record}/index.html", record=RECORDS),
         expand("figures/{figure}.{kind}", figure=FIGURES, kind=["csv", "svg", "png"]),
-        expand("figures/blind_{picture}.{kind}", picture=SHOWN, kind=["svg", "png"]),
+        expand("figures/{picture}.{kind}", picture=STUDY, kind=["svg", "png"]),
 
 
 include: "workflow/rules/discover.smk"

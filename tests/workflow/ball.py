@@ -1,6 +1,5 @@
-"""The smallest record there is, for tests of the flow."""
+"""The smallest record there is, for tests of the flow: one ball on a wall, rebounding as it should."""
 
-# One ball on a wall, rebounding as it should: the smallest record there is.
 RECORD = """\
 format: 1
 title: Steel ball on a steel wall

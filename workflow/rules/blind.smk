@@ -121,10 +121,10 @@ rule draw_study:
         "sonicvacuum draw-study {params.folder} --picture {wildcards.picture} > {log} 2>&1"
 
 
-# What is kept in git of the full study.
+# The full study takes hours: its tables are kept in git and drawn from there.
 rule draw_kept:
     input:
-        table=f"{KEPT}/{{picture}}.csv",
+        table=f"{STUDY_TABLES}/{{picture}}.csv",
         sources=sources("card", "study pictures"),
     output:
         svg="figures/blind_{picture}.svg",
@@ -172,7 +172,7 @@ rule publish_study:
     params:
         readme="README.md",
         folder=lambda wildcards, input: Path(input.resolved).parent,
-        keep=KEPT,
+        keep=STUDY_TABLES,
     message:
         "Keeping the blind study in git and in the README"
     shell:

@@ -1,5 +1,7 @@
 """What the rules of the blind study share: its parts, and which sources make data and which only count."""
 
+from sonicvacuum.figures import STUDY, STUDY_TABLES
+
 # Study → number of batches.
 BATCHES = {"small": 4, "training": 4, "full": 24}
 # Study → of how many batches ambiguous records get one more run, which takes two joint verdicts for every such record.
@@ -7,9 +9,6 @@ BATCHES = {"small": 4, "training": 4, "full": 24}
 FOLLOWED = {"small": 4, "training": 4, "full": 4}
 BLIND = "results/blind/{study}"
 PICTURES = ["confusion", "accuracy", "reliability", "baselines"]
-# The full study takes hours: its tables are kept in git and drawn from there, in the order of the report.
-KEPT = "workflow/resources/reference/blind_full"
-SHOWN = ["accuracy", "confusion", "reliability", "baselines"]
 DETAILS = ["confusion", "accuracy", "reliability", "coverage", "seconds"]
 CHOICES = ["proposed", "random"]
 # What only counts and compares, or comes after the verdicts: data and verdicts stay as they are when it changes.

@@ -63,8 +63,8 @@ rule page:
         locks=LOCKS,
         discoveries=expand("results/discover/{record}/index.html", record=RECORDS),
         blind_small="results/blind/small/summary.csv",
-        blind_full=sorted(Path(KEPT).glob("*.csv")),
-        pictures=expand("figures/blind_{picture}.svg", picture=SHOWN),
+        blind_full=sorted(Path(STUDY_TABLES).glob("*.csv")),
+        pictures=expand("figures/{picture}.svg", picture=STUDY),
         sources=sources("card", "report", "figures", "discover"),
     output:
         report("results/report.html", category="Report", caption="../report/page.rst"),

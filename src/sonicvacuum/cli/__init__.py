@@ -11,9 +11,9 @@ import click
 
 from sonicvacuum.files import InputError
 
-# Sums must not depend on the number of processors, and a record keeps one of them busy: numpy's linear
-# algebra gets one thread. It reads this when it is loaded, which no verb has done yet.
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+# Sums must not depend on the number of processors, nor on the threads that Snakemake gives a rule: numpy's
+# linear algebra gets one. It reads this when it is loaded, which no verb has done yet.
+os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
 # Verb → module that holds it; the order is the order of the work.
 VERBS = {

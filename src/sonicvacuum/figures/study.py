@@ -55,7 +55,6 @@ def draw(folder: Path, wanted=(), out: Path | None = None, prefix: str = "") -> 
         InputError: where a wanted table, or every table, is missing.
     """
     folder, written = Path(folder), []
-    stem = f"{folder if out is None else out}/{prefix}"
     chosen = list(wanted) or [name for name in CAPTIONS if (folder / f"{name}.csv").exists()]
     missing = [name for name in chosen or CAPTIONS if not (folder / f"{name}.csv").exists()]
     if missing:
@@ -69,8 +68,8 @@ def draw(folder: Path, wanted=(), out: Path | None = None, prefix: str = "") -> 
     }
     for name in chosen:
         figure = makers[name](_read(folder / f"{name}.csv"))
-        written.append(Path(f"{stem}{name}.svg"))
-        style.save(figure, written[-1], Path(f"{stem}{name}.png"))
+        written.append(Path(out or folder) / f"{prefix}{name}.svg")
+        style.save(figure, written[-1], written[-1].with_suffix(".png"))
     return written
 
 

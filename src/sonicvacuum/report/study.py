@@ -122,9 +122,8 @@ def _result(row):
     found, low, high, ideal = (tables.number(row[key], 3) for key in ("value", "low", "high", "ideal"))
     interval = f"{low} to {high}" if low else ""
     goal = row["goal"].replace("<=", "≤").replace(">=", "≥")
-    group = row["group"].replace("d'", "d′")
-    for name, words in DESIGNS.items():
-        group = re.sub(rf"^{name}\b", words, group)
+    design, *rest = row["group"].replace("d'", "d′").split(", ")
+    group = ", ".join([DESIGNS.get(design, design), *rest])
     return [row["measure"], group, row["count"], found, interval, ideal, goal, judgement(row)]
 
 
