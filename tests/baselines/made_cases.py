@@ -2,8 +2,8 @@
 
 import math
 
-from sonicvacuum.baselines.cases import Case, Cell, Single
-from sonicvacuum.blind.score import Row
+from sonicvacuum_blind.baselines.cases import Case, Cell, Single
+from sonicvacuum_blind.score import Row
 
 BLANK = dict.fromkeys(("closed", "before", "chi2", "seconds"), math.nan)
 

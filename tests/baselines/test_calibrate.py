@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sonicvacuum.baselines.calibrate import Outcome, calibrate, outcomes
 from sonicvacuum.discover.calibration import Calibration, of_package
 from sonicvacuum.files import InputError
+from sonicvacuum_blind.baselines.calibrate import Outcome, calibrate, outcomes
 
 NAMES = ("none", "tsuji", "gravity")
 

@@ -7,7 +7,7 @@ import pytest
 import yaml
 from made_cases import case, cell
 
-from sonicvacuum.baselines import features
+from sonicvacuum_blind.baselines import features
 
 
 @pytest.fixture

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from sonicvacuum import records
-from sonicvacuum.baselines import motion as motions
-from sonicvacuum.baselines import terms
-from sonicvacuum.blind.gauges import read
-from sonicvacuum.blind.hide import Spec, write
+from sonicvacuum_blind.baselines import motion as motions
+from sonicvacuum_blind.baselines import terms
+from sonicvacuum_blind.gauges import read
+from sonicvacuum_blind.hide import Spec, write
 
 SEED = 11
 

@@ -5,7 +5,7 @@ import math
 import pytest
 from made_cases import case, single
 
-from sonicvacuum.baselines import rules
+from sonicvacuum_blind.baselines import rules
 
 
 def test_best_chi2_takes_the_largest_gain_and_names_nearly_always():

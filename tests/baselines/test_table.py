@@ -8,11 +8,11 @@ import pytest
 from click.testing import CliRunner
 from made_cases import case, single
 
-from sonicvacuum.baselines import names, table
-from sonicvacuum.blind.score import Row
-from sonicvacuum.blind.shares import wilson
 from sonicvacuum.cli import cli
 from sonicvacuum.files import InputError
+from sonicvacuum_blind.baselines import names, table
+from sonicvacuum_blind.score import Row
+from sonicvacuum_blind.shares import wilson
 
 
 def cases():
@@ -96,7 +96,7 @@ def study(tmp_path):
 
 def run(study, *more):
     folders = [f"--{part}={study / part}" for part in ("records", "truth", "verdicts")]
-    return CliRunner().invoke(cli, ["baselines", *folders, f"--out={study / 'out.csv'}", *more])
+    return CliRunner().invoke(cli, ["blind", "baselines", *folders, f"--out={study / 'out.csv'}", *more])
 
 
 def test_command_writes_the_table(study):

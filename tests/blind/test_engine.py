@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from sonicvacuum.blind import catalogue, design
-from sonicvacuum.blind.prediction import predict
-from sonicvacuum.blind.record import as_record
 from sonicvacuum.effects import CATALOGUE, effect
 from sonicvacuum.records.predict import Conditions
 from sonicvacuum.records.predict import predict as engine
+from sonicvacuum_blind import catalogue, design
+from sonicvacuum_blind.prediction import predict
+from sonicvacuum_blind.record import as_record
 
 # Largest difference over the largest reading: errors of peaks and arrivals of the engine's step.
 USUAL = 3e-5

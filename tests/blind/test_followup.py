@@ -9,15 +9,15 @@ import pytest
 from click.testing import CliRunner
 
 from sonicvacuum import records
-from sonicvacuum.blind import followup, study
-from sonicvacuum.blind.followup import ambiguous, follow, offers, random_change, under
-from sonicvacuum.blind.hide import TOLERANCE, Spec, hide, laboratory
-from sonicvacuum.blind.plan import G
-from sonicvacuum.blind.prediction import predict
 from sonicvacuum.cli import cli
 from sonicvacuum.discover.next_experiment import changes
 from sonicvacuum.discover.problem import experiment
 from sonicvacuum.files import InputError
+from sonicvacuum_blind import followup, study
+from sonicvacuum_blind.followup import ambiguous, follow, offers, random_change, under
+from sonicvacuum_blind.hide import TOLERANCE, Spec, hide, laboratory
+from sonicvacuum_blind.plan import G
+from sonicvacuum_blind.prediction import predict
 
 SPEC = Spec("a", "single", "one-speed", "white", ("sensor-gain",), 10.0, 5, 40)
 SCALARS = Spec("s", "null", "scalars", "white", (), 0.0, 5, 41)
@@ -180,7 +180,7 @@ def test_command_makes_the_runs_of_ambiguous_cases(tmp_path):
     for id, content in given.items():
         (tmp_path / "verdicts" / id).mkdir(parents=True)
         (tmp_path / "verdicts" / id / "verdict.json").write_text(json.dumps(content))
-    call = ["follow", "--cases", "cases.csv", "--verdicts", "verdicts", "--choice", "proposed"]
+    call = ["blind", "follow", "--cases", "cases.csv", "--verdicts", "verdicts", "--choice", "proposed"]
     call = [str(tmp_path / c) if c in ("cases.csv", "verdicts") else c for c in call]
     done = CliRunner().invoke(cli, [*call, "--records", str(tmp_path / "out")], catch_exceptions=False)
     assert done.output.split() == ["a"]

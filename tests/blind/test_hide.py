@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from sonicvacuum import records
-from sonicvacuum.blind import catalogue, foreign, study
-from sonicvacuum.blind.hide import Spec, hide, write
+from sonicvacuum_blind import catalogue, foreign, study
+from sonicvacuum_blind.hide import Spec, hide, write
 
 CASES = [
     Spec("a", "single", "traces", "white", ("viscous-drag",), 10.0, 5, 0),

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from scipy.special import gamma
 
-from sonicvacuum.blind.gauges import bounce
-from sonicvacuum.blind.integrate import Problem, integrate
-from sonicvacuum.blind.laws import B, hertz_rows
-from sonicvacuum.blind.plan import G, Gauge, Plan, Solid, problem
+from sonicvacuum_blind.gauges import bounce
+from sonicvacuum_blind.integrate import Problem, integrate
+from sonicvacuum_blind.laws import B, hertz_rows
+from sonicvacuum_blind.plan import G, Gauge, Plan, Solid, problem
 
 STEEL = Solid("steel", 193e9, 0.3)
 POLYMER = Solid("polymer", 15e9, 0.388)

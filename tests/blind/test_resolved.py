@@ -7,10 +7,10 @@ import math
 import pytest
 from click.testing import CliRunner
 
-from sonicvacuum.blind.resolved import Followed, resolved, row, summary
-from sonicvacuum.blind.shares import wilson
 from sonicvacuum.cli import cli
 from sonicvacuum.files import InputError
+from sonicvacuum_blind.resolved import Followed, resolved, row, summary
+from sonicvacuum_blind.shares import wilson
 
 TRUTH = {"id": "x", "design": "traces", "noise": "white", "effects": ["tsuji"], "d_prime": 10.0}
 FIRST = {
@@ -78,11 +78,11 @@ def folders(tmp_path):
 
 
 def test_command_writes_rows_and_table(folders):
-    call = ["resolved", "--truth", "truth", "--verdicts", "first"]
+    call = ["blind", "resolved", "--truth", "truth", "--verdicts", "first"]
     for choice in ("proposed", "random"):
         call += [f"--{choice}", f"runs/{choice}", f"joint/{choice}"]
     call += ["--out", "resolved.csv", "--summary", "summary.csv"]
-    call = [c if c.startswith("--") or c == "resolved" else str(folders / c) for c in call]
+    call = [c if c.startswith("--") or c in ("blind", "resolved") else str(folders / c) for c in call]
     done = CliRunner().invoke(cli, call, catch_exceptions=False)
     assert done.exit_code == 0
     with open(folders / "resolved.csv", newline="") as stream:

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from sonicvacuum.blind import breakdown
-from sonicvacuum.blind.score import Row, row, score
-from sonicvacuum.blind.shares import quantile, wilson
-from sonicvacuum.blind.summary import summary
 from sonicvacuum.cli import cli
 from sonicvacuum.files import InputError
+from sonicvacuum_blind import breakdown
+from sonicvacuum_blind.score import Row, row, score
+from sonicvacuum_blind.shares import quantile, wilson
+from sonicvacuum_blind.summary import summary
 
 
 def truth(id="x", kind="single", effects=("tsuji",), d_prime=10.0, **changes):
@@ -193,7 +193,7 @@ def test_command_writes_both_tables(tmp_path):
     for id in ("p", "q"):
         put(tmp_path / "truth" / "0", id, "truth.json", truth(id))
         put(tmp_path / "verdicts" / "0", id, "verdict.json", verdict())
-    arguments = ["score", "--truth", tmp_path / "truth", "--verdicts", tmp_path / "verdicts"]
+    arguments = ["blind", "score", "--truth", tmp_path / "truth", "--verdicts", tmp_path / "verdicts"]
     outputs = ["--out", tmp_path / "score.csv", "--summary", tmp_path / "summary.csv"]
     done = CliRunner().invoke(cli, [str(a) for a in arguments + outputs], catch_exceptions=False)
     assert done.exit_code == 0
@@ -223,13 +223,16 @@ def test_verdicts_without_a_needed_key_are_named():
 
 def test_hide_command_lists_cases_and_asks_for_folders(tmp_path):
     runner = CliRunner()
-    listed = runner.invoke(cli, ["hide", "--study", "small", "--list", str(tmp_path / "cases.csv")])
+    listed = runner.invoke(cli, ["blind", "hide", "--study", "small", "--list", str(tmp_path / "cases.csv")])
     assert listed.exit_code == 0
     assert len((tmp_path / "cases.csv").read_text().splitlines()) > 24
     for arguments, words in (
-        (["hide"], "--study or --cases"),
-        (["hide", "--study", "small"], "--records and --truth"),
-        (["hide", "--study", "small", "--batch", "4/4", "--records", "r", "--truth", "t"], "write k/n"),
+        (["blind", "hide"], "--study or --cases"),
+        (["blind", "hide", "--study", "small"], "--records and --truth"),
+        (
+            ["blind", "hide", "--study", "small", "--batch", "4/4", "--records", "r", "--truth", "t"],
+            "write k/n",
+        ),
     ):
         refused = runner.invoke(cli, arguments)
         assert isinstance(refused.exception, InputError)

@@ -4,7 +4,7 @@ import json
 import subprocess
 import sys
 
-from sonicvacuum.blind.hide import Spec, write
+from sonicvacuum_blind.hide import Spec, write
 
 # Python reports every file that is opened or folder that is listed; the command runs as a user would run it.
 WATCH = """
@@ -39,7 +39,18 @@ def test_the_watch_sees_who_reads_a_truth(tmp_path):
     write(Spec("case", "null", "ball", "white", (), 0.0, 3, 1), tmp_path / "records", tmp_path / "truth")
     done = run(
         tmp_path,
-        *["score", "--truth", "truth", "--verdicts", "records", "--out", "a.csv", "--summary", "b.csv"],
+        *[
+            "blind",
+            "score",
+            "--truth",
+            "truth",
+            "--verdicts",
+            "records",
+            "--out",
+            "a.csv",
+            "--summary",
+            "b.csv",
+        ],
     )
     assert done.returncode == 2
     assert "TOUCHED" in done.stderr

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from sonicvacuum.blind import catalogue, design
-from sonicvacuum.blind.prediction import Errors, predict
-from sonicvacuum.blind.signature import Frame
-from sonicvacuum.blind.strength import (
+from sonicvacuum_blind import catalogue, design
+from sonicvacuum_blind.prediction import Errors, predict
+from sonicvacuum_blind.signature import Frame
+from sonicvacuum_blind.strength import (
     LARGEST,
     Rival,
     ceiling,

@@ -3,7 +3,8 @@
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-from sonicvacuum import config, figures, study
+from sonicvacuum import config, study
+from sonicvacuum_paper import figures
 
 
 @pytest.fixture(scope="session")

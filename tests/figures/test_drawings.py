@@ -11,8 +11,10 @@ import pytest
 from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
-from sonicvacuum import figures
-from sonicvacuum.figures import printed, style, traces
+from sonicvacuum.figures import style
+from sonicvacuum_paper import figures
+from sonicvacuum_paper.figures import printed, traces
+from sonicvacuum_paper.report import guide
 
 NAMES = figures.names()
 
@@ -187,7 +189,8 @@ def test_labels_count_beads_as_the_paper_does():
 
 def test_importing_the_package_loads_neither_matplotlib_nor_pandas():
     code = (
-        "import sys, sonicvacuum.figures as f; f.names(); print({'matplotlib', 'pandas'} & set(sys.modules))"
+        "import sys, sonicvacuum_paper.figures as f; f.names(); "
+        "print({'matplotlib', 'pandas'} & set(sys.modules))"
     )
     seen = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert seen.stdout.strip() == "set()"
@@ -195,14 +198,14 @@ def test_importing_the_package_loads_neither_matplotlib_nor_pandas():
 
 def test_the_readme_is_the_one_that_registry_and_claims_make(pytestconfig):
     root = pytestconfig.rootpath
-    made = figures.readme(root / "workflow/resources/claims.csv")
+    made = guide.text(root / "workflow/resources/claims.csv")
     assert (root / "figures/README.md").read_text(encoding="utf-8") == made, (
-        "write figures/README.md again with sonicvacuum.figures.readme"
+        "write figures/README.md again with sonicvacuum_paper.report.guide"
     )
 
 
 def test_every_claim_about_a_figure_is_listed_with_it(pytestconfig):
-    text = figures.readme(pytestconfig.rootpath / "workflow/resources/claims.csv")
+    text = guide.text(pytestconfig.rootpath / "workflow/resources/claims.csv")
     part = {name: text.split(f"## Fig. {name[3:]}\n")[1].split("\n## ")[0] for name in NAMES}
     for name, claim in (("fig3", "fig3a-speed"), ("fig4", "fig4a-slope"), ("fig5", "fig5a-less-split")):
         assert f"`{claim}`" in part[name]

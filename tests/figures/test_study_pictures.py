@@ -8,12 +8,12 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from test_drawings import texts
 
-from sonicvacuum.baselines import names
-from sonicvacuum.baselines.table import Line
-from sonicvacuum.blind import breakdown, catalogue
-from sonicvacuum.blind.score import write_table
-from sonicvacuum.figures import study
 from sonicvacuum.files import InputError
+from sonicvacuum_blind import breakdown, catalogue
+from sonicvacuum_blind import figures as study
+from sonicvacuum_blind.baselines import names
+from sonicvacuum_blind.baselines.table import Line
+from sonicvacuum_blind.score import write_table
 
 IDS = [e.id for e in catalogue.ENTRIES]
 PICTURES = ["confusion", "accuracy", "reliability", "baselines"]

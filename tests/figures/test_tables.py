@@ -5,11 +5,12 @@ import numpy as np
 import pandas
 import pytest
 
-from sonicvacuum import figures, study
-from sonicvacuum.figures import fig4, printed, traces
+from sonicvacuum import study
 from sonicvacuum.files import InputError
-from sonicvacuum.paper.printed import PRINTED
 from sonicvacuum.physics.solitary import SolitaryWave
+from sonicvacuum_paper import figures
+from sonicvacuum_paper.figures import fig4, printed, traces
+from sonicvacuum_paper.printed import PRINTED
 
 TRACES = ["fig3", "fig5", "fig6"]
 

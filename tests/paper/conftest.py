@@ -5,9 +5,9 @@ from pathlib import Path
 import pytest
 
 from sonicvacuum import config, study
-from sonicvacuum.paper.columns import Metrics
-from sonicvacuum.paper.metrics import card_rows
-from sonicvacuum.paper.stages import derived_rows
+from sonicvacuum_paper.columns import Metrics
+from sonicvacuum_paper.metrics import card_rows
+from sonicvacuum_paper.stages import derived_rows
 
 ROOT = Path(__file__).parents[2]
 

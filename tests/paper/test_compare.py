@@ -2,9 +2,9 @@
 
 import pytest
 
-from sonicvacuum.paper import compare
-from sonicvacuum.paper.columns import Metrics
-from sonicvacuum.paper.rows import Row, absent
+from sonicvacuum_paper import compare
+from sonicvacuum_paper.columns import Metrics
+from sonicvacuum_paper.rows import Row, absent
 
 COLUMNS = {"matched": ["matched", "nominal"], "named": ["named"]}
 

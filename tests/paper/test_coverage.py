@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from sonicvacuum.paper import ledger
-from sonicvacuum.paper.assumptions import Assumption
-from sonicvacuum.paper.ledger import Claim, found_in_columns, read_table
-from sonicvacuum.paper.rows import COLUMNS
+from sonicvacuum_paper import ledger
+from sonicvacuum_paper.assumptions import Assumption
+from sonicvacuum_paper.ledger import Claim, found_in_columns, read_table
+from sonicvacuum_paper.rows import COLUMNS
 
 RESOURCES = Path(__file__).parents[2] / "workflow" / "resources"
 

@@ -11,10 +11,10 @@ import pytest
 
 from sonicvacuum import config, study
 from sonicvacuum.files import InputError
-from sonicvacuum.paper import contacts, gauges, trains
-from sonicvacuum.paper.metrics import card_rows
-from sonicvacuum.paper.one_run import OneRun
 from sonicvacuum.physics.solitary import SolitaryWave
+from sonicvacuum_paper import contacts, gauges, trains
+from sonicvacuum_paper.metrics import card_rows
+from sonicvacuum_paper.one_run import OneRun
 
 # Hump of the long-wave soliton of Eq. (3) for beads of 4.86 mm: w = 5a/(√10 V).
 SPEED, WIDTH, START, FORCE = 200.0, 38.4e-6, 120e-6, 6.0

@@ -6,11 +6,11 @@ import math
 import pytest
 
 from sonicvacuum.files import InputError
-from sonicvacuum.paper import assumptions, ledger
-from sonicvacuum.paper.assumptions import Assumption
-from sonicvacuum.paper.columns import Metrics
-from sonicvacuum.paper.ledger import Claim
-from sonicvacuum.paper.rows import Row, absent
+from sonicvacuum_paper import assumptions, ledger
+from sonicvacuum_paper.assumptions import Assumption
+from sonicvacuum_paper.columns import Metrics
+from sonicvacuum_paper.ledger import Claim
+from sonicvacuum_paper.rows import Row, absent
 
 COLUMNS = {"handbook": ["handbook", "nominal"], "matched": ["matched", "nominal"]}
 

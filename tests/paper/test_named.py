@@ -10,10 +10,10 @@ from sonicvacuum import config, study
 from sonicvacuum.card import ModelBlock, load
 from sonicvacuum.cli.card import card as card_command
 from sonicvacuum.cli.simulate import simulate
+from sonicvacuum.discover.extended import OF_MATERIAL, extended
 from sonicvacuum.discover.verdict import Model
 from sonicvacuum.effects import CATALOGUE
 from sonicvacuum.files import InputError
-from sonicvacuum.paper.named import OF_MATERIAL, extended
 
 
 def model(ratio=1.0, **effects):

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sonicvacuum.files import InputError
-from sonicvacuum.paper.rows import Row, absent, number, read_rows, write_absent, write_rows
+from sonicvacuum_paper.rows import Row, absent, number, read_rows, write_absent, write_rows
 
 NAMES = st.text("abcdefghij0123456789._-@", min_size=1, max_size=8)
 ROWS = st.lists(

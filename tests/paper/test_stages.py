@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from sonicvacuum.paper import write_assumptions, write_ledger, write_metrics
-from sonicvacuum.paper.rows import read_rows, write_rows
+from sonicvacuum_paper.rows import read_rows, write_rows
+from sonicvacuum_paper.stages import write_assumptions, write_ledger, write_metrics
 
 RESOURCES = Path(__file__).parents[2] / "workflow" / "resources"
 

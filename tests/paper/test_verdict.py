@@ -7,7 +7,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from sonicvacuum.files import InputError
-from sonicvacuum.paper.verdict import DISAGREES, LIMIT, NOT_TESTABLE, REPRODUCED, TESTS, Target, judge
+from sonicvacuum_paper.verdict import DISAGREES, LIMIT, NOT_TESTABLE, REPRODUCED, TESTS, Target, judge
 
 VALUES = st.floats(-1e6, 1e6)
 SIGMAS = st.floats(1e-6, 1e6)

@@ -6,8 +6,9 @@ from made_verdicts import write
 
 from sonicvacuum.figures import discovery
 from sonicvacuum.files import InputError
-from sonicvacuum.report import publish, study, tables
-from sonicvacuum.report.page import CLAIMS, build
+from sonicvacuum_blind import report as study
+from sonicvacuum_paper.report import publish, tables
+from sonicvacuum_paper.report.page import CLAIMS, build
 
 FIRST = ("measure", "group", "count", "value", "low", "high", "goal")
 SUMMARY = [

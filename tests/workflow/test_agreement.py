@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sonicvacuum.files import InputError
-from sonicvacuum.report.agreement import differences, read_tolerances, readable
+from sonicvacuum_paper.report.agreement import differences, read_tolerances, readable
 
 
 def tolerances(absolute=0.0, relative=1e-3, column="value"):

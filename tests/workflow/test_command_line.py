@@ -77,7 +77,9 @@ def test_the_help_lists_all_verbs(monkeypatch, capsys):
 def test_from_card_to_signals(monkeypatch, card, tmp_path):
     history, signals, metrics = (tmp_path / name for name in ("h.npz", "s.csv", "m.csv"))
     assert call(monkeypatch, "simulate", card, "--out", history) == 0
-    assert call(monkeypatch, "observe", card, history, "--signals", signals, "--metrics", metrics) == 0
+    assert (
+        call(monkeypatch, "paper", "observe", card, history, "--signals", signals, "--metrics", metrics) == 0
+    )
     assert signals.read_text().splitlines()[0] == "run,speed_m_s,time_us,g2,wall"
     table = np.loadtxt(signals, delimiter=",", skiprows=1)
     assert table.shape == (401, 5)
@@ -129,7 +131,7 @@ def test_a_file_that_is_no_history_is_named(monkeypatch, capsys, card, tmp_path)
     history = tmp_path / "h.npz"
     history.write_text("nothing")
     outputs = ("--signals", tmp_path / "s.csv", "--metrics", tmp_path / "m.csv")
-    shown = failing(monkeypatch, capsys, "observe", card, history, *outputs)
+    shown = failing(monkeypatch, capsys, "paper", "observe", card, history, *outputs)
     assert "h.npz: not a saved simulation" in shown
     assert not (tmp_path / "s.csv").exists()
 
@@ -143,6 +145,16 @@ def test_a_bad_configuration_is_named_with_its_key(monkeypatch, capsys, config):
 
 def test_an_unknown_figure_is_refused(monkeypatch, capsys, tmp_path):
     shown = failing(
-        monkeypatch, capsys, "draw", "fig9", "--cards", tmp_path, "--histories", tmp_path, "--out", tmp_path
+        monkeypatch,
+        capsys,
+        "paper",
+        "draw",
+        "fig9",
+        "--cards",
+        tmp_path,
+        "--histories",
+        tmp_path,
+        "--out",
+        tmp_path,
     )
     assert "'fig9': unknown; use one of fig3" in shown

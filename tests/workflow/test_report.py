@@ -8,8 +8,8 @@ import pytest
 
 from sonicvacuum import config
 from sonicvacuum.files import InputError
-from sonicvacuum.report import publish, tables, timings
-from sonicvacuum.report.page import CLAIMS, build
+from sonicvacuum_paper.report import publish, tables, timings
+from sonicvacuum_paper.report.page import CLAIMS, build
 
 LEDGER = [
     (

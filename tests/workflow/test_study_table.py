@@ -5,12 +5,12 @@ import math
 import pytest
 from click.testing import CliRunner
 
-from sonicvacuum.baselines import names
-from sonicvacuum.baselines.table import Line as Baseline
-from sonicvacuum.blind.score import Line, write_table
 from sonicvacuum.cli import cli
 from sonicvacuum.files import InputError
-from sonicvacuum.report import study
+from sonicvacuum_blind import report as study
+from sonicvacuum_blind.baselines import names
+from sonicvacuum_blind.baselines.table import Line as Baseline
+from sonicvacuum_blind.score import Line, write_table
 
 NAN = math.nan
 README = f"# Title\n\n{study.BEGIN}\nformer text\n{study.END}\n\nafter\n"
@@ -92,7 +92,7 @@ def test_the_readme_holds_all_tables_and_counts_the_goals(folder):
 def test_publish_keeps_tables_and_renews_the_readme(folder, tmp_path):
     readme, kept = tmp_path / "README.md", tmp_path / "kept"
     readme.write_text(README)
-    call = ["publish-study", str(folder), f"--readme={readme}", f"--keep={kept}"]
+    call = ["blind", "publish", str(folder), f"--readme={readme}", f"--keep={kept}"]
     done = CliRunner().invoke(cli, call)
     assert done.exit_code == 0, done.output
     names = sorted(path.name for path in folder.iterdir())

@@ -4,13 +4,14 @@ import sys
 from pathlib import Path
 
 import pandas
+import pictures
 
-from sonicvacuum.figures import bench, style
+from sonicvacuum.figures import style
 
 folder = Path(sys.argv[1])
 tables = {name: pandas.read_csv(folder / f"bench_{name}.csv") for name in ("accuracy", "length", "lanes")}
 for name, figure in (
-    ("accuracy", bench.draw_accuracy(tables["accuracy"])),
-    ("cost", bench.draw_cost(tables["length"], tables["lanes"])),
+    ("accuracy", pictures.draw_accuracy(tables["accuracy"])),
+    ("cost", pictures.draw_cost(tables["length"], tables["lanes"])),
 ):
     style.save(figure, folder / f"bench_{name}.svg", folder / f"bench_{name}.png")

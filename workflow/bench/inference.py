@@ -11,9 +11,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from peers import dop853_chain
 
-from sonicvacuum.blind import hide, study
 from sonicvacuum.discover import forward
 from sonicvacuum.discover.session import discover
+from sonicvacuum_blind import hide, study
 
 EFFECT, STRENGTH = "tsuji", 10.0
 SAMPLE = 40

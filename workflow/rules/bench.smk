@@ -3,9 +3,8 @@
 
 rule bench:
     input:
-        sources("card", "physics", "discover", "blind"),
+        sources("simulate", "discover", "blind hide", without=PAGES),
         bench=Path("workflow/bench").glob("*.[pc]*"),
-        drawing="src/sonicvacuum/figures/bench.py",
     output:
         "results/bench.csv",
         "results/bench.md",

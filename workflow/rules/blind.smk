@@ -14,7 +14,7 @@ wildcard_constraints:
 
 rule hide:
     input:
-        sources=sources_of_data(),
+        sources=sources("blind hide"),
     output:
         records=directory(f"{BLIND}/records/{{batch}}"),
         truth=directory(f"{BLIND}/truth/{{batch}}"),
@@ -29,14 +29,14 @@ rule hide:
     message:
         "Hiding effects in batch {wildcards.batch} of the {wildcards.study} study"
     shell:
-        "sonicvacuum hide --study {wildcards.study} --batch {wildcards.batch}/{params.batches}"
+        "sonicvacuum blind hide --study {wildcards.study} --batch {wildcards.batch}/{params.batches}"
         " --records {output.records} --truth {output.truth} > {log} 2>&1"
 
 
 rule discover_hidden:
     input:
         records=f"{BLIND}/records/{{batch}}",
-        sources=sources("card", "physics", "discover"),
+        sources=sources("discover", without=PAGES),
     output:
         directory(f"{BLIND}/verdicts/{{batch}}"),
     log:
@@ -55,7 +55,7 @@ rule score:
     input:
         truth=batches("truth"),
         verdicts=batches("verdicts"),
-        sources=sources("card", "blind"),
+        sources=sources("blind score"),
     output:
         f"{BLIND}/score.csv",
         f"{BLIND}/summary.csv",
@@ -71,7 +71,7 @@ rule score:
     message:
         "Scoring the {wildcards.study} study"
     shell:
-        "sonicvacuum score --truth {params.folder}/truth --verdicts {params.folder}/verdicts"
+        "sonicvacuum blind score --truth {params.folder}/truth --verdicts {params.folder}/verdicts"
         " --out {params.folder}/score.csv --summary {params.folder}/summary.csv --tables {params.folder}"
         " > {log} 2>&1"
 
@@ -83,7 +83,7 @@ rule baselines:
         verdicts=batches("verdicts"),
         training=training,
         lock="requirements-study.lock",
-        sources=sources("card", "baselines"),
+        sources=sources("blind baselines"),
     output:
         f"{BLIND}/baselines.csv",
     log:
@@ -98,14 +98,14 @@ rule baselines:
     message:
         "Trying simpler rules on the {wildcards.study} study"
     shell:
-        "sonicvacuum baselines --records {params.folder}/records --truth {params.folder}/truth"
+        "sonicvacuum blind baselines --records {params.folder}/records --truth {params.folder}/truth"
         " --verdicts {params.folder}/verdicts {params.training} --out {output} > {log} 2>&1"
 
 
 rule draw_study:
     input:
         table=f"{BLIND}/{{picture}}.csv",
-        sources=sources("card", "study pictures"),
+        sources=sources("blind draw"),
     output:
         svg=f"{BLIND}/{{picture}}.svg",
         png=f"{BLIND}/{{picture}}.png",
@@ -118,14 +118,14 @@ rule draw_study:
     message:
         "Drawing {wildcards.picture} of the {wildcards.study} study"
     shell:
-        "sonicvacuum draw-study {params.folder} --picture {wildcards.picture} > {log} 2>&1"
+        "sonicvacuum blind draw {params.folder} --picture {wildcards.picture} > {log} 2>&1"
 
 
 # The full study takes hours: its tables are kept in git and drawn from there.
 rule draw_kept:
     input:
         table=f"{STUDY_TABLES}/{{picture}}.csv",
-        sources=sources("card", "study pictures"),
+        sources=sources("blind draw"),
     output:
         svg="figures/blind_{picture}.svg",
         png="figures/blind_{picture}.png",
@@ -138,7 +138,7 @@ rule draw_kept:
     message:
         "Drawing {wildcards.picture} of the full study as kept in git"
     shell:
-        "sonicvacuum draw-study {params.folder} --picture {wildcards.picture} --out figures --prefix blind_ > {log} 2>&1"
+        "sonicvacuum blind draw {params.folder} --picture {wildcards.picture} --out figures --prefix blind_ > {log} 2>&1"
 
 
 # The small study with what the default environment can draw; its baselines: blind_small_baselines.
@@ -176,14 +176,14 @@ rule publish_study:
     message:
         "Keeping the blind study in git and in the README"
     shell:
-        "sonicvacuum publish-study {params.folder} --readme {params.readme} --keep {params.keep} > {log} 2>&1"
+        "sonicvacuum blind publish {params.folder} --readme {params.readme} --keep {params.keep} > {log} 2>&1"
 
 
 # One more run for each case left ambiguous: the one that its verdict proposes, or a random one.
 rule follow:
     input:
         verdicts=f"{BLIND}/verdicts/{{batch}}",
-        sources=sources_of_data() + sources("follow"),
+        sources=sources("blind follow"),
     output:
         directory(f"{BLIND}/followed/{{choice}}/{{batch}}"),
     log:
@@ -197,7 +197,7 @@ rule follow:
     message:
         "Making {wildcards.choice} runs for ambiguous cases in batch {wildcards.batch} of the {wildcards.study} study"
     shell:
-        "sonicvacuum follow --study {wildcards.study} --batch {wildcards.batch}/{params.batches}"
+        "sonicvacuum blind follow --study {wildcards.study} --batch {wildcards.batch}/{params.batches}"
         " --verdicts {input.verdicts} --choice {wildcards.choice} --records {output} > {log} 2>&1"
 
 
@@ -205,7 +205,7 @@ rule discover_followed:
     input:
         records=f"{BLIND}/records/{{batch}}",
         followed=f"{BLIND}/followed/{{choice}}/{{batch}}",
-        sources=sources("card", "physics", "discover"),
+        sources=sources("discover", without=PAGES),
     output:
         directory(f"{BLIND}/joint/{{choice}}/{{batch}}"),
     log:
@@ -230,7 +230,7 @@ rule resolved:
         proposed_joint=some_batches("joint/proposed"),
         random=some_batches("followed/random"),
         random_joint=some_batches("joint/random"),
-        sources=sources("card", "resolved"),
+        sources=sources("blind resolved"),
     output:
         rows=f"{BLIND}/resolved.csv",
         summary=f"{BLIND}/resolved_summary.csv",
@@ -245,7 +245,7 @@ rule resolved:
     message:
         "Counting the ambiguous cases of the {wildcards.study} study that one more run decides"
     shell:
-        "sonicvacuum resolved --truth {params.folder}/truth --verdicts {params.folder}/verdicts"
+        "sonicvacuum blind resolved --truth {params.folder}/truth --verdicts {params.folder}/verdicts"
         " --proposed {params.folder}/followed/proposed {params.folder}/joint/proposed"
         " --random {params.folder}/followed/random {params.folder}/joint/random"
         " --out {output.rows} --summary {output.summary} > {log} 2>&1"

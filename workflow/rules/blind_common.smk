@@ -1,7 +1,10 @@
-"""What the rules of the blind study share: its parts, and which sources make data and which only count."""
+"""What the rules of the blind study share: its parts and batches."""
 
-from sonicvacuum.figures import STUDY, STUDY_TABLES
+from sonicvacuum_blind import kept
 
+# Pictures of the full study and its tables as kept in git.
+STUDY = kept.PICTURES
+STUDY_TABLES = kept.TABLES
 # Study → number of batches.
 BATCHES = {"small": 4, "training": 4, "full": 24}
 # Study → of how many batches ambiguous records get one more run, which takes two joint verdicts for every such record.
@@ -11,17 +14,6 @@ BLIND = "results/blind/{study}"
 PICTURES = ["confusion", "accuracy", "reliability", "baselines"]
 DETAILS = ["confusion", "accuracy", "reliability", "coverage", "seconds"]
 CHOICES = ["proposed", "random"]
-# What only counts and compares, or comes after the verdicts: data and verdicts stay as they are when it changes.
-COUNTING = {"score", "shares", "summary", "breakdown", "calibrate", "followup", "resolved"}
-LAYERS["baselines"] = ["baselines", "records", "blind", "discover/locate.py", "cli/baselines.py"]
-LAYERS["follow"] = ["blind/followup.py", "cli/follow.py"]
-LAYERS["resolved"] = ["blind/resolved.py", "blind/score.py", "blind/shares.py", "cli/follow.py"]
-LAYERS["study pictures"] = ["figures/study.py", "figures/style.py", "baselines/names.py", "cli/baselines.py"]
-
-
-def sources_of_data():
-    """Sources that make the hidden-effect data; neither engine nor scores are among them."""
-    return [path for path in sources("card", "blind") if Path(path).stem not in COUNTING]
 
 
 def batches(part):

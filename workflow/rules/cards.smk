@@ -4,7 +4,7 @@
 rule card:
     input:
         model=model_of,
-        sources=lambda wildcards: sources("card", *(["model"] if model_of(wildcards) else [])),
+        sources=lambda wildcards: sources("card", without=[] if model_of(wildcards) else MODEL),
     output:
         "results/cards/{card}.json",
     log:

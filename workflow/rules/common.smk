@@ -1,4 +1,4 @@
-"""What all rules share: the checked configuration, the names of cards and figures, the sources of each layer."""
+"""What all rules share: the checked configuration, the names of cards and figures, the sources of each verb."""
 
 import sys
 from pathlib import Path
@@ -7,8 +7,9 @@ import msgspec
 from snakemake.exceptions import WorkflowError
 
 from sonicvacuum import config as configuration
-from sonicvacuum.figures import caption, cards_of
+from sonicvacuum.cli.sources import files
 from sonicvacuum.files import InputError
+from sonicvacuum_paper.figures import caption, cards_of
 
 CONFIG_FILE = "config.yaml"
 # For runs with conda; `make` has put the same packages on the path already.
@@ -37,39 +38,16 @@ wildcard_constraints:
     record="[^/]+",
 
 
-# Snakemake does not see edits to an installed package: each rule names the sources it runs as inputs.
-# A layer is a module or a package below src/sonicvacuum; every rule depends on the locked environment too.
-LAYERS = {
-    "card": ["card.py", "materials.py", "config.py", "files.py", "cli/__init__.py", "cli/card.py"],
-    "model": ["paper/named.py", "discover/compare.py", "discover/verdict.py"],
-    "physics": ["physics", "effects", "study.py", "observe/sensor.py", "cli/simulate.py"],
-    "observe": ["observe", "paper", "cli/observe.py"],
-    "ledger": ["paper", "cli/ledger.py"],
-    "figures": ["figures", "observe", "paper", "cli/draw.py"],
-    "report": ["report", "cli/report.py"],
-    "pages": [
-        "report",
-        "figures/discovery.py",
-        "figures/disagreement.py",
-        "figures/posterior.py",
-        "figures/style.py",
-    ],
-    "discover": ["observe", "records", "discover", "cli/discover.py"],
-    "blind": ["observe", "records", "blind", "cli/blind.py"],
-}
 LOCKS = ["requirements.lock", "requirements-build.lock"]
+# The verb `discover` loads this for pictures and page, which no rule asks it for: `record_page` makes them.
+PAGES = ["sonicvacuum.cli.page"]
+# Verbs that take a card load this where a model is put into it.
+MODEL = ["sonicvacuum.cli.model"]
 
 
-def sources(*layers):
-    """Source files of some layers and the locks, in a fixed order."""
-    package = Path("src/sonicvacuum")
-    found = set()
-    for part in (part for layer in layers for part in LAYERS[layer]):
-        path = package / part
-        found.update(
-            (p for kind in ("*.py", "*.j2", "*.css") for p in path.rglob(kind)) if path.is_dir() else [path]
-        )
-    return sorted(str(path) for path in found if path.name != "bench.py") + LOCKS
+def sources(*verbs, without=()):
+    """Files that some verbs of the command run, read off their imports, and the locks, in a fixed order."""
+    return files(verbs, without) + LOCKS
 
 
 def resolved(wildcards):

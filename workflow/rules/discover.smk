@@ -15,7 +15,7 @@ FOUND = [
 rule discover:
     input:
         record=record_files,
-        sources=sources("card", "physics", "discover"),
+        sources=sources("discover", without=PAGES),
     output:
         expand(f"{DISCOVERY}/{{name}}", name=FOUND, allow_missing=True),
     log:
@@ -36,7 +36,7 @@ rule discover:
 rule record_page:
     input:
         expand(f"{DISCOVERY}/{{name}}", name=FOUND, allow_missing=True),
-        sources=sources("card", "pages"),
+        sources=sources("page"),
     output:
         table=f"{DISCOVERY}/parameters.csv",
         page=report(f"{DISCOVERY}/index.html", category="Discovery", labels={"record": "{record}"}),

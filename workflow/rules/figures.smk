@@ -5,7 +5,7 @@ rule draw:
     input:
         cards=lambda wildcards: expand("results/cards/{card}.json", card=drawn(wildcards.figure)),
         histories=lambda wildcards: expand("results/histories/{card}.npz", card=drawn(wildcards.figure)),
-        sources=sources("card", "physics", "figures"),
+        sources=sources("paper draw"),
     output:
         table="figures/{figure}.csv",
         svg=report(
@@ -27,5 +27,5 @@ rule draw:
     message:
         "Drawing {wildcards.figure}"
     shell:
-        "sonicvacuum draw {wildcards.figure} --cards results/cards --histories results/histories"
+        "sonicvacuum paper draw {wildcards.figure} --cards results/cards --histories results/histories"
         " --out figures 2> {log}"

@@ -5,7 +5,7 @@ rule observe:
     input:
         card="results/cards/{card}.json",
         history="results/histories/{card}.npz",
-        sources=sources("card", "physics", "observe"),
+        sources=sources("paper observe"),
     output:
         signals="results/signals/{card}.csv",
         metrics="results/metrics/{card}.csv",
@@ -18,14 +18,14 @@ rule observe:
     message:
         "Reading the gauges of {wildcards.card}"
     shell:
-        "sonicvacuum observe {input.card} {input.history} --signals {output.signals}"
+        "sonicvacuum paper observe {input.card} {input.history} --signals {output.signals}"
         " --metrics {output.metrics} 2> {log}"
 
 
 rule metrics:
     input:
         metrics=expand("results/metrics/{card}.csv", card=CARDS),
-        sources=sources("card", "physics", "observe"),
+        sources=sources("paper metrics"),
     output:
         metrics="results/metrics.csv",
         absent="results/absent.csv",
@@ -42,4 +42,4 @@ rule metrics:
     message:
         "Gathering the metrics of all cards"
     shell:
-        "sonicvacuum metrics {input.metrics} --config {params.config} --out {output.metrics} 2> {log}"
+        "sonicvacuum paper metrics {input.metrics} --config {params.config} --out {output.metrics} 2> {log}"

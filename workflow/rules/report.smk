@@ -9,7 +9,7 @@ rule ledger:
         metrics="results/metrics.csv",
         absent="results/absent.csv",
         claims=CLAIMS,
-        sources=sources("card", "ledger"),
+        sources=sources("paper ledger"),
     output:
         report("results/ledger.csv", category="Tables", caption="../report/ledger.rst"),
     log:
@@ -24,7 +24,7 @@ rule ledger:
     message:
         "Holding the claims against the metrics"
     shell:
-        "sonicvacuum ledger {input.metrics} --claims {input.claims} --config {params.config}"
+        "sonicvacuum paper ledger {input.metrics} --claims {input.claims} --config {params.config}"
         " --out {output} 2> {log}"
 
 
@@ -33,7 +33,7 @@ rule audit:
         metrics="results/metrics.csv",
         absent="results/absent.csv",
         assumptions=ASSUMPTIONS,
-        sources=sources("card", "ledger"),
+        sources=sources("paper audit"),
     output:
         report("results/assumptions.csv", category="Tables", caption="../report/assumptions.rst"),
     log:
@@ -48,7 +48,7 @@ rule audit:
     message:
         "Holding the assumptions against the metrics"
     shell:
-        "sonicvacuum audit {input.metrics} --assumptions {input.assumptions} --config {params.config}"
+        "sonicvacuum paper audit {input.metrics} --assumptions {input.assumptions} --config {params.config}"
         " --out {output} 2> {log}"
 
 
@@ -65,7 +65,7 @@ rule page:
         blind_small="results/blind/small/summary.csv",
         blind_full=sorted(Path(STUDY_TABLES).glob("*.csv")),
         pictures=expand("figures/{picture}.svg", picture=STUDY),
-        sources=sources("card", "report", "figures", "discover"),
+        sources=sources("paper report"),
     output:
         report("results/report.html", category="Report", caption="../report/page.rst"),
     log:
@@ -86,7 +86,7 @@ rule page:
     message:
         "Writing the report"
     shell:
-        "sonicvacuum report --ledger {input.ledger} --assumptions {input.assumptions}"
+        "sonicvacuum paper report --ledger {input.ledger} --assumptions {input.assumptions}"
         " --metrics {input.metrics} --claims {input.claims} {params.figures}"
         " {params.cards} {params.locks} {params.discoveries} --blind-small {input.blind_small}"
         " --blind-full {params.blind_full} {params.pictures} --out {output} 2> {log}"
@@ -96,7 +96,7 @@ rule timings:
     input:
         # Benchmark files are no outputs: this waits for the last rules and reads what stands there.
         "results/report.html",
-        sources=sources("report"),
+        sources=sources("paper timings"),
     output:
         "results/benchmarks.csv",
     log:
@@ -106,7 +106,7 @@ rule timings:
     message:
         "Summarising the time that each rule took"
     shell:
-        "sonicvacuum timings results/benchmarks --out {output} 2> {log}"
+        "sonicvacuum paper timings results/benchmarks --out {output} 2> {log}"
 
 
 # Run on purpose: ledger and naming of this run become those that later runs are compared with.
@@ -130,7 +130,7 @@ rule publish:
     message:
         "Keeping the ledger in git and in the README"
     shell:
-        "sonicvacuum publish --ledger {input.ledger} --claims {input.claims} --readme {params.readme}"
+        "sonicvacuum paper publish --ledger {input.ledger} --claims {input.claims} --readme {params.readme}"
         " --guide {params.guide} --reference {params.reference} --study {input.study} --naming {params.naming}"
         " {params.benchmark} 2> {log}"
 

@@ -4,7 +4,7 @@
 rule simulate:
     input:
         card="results/cards/{card}.json",
-        sources=sources("card", "physics"),
+        sources=sources("simulate", without=MODEL),
     output:
         "results/histories/{card}.npz",
     log:

@@ -20,8 +20,8 @@ from pathlib import Path
 
 import pandas as pd
 
-from sonicvacuum.report import agreement
-from sonicvacuum.report.publish import naming
+from sonicvacuum_paper.report import agreement
+from sonicvacuum_paper.report.publish import naming
 
 PARTS = ("Snakefile", "config.yaml", "workflow", "src", "requirements.lock", "requirements-build.lock")
 # Times, by their nature different in every run.

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from sonicvacuum import records
-from sonicvacuum.baselines import forest, motion, state
-from sonicvacuum.baselines.terms import EFFECTS
-from sonicvacuum.blind.hide import Spec, write
+from sonicvacuum_blind.baselines import forest, motion, state
+from sonicvacuum_blind.baselines.terms import EFFECTS
+from sonicvacuum_blind.hide import Spec, write
 
 
 @pytest.mark.parametrize(

@@ -15,51 +15,64 @@ from sonicvacuum.files import InputError
 # linear algebra gets one. It reads this when it is loaded, which no verb has done yet.
 os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
-# Verb → module that holds it; the order is the order of the work.
+# Verb → where it stands; the order is the order of the work. The two groups at the end belong to packages
+# that the library does not import.
 VERBS = {
-    "card": "card",
-    "materials": "card",
-    "effects": "card",
-    "schema": "card",
-    "simulate": "simulate",
-    "observe": "observe",
-    "metrics": "observe",
-    "ledger": "ledger",
-    "audit": "ledger",
-    "draw": "draw",
-    "report": "report",
-    "publish": "report",
-    "timings": "report",
-    "record": "record",
-    "discover": "discover",
-    "page": "discover",
-    "compare": "discover",
-    "hide": "blind",
-    "score": "blind",
-    "follow": "follow",
-    "resolved": "follow",
-    "calibrate": "baselines",
-    "baselines": "baselines",
-    "draw-study": "baselines",
-    "publish-study": "baselines",
+    "card": "sonicvacuum.cli.card:card",
+    "materials": "sonicvacuum.cli.card:materials",
+    "effects": "sonicvacuum.cli.card:effects",
+    "schema": "sonicvacuum.cli.card:schema",
+    "simulate": "sonicvacuum.cli.simulate:simulate",
+    "record": "sonicvacuum.cli.record:record",
+    "discover": "sonicvacuum.cli.discover:discover",
+    "page": "sonicvacuum.cli.page:page",
+    "compare": "sonicvacuum.cli.compare:compare",
+    "paper": "sonicvacuum_paper.cli:paper",
+    "blind": "sonicvacuum_blind.cli:blind",
 }
 
 
 class Verbs(click.Group):
-    """A group whose commands are imported on demand, so that each verb starts fast."""
+    """A group whose commands are imported on demand, so that each verb starts fast.
+
+    Attributes:
+        verbs: verb → `module:attribute` of its command, in the order of the work.
+    """
+
+    def __init__(self, *args, verbs=None, **options):
+        super().__init__(*args, **options)
+        self.verbs = verbs or {}
 
     def list_commands(self, ctx):
         """The verbs in the order of the work."""
-        return list(VERBS)
+        return list(self.verbs)
 
     def get_command(self, ctx, name):
         """The command of one verb, None for an unknown one."""
-        if name not in VERBS:
+        if name not in self.verbs:
             return None
-        return getattr(import_module(f"{__name__}.{VERBS[name]}"), name.replace("-", "_"))
+        module, attribute = self.verbs[name].split(":")
+        return getattr(import_module(module), attribute)
+
+    def resolve_command(self, ctx, args):
+        """The command that the arguments name; a verb that does not exist gets the nearest ones named."""
+        try:
+            return super().resolve_command(ctx, args)
+        except click.UsageError as error:
+            near = nearest(args[0], self.verbs)
+            if near:
+                error.message += f" Did you mean {' or '.join(near)}?"
+            raise
 
 
-@click.group(cls=Verbs, context_settings={"help_option_names": ["-h", "--help"]})
+def nearest(name: str, verbs) -> list[str]:
+    """Up to two verbs that are spelled like a name, or those of a group that the name belongs to."""
+    from difflib import get_close_matches
+
+    return [repr(found) for found in get_close_matches(name, list(verbs), n=2, cutoff=0.6)]
+
+
+@click.group(cls=Verbs, verbs=VERBS, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(package_name="sonicvacuum")
 def cli():
     """Strongly nonlinear waves in chains of beads: simulate, compare with the paper, report."""

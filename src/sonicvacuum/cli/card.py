@@ -5,9 +5,9 @@ import json
 import click
 
 from sonicvacuum import config as configuration
-from sonicvacuum.card import Card, dump, load
+from sonicvacuum.card import dump
 from sonicvacuum.cli import existing
-from sonicvacuum.files import InputError, explain, replacing
+from sonicvacuum.files import InputError, replacing
 from sonicvacuum.materials import MATERIALS
 
 
@@ -28,6 +28,8 @@ def card(path, case, variant, model, out):
     if (wanted is None) != (model is None):
         raise InputError(f"{path}: cases.{case}: variant {variant}: {_cure(wanted)}")
     if wanted:
+        from sonicvacuum.cli.model import with_model
+
         resolved = with_model(resolved, model, wanted)
     if resolved.effects:
         from sonicvacuum.study import set_up
@@ -45,14 +47,6 @@ def _cure(wanted):
     if wanted is None:
         return "takes no model; leave --model out, or give the variant the key model"
     return f"takes the model of {wanted.record}; give --model with the model.json that discover wrote for it"
-
-
-def with_model(card: Card, path, wanted=None) -> Card:
-    """The card with a model of discover in it."""
-    from sonicvacuum.discover.compare import read_model
-    from sonicvacuum.paper.named import extended
-
-    return extended(card, read_model(path), wanted)
 
 
 @click.command()
@@ -107,17 +101,3 @@ def schema(out):
         return
     with replacing(out) as stream:
         stream.write(text)
-
-
-def read_card(path) -> Card:
-    """The card in a JSON file; InputError where it is not one."""
-    import msgspec
-
-    with open(path, "rb") as stream:
-        text = stream.read()
-    try:
-        return load(text)
-    except msgspec.ValidationError as error:
-        raise InputError(explain(error, json.loads(text), path)) from None
-    except msgspec.DecodeError as error:
-        raise InputError(f"{path}: not a card ({error}); write one with: sonicvacuum card --out") from None

@@ -1,12 +1,8 @@
-"""`sonicvacuum discover`, `page`, `compare`: what a record of measured data says is missing, told on a page,
-and a model's score on a record.
-"""
+"""`sonicvacuum discover`: what records of measured data say is missing from the model."""
 
 from pathlib import Path
 
 import click
-
-from sonicvacuum.cli import existing
 
 
 @click.command()
@@ -38,27 +34,10 @@ def discover(records, out, together, figures, threads):
         result = session.discover(*(read(p) for p in paths), threads=threads or available_threads())
         session.write(result, folder)
         if figures:
-            _illustrate(folder)
+            from sonicvacuum.cli.page import illustrate
+
+            illustrate(folder)
         click.echo(f"{', '.join(paths)}: {_sentence(result.verdict)}")
-
-
-@click.command()
-@click.argument("folders", nargs=-1, required=True, type=click.Path(exists=True, file_okay=False))
-def page(folders):
-    """Draw the pictures of what discover wrote into FOLDERS, and write its page, index.html."""
-    from sonicvacuum.report.record import section
-
-    for folder in map(Path, folders):
-        section(folder)  # what is not a discovery's folder is refused before anything is drawn
-        _illustrate(folder)
-
-
-def _illustrate(folder):
-    from sonicvacuum.figures.discovery import draw
-    from sonicvacuum.report.record import write_page
-
-    draw(folder)
-    write_page(folder)
 
 
 def _folders(records, out):
@@ -84,20 +63,3 @@ def _sentence(verdict):
     text = " + ".join(named) + (f" (probability {sure:.2f})" if sure is not None else "")
     alike = "; ".join(", ".join(c[1:]) for c in verdict.confusable)
     return text + (f"; could also be {alike}" if alike else "")
-
-
-@click.command()
-@click.argument("record", type=click.Path())
-@click.option("--model", required=True, type=existing(), help="model.json of sonicvacuum discover.")
-@click.option("--json", "path", required=True, type=click.Path(dir_okay=False), help="Score (JSON) to write.")
-@click.option("--threads", type=click.IntRange(1), help="Threads; all processors by default.")
-def compare(record, model, path, threads):
-    """Score a MODEL on a RECORD; only the record's own nuisances are fitted."""
-    from sonicvacuum.discover import compare as scoring
-    from sonicvacuum.discover.verdict import write_json
-    from sonicvacuum.physics.run import available_threads
-    from sonicvacuum.records import read
-
-    score = scoring.compare(scoring.read_model(model), read(record), threads or available_threads())
-    write_json(score, Path(path))
-    click.echo(f"{record}: {score.gap.before:.3g} before, {score.gap.after:.3g} after, floor 1")

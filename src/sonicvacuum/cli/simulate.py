@@ -3,7 +3,7 @@
 import click
 
 from sonicvacuum.cli import existing
-from sonicvacuum.cli.card import read_card, with_model
+from sonicvacuum.cli.cards import read_card
 
 
 @click.command()
@@ -19,4 +19,8 @@ def simulate(card, model, out):
     from sonicvacuum import study
 
     resolved = read_card(card)
-    study.save(study.run(with_model(resolved, model) if model else resolved), out)
+    if model:
+        from sonicvacuum.cli.model import with_model
+
+        resolved = with_model(resolved, model)
+    study.save(study.run(resolved), out)

@@ -3,7 +3,7 @@
 Laplace's approximation, priors and the bound for `unknown` are a little over- or underconfident. A tempering
 of all log weights, one shift for `none`, and shift and slope of the log odds of `unknown` mend that (Platt
 scaling with several classes: Guo et al., Proc. Mach. Learn. Res. 70, 1321, 2017). The four numbers come from
-hidden-effect data of a study of its own (`sonicvacuum calibrate`) and are kept in `calibration.json`.
+hidden-effect data of a study of its own (`sonicvacuum blind calibrate`) and are kept in `calibration.json`.
 """
 
 import math

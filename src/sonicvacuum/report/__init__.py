@@ -1,1 +1,1 @@
-"""The report: one self-contained page from the tables and figures that the pipeline wrote."""
+"""The page of a record: its verdict in words, tables and drawings."""

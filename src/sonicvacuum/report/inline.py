@@ -12,10 +12,10 @@ from sonicvacuum.report import tables
 _COLUMN = 300.0
 
 
-def environment() -> jinja2.Environment:
-    """The templates of this package; `number` shows a table's number legibly."""
+def environment(*packages: str) -> jinja2.Environment:
+    """The templates of this package and of others; `number` shows a table's number legibly."""
     found = jinja2.Environment(
-        loader=jinja2.PackageLoader("sonicvacuum.report", "."),
+        loader=jinja2.ChoiceLoader([jinja2.PackageLoader(p, ".") for p in ("sonicvacuum.report", *packages)]),
         autoescape=True,
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,

@@ -1,0 +1,24 @@
+"""`sonicvacuum compare`: a model's score on a record."""
+
+from pathlib import Path
+
+import click
+
+from sonicvacuum.cli import existing
+
+
+@click.command()
+@click.argument("record", type=click.Path())
+@click.option("--model", required=True, type=existing(), help="model.json of sonicvacuum discover.")
+@click.option("--json", "path", required=True, type=click.Path(dir_okay=False), help="Score (JSON) to write.")
+@click.option("--threads", type=click.IntRange(1), help="Threads; all processors by default.")
+def compare(record, model, path, threads):
+    """Score a MODEL on a RECORD; only the record's own nuisances are fitted."""
+    from sonicvacuum.discover import compare as scoring
+    from sonicvacuum.discover.verdict import write_json
+    from sonicvacuum.physics.run import available_threads
+    from sonicvacuum.records import read
+
+    score = scoring.compare(scoring.read_model(model), read(record), threads or available_threads())
+    write_json(score, Path(path))
+    click.echo(f"{record}: {score.gap.before:.3g} before, {score.gap.after:.3g} after, floor 1")

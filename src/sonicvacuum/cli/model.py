@@ -1,0 +1,10 @@
+"""A card with a model of `discover` put into it, for the option --model of several verbs."""
+
+from sonicvacuum.card import Card
+from sonicvacuum.discover.compare import read_model
+from sonicvacuum.discover.extended import extended
+
+
+def with_model(card: Card, path, wanted=None) -> Card:
+    """The card with the model in a file put into it."""
+    return extended(card, read_model(path), wanted)

@@ -1,0 +1,88 @@
+"""Calibration of stated probabilities on cases whose truth is known.
+
+The numbers of `discover.calibration` maximise the probability given to what was hidden: none, one effect, or
+something outside the catalogue (unknown). Pairs are left out: the probabilities are those of single effects.
+"""
+
+import csv
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+import msgspec
+import numpy as np
+from scipy.optimize import minimize
+
+from sonicvacuum.discover.calibration import Calibration
+from sonicvacuum.discover.evidence import log_weights, unknown_odds
+from sonicvacuum.files import InputError, replacing
+from sonicvacuum_blind.score import NONE, UNKNOWN, found_in, load
+
+# No probability counts as smaller: one freak case must not decide.
+_LEAST = 1e-4
+# Width of the normal priors of all four numbers about no change.
+_WIDTH = 2.0
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """One case: log weights of none and effects, log odds of unknown, and what is true."""
+
+    logs: dict[str, float]
+    unknown: float
+    truth: str
+
+
+def outcomes(truth_folder, verdict_folder) -> list[Outcome]:
+    """All cases with none or one hidden effect below two folders.
+
+    Raises:
+        InputError: where a case lacks verdict or table.
+    """
+    truths, verdicts = found_in(truth_folder, "truth.json"), found_in(verdict_folder, "verdict.json")
+    result = []
+    for id, path in sorted(truths.items()):
+        truth = load(path)
+        if truth["kind"] == "pair":
+            continue
+        if id not in verdicts:
+            raise InputError(f"{verdict_folder}: no verdict for {id}; run sonicvacuum discover on its record")
+        result.append(_outcome(truth, load(verdicts[id]), verdicts[id].parent / "candidates.csv"))
+    if not result:
+        raise InputError(f"{truth_folder}: no case without or with a single hidden effect")
+    return result
+
+
+def _outcome(truth, verdict, table: Path):
+    try:
+        with open(table, newline="", encoding="utf-8") as stream:
+            rows = [r for r in csv.DictReader(stream) if "+" not in r["effects"]]
+    except OSError as error:
+        raise InputError(f"{table}: {error.strerror}; sonicvacuum discover writes it") from None
+    logs = log_weights({r["effects"]: float(r["log10_bayes"]) * math.log(10.0) for r in rows})
+    p = verdict["alarms"].get("single", verdict["alarms"].get("none", 1.0))
+    true = {"null": NONE, "foreign": UNKNOWN}.get(truth["kind"], "+".join(truth["effects"]))
+    return Outcome(logs, math.log(unknown_odds(p)), true)
+
+
+def calibrate(cases: list[Outcome]) -> Calibration:
+    """The calibration under which what is true is most probable."""
+
+    def loss(numbers):
+        calibration = Calibration(
+            math.exp(numbers[0]), *(float(n) for n in numbers[1:3]), math.exp(numbers[3])
+        )
+        given = (calibration.probabilities(c.logs, c.unknown).get(c.truth, 0.0) for c in cases)
+        return -sum(math.log(max(p, _LEAST)) for p in given) + 0.5 * float(numbers @ numbers) / _WIDTH**2
+
+    found = minimize(loss, np.zeros(4), method="Nelder-Mead", options={"xatol": 1e-4, "fatol": 1e-4})
+    temper, none, unknown, slope = (float(n) for n in found.x)
+    return Calibration(
+        round(math.exp(temper), 4), round(none, 4), round(unknown, 4), round(math.exp(slope), 4), len(cases)
+    )
+
+
+def write(calibration: Calibration, path) -> None:
+    """As JSON."""
+    with replacing(path, "wb") as stream:
+        stream.write(msgspec.json.format(msgspec.json.encode(calibration), indent=1) + b"\n")

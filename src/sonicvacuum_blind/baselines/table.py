@@ -1,0 +1,166 @@
+"""The table of all rules on the same cases, with Wilson intervals.
+
+Counted are exact names on singles, false alarms on nulls, wrong names on cases from outside the catalogue.
+Pairs are left out: these rules name one effect or none.
+"""
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from sonicvacuum.files import InputError
+from sonicvacuum_blind import design
+from sonicvacuum_blind.baselines import rules
+from sonicvacuum_blind.baselines.cases import Case
+from sonicvacuum_blind.baselines.names import ALARM, EXACT, NULLS, OUTSIDE, SINGLES, WRONG
+from sonicvacuum_blind.breakdown import label_of_verdict
+from sonicvacuum_blind.score import NONE, UNKNOWN, Row
+from sonicvacuum_blind.shares import share, strength_bin
+from sonicvacuum_blind.study import STRENGTHS
+
+# Leftover d′ from which a case from outside the catalogue counts.
+LEFTOVER = 7.5
+METHOD, IDEAL = "sonicvacuum", "ideal rule"
+QUIETER = 100.0
+RULES = ("best-chi2", "bic", "nearest-shape", "forest", "state")
+
+
+@dataclass(frozen=True)
+class Line:
+    """Share of a group of cases: the name is exact (singles), there is a name (nulls, foreign).
+
+    Attributes:
+        rule: who names; `measure`, `group`: what is counted, on which cases.
+        count, value, low, high: share with 95 % interval (none for the ideal rule, which is computed).
+        note: on what the rule was set, and on which part of the cases it was tried.
+    """
+
+    rule: str
+    measure: str
+    group: str
+    count: int
+    value: float
+    low: float
+    high: float
+    note: str
+
+
+def lines(rule: str, names: Mapping[str, str], cases: Iterable[Case], note: str = "") -> list[Line]:
+    """Lines of one rule: names by case id; cases without a name are left out."""
+    rows = [c.row for c in cases if c.row.id in names]
+    found = []
+    for measure, group, chosen, right in _groups(rows):
+        hits = sum(right(row, names[row.id]) for row in chosen)
+        if chosen:
+            found.append(Line(rule, measure, group, len(chosen), *share(hits, len(chosen)), note))
+    return found
+
+
+def _groups(rows: list[Row]) -> Iterable[tuple[str, str, list[Row], Callable[[Row, str], bool]]]:
+    singles = [r for r in rows if r.kind == "single"]
+    for strength in STRENGTHS:
+        chosen = [r for r in singles if r.design == "traces" and strength_bin(r) == strength]
+        yield EXACT, f"traces, d' {strength:g}", chosen, _exact
+    for kind in design.KINDS:
+        if kind != "traces":
+            yield EXACT, kind, [r for r in singles if r.design == kind], _exact
+    yield EXACT, SINGLES, singles, _exact
+    yield ALARM, NULLS, [r for r in rows if r.kind == "null"], _named
+    outside = [r for r in rows if r.kind == "foreign" and r.leftover >= LEFTOVER]
+    yield WRONG, OUTSIDE, outside, _named
+
+
+def _exact(row, name):
+    return name == row.effects
+
+
+def _named(row, name):
+    return name not in (NONE, UNKNOWN)
+
+
+def ideal(cases: Iterable[Case]) -> list[Line]:
+    """The ideal rule's share on singles, as computed for each record."""
+    rows = [c.row for c in cases if not np.isnan(c.row.ideal)]
+    found = []
+    for measure, group, chosen, _ in _groups(rows):
+        if chosen and measure == EXACT:
+            value = float(np.mean([r.ideal for r in chosen]))
+            found.append(Line(IDEAL, measure, group, len(chosen), value, np.nan, np.nan, "computed"))
+    return found
+
+
+def compare(cases: list[Case], training: list[Case], wanted: Iterable[str], state_cases: int) -> list[Line]:
+    """All lines: the method's own, the ideal rule's, then those of the wanted rules in their order.
+
+    Args:
+        cases: of the study.
+        training: of another family of seeds, possibly none.
+        wanted: of `RULES`.
+        state_cases: so many cases, evenly spread, for the rule `state`.
+
+    Raises:
+        InputError: for a rule whose package is missing.
+    """
+    own = {c.row.id: label_of_verdict(c.row) for c in cases}
+    found = [*lines(METHOD, own, cases), *ideal(cases)]
+    for rule in RULES:
+        if rule in wanted:
+            found += _of_rule(rule, cases, training, state_cases)
+    return found
+
+
+def _of_rule(rule, cases, training, state_cases):
+    if rule in ("best-chi2", "bic"):
+        name = {"best-chi2": rules.best_chi2, "bic": rules.bic}[rule]
+        return lines(rule, {c.row.id: name(c) for c in cases}, cases)
+    if rule == "nearest-shape":
+        return _nearest(cases, training)
+    try:
+        return _forest(cases, training) if rule == "forest" else _state(cases, state_cases)
+    except ModuleNotFoundError as error:
+        raise InputError(f"rule {rule}: needs {error.name}, which is not installed; run make study") from None
+
+
+def _nearest(cases, training):
+    if not rules.has_cosines(cases):
+        return []
+    nulls = [c for c in training if c.row.kind == "null"]
+    least = rules.least_likeness(nulls)
+    note = (
+        f"none below the likeness that 1 % of {len(nulls)} training nulls exceed" if nulls else "never none"
+    )
+    return lines("nearest-shape", {c.row.id: rules.nearest_shape(c, least) for c in cases}, cases, note)
+
+
+def _forest(cases, training):
+    from sonicvacuum_blind.baselines import forest
+
+    plain = [c for c in cases if c.row.kind != "pair"]
+    known = [c for c in training if c.row.kind != "pair"]
+    note = f"learned from four fifths of the study's own {len(plain)} cases in turn"
+    found = lines("forest, cross-validated", forest.cross_validated(plain), plain, note)
+    if known:
+        note = f"learned from {len(known)} training cases"
+        found = lines("forest, trained", forest.trained(known, plain), plain, note) + found
+    return found
+
+
+def _state(cases, most):
+    from sonicvacuum_blind.baselines import state
+
+    fit = [c for c in cases if c.row.kind != "pair" and any(cell.sensor for cell in c.cells)]
+    chosen = fit[:: max(1, -(-len(fit) // most))]
+    some = "all cases" if len(chosen) == len(fit) else f"{len(chosen)} of {len(fit)} cases"
+    can = [c for c in chosen if c.row.kind == "single" and c.row.effects in state.EXPRESSIBLE]
+    found = []
+    for rule, noise, quieter in (
+        ("state", "the gauges'", 1.0),
+        ("state, noise / 100", "a hundredth of the gauges'", QUIETER),
+    ):
+        names = {c.row.id: state.name(c, quieter) for c in chosen}
+        note = f"full motion of all beads, {noise} relative noise; {some} with traces"
+        found += lines(rule, names, chosen, note)
+        note += f"; only the {len(state.EXPRESSIBLE)} effects that have a term"
+        found += lines(f"{rule}, expressible", names, can, note)
+    return found

@@ -1,0 +1,188 @@
+"""A study's scores in detail: what is taken for what, accuracy against d′, reliability, coverage, time.
+
+Each function makes the rows of one CSV; the figures are drawn from these files and from nothing else.
+"""
+
+import math
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from sonicvacuum_blind import catalogue, design
+from sonicvacuum_blind.score import NONE, UNKNOWN, Row
+from sonicvacuum_blind.shares import quantile, share, strength_bin
+from sonicvacuum_blind.study import STRENGTHS
+
+BINS = 10
+KINDS = ("single", "pair", "null", "foreign")
+# More than one effect, or an effect and a rest that nothing explains.
+SEVERAL = "several"
+
+
+@dataclass(frozen=True)
+class Confusion:
+    """How many cases with `hidden` were given the name `named`, and the share of all with `hidden`."""
+
+    hidden: str
+    named: str
+    count: int
+    share: float
+
+
+@dataclass(frozen=True)
+class Accuracy:
+    """Singles of one design and strength: exact and class-level names with 95 % intervals, and the ceiling.
+
+    `d_prime` is the median reached in the bin; `strength` the bin's nominal one, 0 for less than 4.
+    """
+
+    design: str
+    strength: float
+    d_prime: float
+    count: int
+    exact: float
+    exact_low: float
+    exact_high: float
+    class_level: float
+    class_low: float
+    class_high: float
+    ideal: float
+
+
+@dataclass(frozen=True)
+class Bin:
+    """Verdicts whose most probable entry has a probability from `low_edge` to `high_edge`: the mean of what
+    they state, and the share that is right with its 95 % interval.
+    """
+
+    low_edge: float
+    high_edge: float
+    stated: float
+    count: int
+    value: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True)
+class Coverage:
+    """Share of stated 90 % intervals of an effect's parameters that hold the truth (singles named rightly;
+    `all`: pairs too).
+    """
+
+    effect: str
+    count: int
+    value: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True)
+class Seconds:
+    """Time per record of one kind in seconds: median, 90th percentile, largest."""
+
+    kind: str
+    count: int
+    median: float
+    percentile_90: float
+    largest: float
+
+
+def label_of_truth(row: Row) -> str:
+    """The name that would be right: an effect, none or unknown."""
+    return {"null": NONE, "foreign": UNKNOWN}.get(row.kind, row.effects)
+
+
+def label_of_verdict(row: Row) -> str:
+    """The name given; `several` where more than one is."""
+    names = row.named.split("+") if row.named else [NONE]
+    return names[0] if len(names) == 1 else SEVERAL
+
+
+def confusion(rows: Iterable[Row]) -> list[Confusion]:
+    """All combinations of what is hidden (22 effects, none, unknown) with what is named (and several)."""
+    hidden = [*(e.id for e in catalogue.ENTRIES), NONE, UNKNOWN]
+    chosen = [r for r in rows if r.kind != "pair"]
+    counts = Counter((label_of_truth(r), label_of_verdict(r)) for r in chosen)
+    total = Counter(label_of_truth(r) for r in chosen)
+    return [
+        Confusion(h, n, counts[h, n], counts[h, n] / total[h] if total[h] else math.nan)
+        for h in hidden
+        for n in (*hidden, SEVERAL)
+    ]
+
+
+def accuracy(rows: Iterable[Row]) -> list[Accuracy]:
+    """Singles by design and strength, groups without cases left out."""
+    singles = [r for r in rows if r.kind == "single"]
+    groups = {
+        (d, s): [r for r in singles if r.design == d and strength_bin(r) == s]
+        for d in design.KINDS
+        for s in (0.0, *STRENGTHS)
+    }
+    return [_accuracy(*key, group) for key, group in groups.items() if group]
+
+
+def _accuracy(design, strength, rows):
+    count = len(rows)
+    exact = share(sum(r.exact for r in rows), count)
+    alike = share(sum(r.class_level for r in rows), count)
+    middle = float(np.median([r.reached for r in rows]))
+    return Accuracy(design, strength, middle, count, *exact, *alike, ideal_share(rows))
+
+
+def ideal_share(rows: Iterable[Row]) -> float:
+    """Mean share that the ideal rule names rightly, NaN where no case has one."""
+    known = [r.ideal for r in rows if not math.isnan(r.ideal)]
+    return float(np.mean(known)) if known else math.nan
+
+
+def reliability(rows: Iterable[Row]) -> list[Bin]:
+    """Ten bins of the most probable entry's probability; pairs, which have none, are left out."""
+    bins = [[] for _ in range(BINS)]
+    for row in rows:
+        if row.kind != "pair":
+            place = min(int(row.confidence * BINS), BINS - 1)
+            bins[place].append((row.confidence, row.top == label_of_truth(row)))
+    return [_bin(k, members) for k, members in enumerate(bins)]
+
+
+def _bin(place, members):
+    stated = float(np.mean([m[0] for m in members])) if members else math.nan
+    right = share(sum(m[1] for m in members), len(members))
+    return Bin(place / BINS, (place + 1) / BINS, stated, len(members), *right)
+
+
+def coverage(rows: Iterable[Row]) -> list[Coverage]:
+    """All intervals together, then by effect."""
+    rows = list(rows)
+    groups = {"all": rows}
+    groups |= {e.id: [r for r in rows if r.effects == e.id] for e in catalogue.ENTRIES}
+    found = []
+    for name, group in groups.items():
+        count = sum(r.intervals for r in group)
+        found.append(Coverage(name, count, *share(sum(r.inside for r in group), count)))
+    return found
+
+
+def seconds(rows: Iterable[Row]) -> list[Seconds]:
+    """By kind of case."""
+    rows = list(rows)
+    found = []
+    for kind in KINDS:
+        times = [r.seconds for r in rows if r.kind == kind and not math.isnan(r.seconds)]
+        largest = max(times, default=math.nan)
+        found.append(Seconds(kind, len(times), quantile(times, 0.5)[1], quantile(times, 0.9)[1], largest))
+    return found
+
+
+# File name → (class of its rows, function that makes them).
+TABLES = {
+    "confusion": (Confusion, confusion),
+    "accuracy": (Accuracy, accuracy),
+    "reliability": (Bin, reliability),
+    "coverage": (Coverage, coverage),
+    "seconds": (Seconds, seconds),
+}

@@ -1,0 +1,18 @@
+"""`sonicvacuum blind …`: hide effects, score what `discover` makes of the records, try simpler rules."""
+
+from sonicvacuum.cli import Verbs
+
+blind = Verbs(
+    name="blind",
+    help="The blind test of discover: data with hidden effects, their score, and simpler rules beside it.",
+    verbs={
+        "hide": "sonicvacuum_blind.cli.hide:hide",
+        "score": "sonicvacuum_blind.cli.score:score",
+        "follow": "sonicvacuum_blind.cli.follow:follow",
+        "resolved": "sonicvacuum_blind.cli.resolved:resolved",
+        "calibrate": "sonicvacuum_blind.cli.calibrate:calibrate",
+        "baselines": "sonicvacuum_blind.cli.baselines:baselines",
+        "draw": "sonicvacuum_blind.cli.draw:draw",
+        "publish": "sonicvacuum_blind.cli.publish:publish",
+    },
+)

@@ -1,0 +1,44 @@
+"""`sonicvacuum blind baselines`: simpler rules on the cases of a blind study."""
+
+from pathlib import Path
+
+import click
+
+from sonicvacuum_blind.cli.options import present
+
+_RULES = ("best-chi2", "bic", "nearest-shape", "forest", "state")
+
+
+@click.command()
+@click.option("--records", required=True, type=present, help="Folder of the cases' records.")
+@click.option("--truth", required=True, type=present, help="Folder of truths.")
+@click.option("--verdicts", required=True, type=present, help="Folder of verdicts.")
+@click.option("--out", required=True, type=click.Path(dir_okay=False), help="Table (CSV) to write.")
+@click.option("--training", type=present, help="Folder with records/, truth/ and verdicts/ to learn from.")
+@click.option(
+    "--rule",
+    "wanted",
+    multiple=True,
+    type=click.Choice(_RULES),
+    help="Only these; repeat. forest and state need the packages that make study installs.",
+)
+@click.option(
+    "--state-cases",
+    default=200,
+    show_default=True,
+    type=click.IntRange(1),
+    help="So many cases, evenly spread, for the rule state, which integrates each chain again.",
+)
+def baselines(records, truth, verdicts, out, training, wanted, state_cases):
+    """Name what is hidden by simpler rules on the same cases, and count how often they are right."""
+    from sonicvacuum_blind.baselines import table
+    from sonicvacuum_blind.baselines.cases import read
+    from sonicvacuum_blind.score import write_table
+
+    cases = read(records, truth, verdicts)
+    known = read(*(Path(training) / part for part in ("records", "truth", "verdicts"))) if training else []
+    lines = table.compare(cases, known, wanted or table.RULES, state_cases)
+    write_table(lines, table.Line, out)
+    for line in lines:
+        text = f"{line.rule}, {line.measure}, {line.group}: {line.value:.3f}"
+        click.echo(f"{text} [{line.low:.3f}, {line.high:.3f}] of {line.count}")

@@ -1,0 +1,19 @@
+"""`sonicvacuum blind calibrate`: what `discover` learns from training cases."""
+
+import click
+
+from sonicvacuum_blind.cli.options import present
+
+
+@click.command()
+@click.option("--truth", required=True, type=present, help="Folder of truths.")
+@click.option("--verdicts", required=True, type=present, help="Folder of verdicts.")
+@click.option("--out", required=True, type=click.Path(dir_okay=False), help="Calibration (JSON) to write.")
+def calibrate(truth, verdicts, out):
+    """Find how the evidence that discover works out becomes probabilities that come true."""
+    from sonicvacuum_blind.baselines import calibrate as calibration
+
+    cases = calibration.outcomes(truth, verdicts)
+    found = calibration.calibrate(cases)
+    calibration.write(found, out)
+    click.echo(f"temper {found.temper:g}, unknown {found.unknown:+g} and x{found.unknown_slope:g}")

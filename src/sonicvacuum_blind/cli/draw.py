@@ -1,0 +1,26 @@
+"""`sonicvacuum blind draw`: the pictures of a study."""
+
+from pathlib import Path
+
+import click
+
+from sonicvacuum_blind.cli.options import present
+
+
+@click.command()
+@click.argument("folder", type=present)
+@click.option(
+    "--picture",
+    "wanted",
+    multiple=True,
+    type=click.Choice(["confusion", "accuracy", "reliability", "baselines"]),
+    help="Only these; repeat.",
+)
+@click.option("--out", type=click.Path(file_okay=False), help="Folder for the pictures instead of FOLDER.")
+@click.option("--prefix", default="", help="Put before their names.")
+def draw(folder, wanted, out, prefix):
+    """Draw the tables of a blind study in FOLDER: confusion, accuracy, reliability, baselines."""
+    from sonicvacuum_blind import figures
+
+    for path in figures.draw(Path(folder), wanted, out, prefix):
+        click.echo(str(path))

@@ -1,0 +1,65 @@
+"""`sonicvacuum blind follow`: one more run for cases left ambiguous."""
+
+from pathlib import Path
+
+import click
+
+from sonicvacuum.cli import existing
+from sonicvacuum.files import InputError
+from sonicvacuum_blind.cli.options import STUDIES, batch_of, folder, present
+
+
+@click.command()
+@click.option("--study", type=STUDIES, help="A fixed list of cases.")
+@click.option("--cases", "path", type=existing(), help="List of cases (CSV), instead of --study.")
+@click.option("--verdicts", required=True, type=present, help="Folder of the verdicts on their records.")
+@click.option("--records", "out", required=True, type=folder, help="Folder for the records of further runs.")
+@click.option(
+    "--choice",
+    required=True,
+    type=click.Choice(["proposed", "random"]),
+    help="The run that the verdict proposes, or one drawn from all that could be proposed.",
+)
+@click.option("--batch", default="0/1", show_default=True, help="k/n: every n-th case from the k-th on.")
+def follow(study, path, verdicts, out, choice, batch):
+    """Make one more run of the same laboratory for each case that its verdict leaves ambiguous.
+
+    Ambiguous: one effect is hidden, one is named, others could not be told from it, and the hidden one is
+    among them. Take the record of a case and OUT/<id> together with sonicvacuum discover --together.
+    """
+    from sonicvacuum_blind import followup
+    from sonicvacuum_blind import study as studies
+
+    if (study is None) == (path is None):
+        raise InputError("follow: give --study or --cases, one of them")
+    specs = studies.batch(studies.cases(study) if study else studies.read_cases(path), *batch_of(batch))
+    # The folder stands for the batch also where nothing in it is ambiguous.
+    Path(out).mkdir(parents=True, exist_ok=True)
+    for spec, verdict in _ambiguous(specs, verdicts):
+        try:
+            followup.write(spec, verdict, choice, out)
+        except ValueError as error:
+            raise InputError(str(error)) from None
+        click.echo(spec.id)
+
+
+def _ambiguous(specs, verdicts):
+    """(case, verdict) of the ambiguous cases; InputError where one has no verdict, or not a whole one."""
+    from sonicvacuum_blind.followup import ambiguous
+    from sonicvacuum_blind.score import found_in, load
+
+    paths = found_in(verdicts, "verdict.json")
+    missing = [spec.id for spec in specs if spec.id not in paths]
+    if missing:
+        raise InputError(
+            f"{verdicts}: no verdict for {len(missing)} of {len(specs)} cases, first {missing[0]}; "
+            "run sonicvacuum discover on their records"
+        )
+    for spec in specs:
+        verdict = load(paths[spec.id])
+        try:
+            chosen = ambiguous(spec, verdict)
+        except KeyError as error:
+            raise InputError(f"{paths[spec.id]}: {error.args[0]}: missing; this key is required") from None
+        if chosen:
+            yield spec, verdict

@@ -1,0 +1,19 @@
+"""Options that several verbs of the blind test share."""
+
+import re
+
+import click
+
+from sonicvacuum.files import InputError
+
+folder = click.Path(file_okay=False)
+present = click.Path(exists=True, file_okay=False)
+STUDIES = click.Choice(["small", "full", "training"])
+
+
+def batch_of(text: str) -> tuple[int, int]:
+    """(k, n) of k/n; InputError where there is no such batch."""
+    found = re.fullmatch(r"(\d+)/(\d+)", text)
+    if not found or not int(found[1]) < int(found[2]):
+        raise InputError(f"--batch: is {text!r}; write k/n with k from 0 to n - 1, such as 0/4")
+    return int(found[1]), int(found[2])

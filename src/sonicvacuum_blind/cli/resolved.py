@@ -1,0 +1,42 @@
+"""`sonicvacuum blind resolved`: how often one more run decides a case left ambiguous."""
+
+import click
+
+from sonicvacuum_blind.cli.options import present
+
+
+@click.command()
+@click.option("--truth", required=True, type=present, help="Folder of truths.")
+@click.option("--verdicts", required=True, type=present, help="Folder of verdicts on the first records.")
+@click.option(
+    "--proposed",
+    required=True,
+    nargs=2,
+    type=present,
+    metavar="RECORDS JOINT",
+    help="Folders of the proposed runs' records and of the verdicts on them together with the first ones.",
+)
+@click.option(
+    "--random", required=True, nargs=2, type=present, metavar="RECORDS JOINT", help="The same of random runs."
+)
+@click.option(
+    "--out", required=True, type=click.Path(dir_okay=False), help="Row of each case (CSV) to write."
+)
+@click.option("--summary", required=True, type=click.Path(dir_okay=False), help="Table (CSV) to write.")
+def resolved(truth, verdicts, proposed, random, out, summary):
+    """Count the ambiguous cases that one more run decides: the proposed one, and a random one."""
+    from sonicvacuum_blind import resolved as counting
+    from sonicvacuum_blind.score import Line, write_table
+
+    rows = [
+        row
+        for choice, folders in (("proposed", proposed), ("random", random))
+        for row in counting.resolved(truth, verdicts, choice, *folders)
+    ]
+    lines = counting.summary(rows)
+    write_table(rows, counting.Followed, out)
+    write_table(lines, Line, summary)
+    for line in lines:
+        if line.count:
+            interval = f"{line.value:.3f} [{line.low:.3f}, {line.high:.3f}]"
+            click.echo(f"{line.measure}, {line.group}: {interval} of {line.count}")

@@ -1,0 +1,38 @@
+"""`sonicvacuum blind score`: how well `discover` did on hidden effects."""
+
+from pathlib import Path
+
+import click
+
+from sonicvacuum_blind.cli.options import folder, present
+
+
+@click.command()
+@click.option("--truth", required=True, type=present, help="Folder of truths.")
+@click.option("--verdicts", required=True, type=present, help="Folder of verdicts.")
+@click.option(
+    "--out", required=True, type=click.Path(dir_okay=False), help="Score of each case (CSV) to write."
+)
+@click.option("--summary", required=True, type=click.Path(dir_okay=False), help="Table (CSV) to write.")
+@click.option(
+    "--tables",
+    type=folder,
+    help="Folder for the tables in detail: confusion, accuracy, reliability, coverage, seconds (CSV).",
+)
+def score(truth, verdicts, out, summary, tables):
+    """Compare verdicts with the truth: one row for each case, and a table with 95 % intervals."""
+    from sonicvacuum_blind import breakdown
+    from sonicvacuum_blind import score as scoring
+    from sonicvacuum_blind.summary import summary as summarise
+
+    rows = scoring.score(truth, verdicts)
+    lines = summarise(rows)
+    scoring.write_table(rows, scoring.Row, out)
+    scoring.write_table(lines, scoring.Line, summary)
+    if tables:
+        for name, (kind, table) in breakdown.TABLES.items():
+            scoring.write_table(table(rows), kind, Path(tables) / f"{name}.csv")
+    for line in lines:
+        if line.count:
+            interval = f"{line.value:.3f} [{line.low:.3f}, {line.high:.3f}]"
+            click.echo(f"{line.measure}, {line.group}: {interval} of {line.count}  {line.goal}")

@@ -1,0 +1,243 @@
+"""The blind study in four pictures: what is taken for what, accuracy against d′, reliability, simpler rules.
+
+Drawn from the tables that `sonicvacuum blind score --tables` and `sonicvacuum blind baselines` write:
+confusion.csv, accuracy.csv, reliability.csv, baselines.csv. A picture whose table is not there is left out.
+"""
+
+from pathlib import Path
+
+import numpy as np
+import pandas
+from matplotlib.figure import Figure
+
+from sonicvacuum.figures import style
+from sonicvacuum.files import InputError
+from sonicvacuum_blind.baselines.names import DESIGNS, PANELS, RULES
+
+BLUE, ORANGE, GREEN = "#0072B2", "#D55E00", "#009E73"
+CAPTIONS = {
+    "confusion": style.paragraph("""
+        What is hidden (rows, with the number of cases) and what is named (columns): number of cases, shade by
+        share of the row. Rows none: nothing hidden; unknown: an effect from outside the catalogue. Column
+        several: two effects, or an effect with a rest that nothing explains.
+    """),
+    "accuracy": style.paragraph("""
+        Share of records with one hidden effect that are given its exact name, against the effect's
+        signal-to-noise ratio d′: (a) traces of three gauges at several speeds, (b) other records, with their
+        median d′; other set-ups: one or two gauges, 8 to 40 beads, 2 to 5 runs, half of them under a preload.
+        Bars: 95 % intervals (Wilson). Class level: that name, or one that the verdict calls confusable with
+        it. Dashed: what an ideal rule with full knowledge of all signatures reaches on the same records,
+        alarmed by 1 % of empty ones.
+    """),
+    "reliability": style.paragraph("""
+        Stated probability of the most probable explanation against the share of cases in which it is right,
+        with 95 % intervals; below, the number of cases. On the dashed line probabilities mean what they say.
+    """),
+    "baselines": style.paragraph("""
+        Simpler rules on the same records: (a) exact names of single hidden effects of all strengths and kinds
+        of record, (b) records with nothing hidden that were given a name, (c) records with an effect from
+        outside the catalogue (foreign) that were given a name of the catalogue. Bars with 95 % intervals;
+        numbers: share in per cent and number of cases.
+    """),
+}
+
+
+def draw(folder: Path, wanted=(), out: Path | None = None, prefix: str = "") -> list[Path]:
+    """Draw the wanted pictures, or all whose tables are in the folder; the SVG files, each with its PNG.
+
+    Args:
+        folder: of the tables.
+        wanted: of `CAPTIONS`.
+        out: folder for the pictures, that of the tables unless given.
+        prefix: of the pictures' names.
+
+    Raises:
+        InputError: where a wanted table, or every table, is missing.
+    """
+    folder, written = Path(folder), []
+    chosen = list(wanted) or [name for name in CAPTIONS if (folder / f"{name}.csv").exists()]
+    missing = [name for name in chosen or CAPTIONS if not (folder / f"{name}.csv").exists()]
+    if missing:
+        command = "blind baselines --out" if missing[0] == "baselines" else "blind score --tables"
+        raise InputError(f"{folder}: {missing[0]}.csv is missing; make it with sonicvacuum {command}")
+    makers = {
+        "confusion": confusion,
+        "accuracy": accuracy,
+        "reliability": reliability,
+        "baselines": baselines,
+    }
+    for name in chosen:
+        figure = makers[name](_read(folder / f"{name}.csv"))
+        written.append(Path(out or folder) / f"{prefix}{name}.svg")
+        style.save(figure, written[-1], written[-1].with_suffix(".png"))
+    return written
+
+
+def _read(path):
+    # "none" is a name here; numbers that do not exist are written nan.
+    return pandas.read_csv(path, keep_default_na=False, na_values=["", "nan"])
+
+
+def confusion(table: pandas.DataFrame) -> Figure:
+    """Matrix of names, from confusion.csv."""
+    hidden, named = (list(dict.fromkeys(table[c])) for c in ("hidden", "named"))
+    counts = table["count"].to_numpy(float).reshape(len(hidden), len(named))
+    shares = table["share"].to_numpy(float).reshape(len(hidden), len(named))
+    size, left, bottom = 5.4, 37.0, 28.0
+    with style.context():
+        figure = style.canvas(style.DOUBLE, bottom + size * len(hidden) + 3.0)
+        axes = style.panel(figure, (left, bottom, size * len(named), size * len(hidden)))
+        axes.imshow(np.ma.masked_invalid(shares), cmap="Blues", vmin=0.0, vmax=1.0, aspect="auto")
+        for (i, j), count in np.ndenumerate(counts):
+            if count:
+                shade = "white" if shares[i, j] > 0.55 else "black"
+                axes.text(j, i, f"{count:.0f}", ha="center", va="center", fontsize=6.5, color=shade)
+        totals = counts.sum(axis=1)
+        names = [f"{h} ({n:.0f})" for h, n in zip(hidden, totals, strict=True)]
+        axes.set_yticks(range(len(hidden)), names)
+        axes.set_xticks(range(len(named)), named, rotation=90)
+        axes.set_ylabel("hidden (cases)")
+        axes.set_xlabel("named")
+        axes.tick_params(length=0, labelsize=7)
+        _grid(axes, len(hidden), len(named))
+    return figure
+
+
+def _grid(axes, rows, columns):
+    """Thin lines between cells, stronger ones before none, unknown and several."""
+    for spine in axes.spines.values():
+        spine.set_visible(True)
+    axes.set_xticks(np.arange(columns - 1) + 0.5, minor=True)
+    axes.set_yticks(np.arange(rows - 1) + 0.5, minor=True)
+    axes.grid(which="minor", color=style.BAND, lw=0.4)
+    axes.tick_params(which="minor", length=0)
+    axes.axhline(rows - 2.5, color="black", lw=0.8)
+    axes.axvline(columns - 3.5, color="black", lw=0.8)
+
+
+def accuracy(table: pandas.DataFrame) -> Figure:
+    """Shares of right names against d′, from accuracy.csv."""
+    with style.context():
+        figure = style.canvas(style.DOUBLE, 76.0)
+        traces = table[(table.design == "traces") & (table.strength > 0)]
+        axes = style.panel(figure, (14.0, 22.0, 88.0, 47.0))
+        style.title(figure, 14.0, "(a) Traces, several speeds")
+        _shares(axes, traces.d_prime.to_numpy(float), traces, 1.02)
+        axes.set_xscale("log")
+        axes.set_xticks([5, 7.5, 10, 20], ["5", "7.5", "10", "20"])
+        axes.set_xticks([], minor=True)
+        axes.set_xlim(4.2, 25.0)
+        axes.set_xlabel("signal-to-noise ratio d′ of the hidden effect")
+        axes.set_ylabel("share of records")
+        handles, labels = axes.get_legend_handles_labels()
+        others = _others(table)
+        side = style.panel(figure, (116.0, 22.0, 55.0, 47.0))
+        style.title(figure, 116.0, "(b) Other records")
+        _shares(side, np.arange(len(others), dtype=float), others, None)
+        words = [DESIGNS.get(d, d).replace(" ", "\n") for d in others.design]
+        names = [f"{w}\nd′ {d:.2g}" for w, d in zip(words, others.d_prime, strict=True)]
+        side.set_xticks(range(len(others)), names)
+        side.set_xlim(-0.5, max(len(others), 1) - 0.5)
+        bottom = min(0.4, *table.exact_low.astype(float) - 0.05)
+        for one in (axes, side):
+            one.set_ylim(max(bottom, 0.0), 1.02)
+        side.set_yticklabels([])
+        figure.legend(handles, labels, loc="lower center", ncols=3, borderaxespad=0.3)
+    return figure
+
+
+def _others(table):
+    """The fullest bin of each other design."""
+    rest = table[table.design != "traces"].sort_values("count", ascending=False, kind="stable")
+    rest = rest.drop_duplicates("design")
+    return (
+        rest.set_index("design")
+        .reindex([d for d in dict.fromkeys([*DESIGNS, *table.design]) if d in set(rest.design)])
+        .reset_index()
+    )
+
+
+def _shares(axes, x, rows, factor):
+    """Exact and class-level shares with intervals, side by side, and the ceiling."""
+    aside = (lambda k: x * factor**k) if factor else (lambda k: x + 0.09 * k)
+    looks = (
+        (-1, "exact", "exact", BLUE, "o", BLUE, "exact name"),
+        (1, "class_level", "class", GREEN, "s", "white", "class level"),
+    )
+    for side, value, bounds, color, marker, face, label in looks:
+        y = rows[value].to_numpy(float)
+        low, high = (rows[f"{bounds}_{end}"].to_numpy(float) for end in ("low", "high"))
+        bars = np.maximum([y - low, high - y], 0.0)
+        look = {"color": color, "fmt": marker, "mfc": face, "ms": 4, "lw": 1.0, "capsize": 2}
+        axes.errorbar(aside(side), y, bars, label=label, **look)
+    ceiling = rows.ideal.to_numpy(float)
+    dashes = (0, (4, 1.5))
+    if factor:
+        axes.plot(x, ceiling, color="black", lw=0.9, ls=dashes, label="ideal rule")
+    else:
+        axes.hlines(ceiling, x - 0.3, x + 0.3, color="black", lw=0.9, ls=dashes)
+    axes.grid(axis="y", color=style.BAND, lw=0.4)
+
+
+def reliability(table: pandas.DataFrame) -> Figure:
+    """Right against stated, with counts below, from reliability.csv."""
+    filled = table[table["count"] > 0]
+    with style.context():
+        figure = style.canvas(style.SINGLE, 92.0)
+        axes = style.panel(figure, (15.0, 34.0, 66.0, 55.0))
+        axes.plot([0, 1], [0, 1], color=style.GREY, lw=0.8, ls=(0, (4, 1.5)))
+        x, y = filled.stated.to_numpy(float), filled.value.to_numpy(float)
+        bars = np.maximum([y - filled.low.to_numpy(float), filled.high.to_numpy(float) - y], 0.0)
+        axes.errorbar(x, y, bars, color=BLUE, fmt="o", ms=4, lw=1.0, capsize=2)
+        axes.set_ylim(-0.02, 1.02)
+        axes.set_ylabel("share right")
+        below = style.panel(figure, (15.0, 11.0, 66.0, 18.0))
+        middle = 0.5 * (table.low_edge + table.high_edge)
+        below.bar(middle, table["count"], width=0.094, color=BLUE)
+        for at, count in zip(middle, table["count"], strict=True):
+            if count:
+                below.text(at, count, f"{count:d}", ha="center", va="bottom", fontsize=6.5)
+        below.set_ylim(0, 1.3 * table["count"].max())
+        below.set_ylabel("cases")
+        below.set_xlabel("stated probability of the top explanation")
+        for one in (axes, below):
+            one.set_xlim(0.0, 1.0)
+        axes.set_xticklabels([])
+    return figure
+
+
+def baselines(table: pandas.DataFrame) -> Figure:
+    """Bars of all rules in three panels, from baselines.csv."""
+    rules = [r for r in RULES if r in set(table.rule)]
+    high, left, wide, gap = 5.6 * len(rules), 47.0, 36.0, 6.5
+    with style.context():
+        figure = style.canvas(style.DOUBLE, high + 21.0)
+        for k, (measure, group, title, what) in enumerate(PANELS):
+            at = left + k * (wide + gap)
+            axes = style.panel(figure, (at, 11.0, wide, high))
+            style.title(figure, at, title)
+            rows = table[(table.measure == measure) & (table.group == group)].set_index("rule")
+            _bars(axes, rows.reindex(rules), rules)
+            axes.set_xlabel(f"% {what}", fontsize=7.5, loc="left")
+            axes.set_yticks(range(len(rules)), [RULES[r] for r in rules] if k == 0 else [])
+    return figure
+
+
+def _bars(axes, rows, rules):
+    value = 100.0 * rows.value.to_numpy(float)
+    ends = [100.0 * rows[c].to_numpy(float) for c in ("low", "high")]
+    bars = np.nan_to_num(np.maximum([value - ends[0], ends[1] - value], 0.0))
+    colors = [{"sonicvacuum": BLUE, "ideal rule": style.GREY}.get(r, "#56B4E9") for r in rules]
+    axes.barh(range(len(rules)), value, color=colors, height=0.62)
+    known = np.flatnonzero(~np.isnan(ends[0]))
+    look = {"fmt": "none", "ecolor": "black", "lw": 0.8, "capsize": 1.8}
+    axes.errorbar(value[known], known, xerr=bars[:, known], **look)
+    for k, (share, count) in enumerate(zip(value, rows["count"], strict=True)):
+        text = "–" if np.isnan(share) else f"{share:.0f} ({count:.0f})"
+        axes.text(163.0, k, text, ha="right", va="center", fontsize=6.5)
+    axes.set_xlim(0.0, 163.0)
+    axes.spines["bottom"].set_bounds(0.0, 100.0)
+    axes.set_xticks([0, 50, 100])
+    # Rules without cases would shrink the axis of their panel.
+    axes.set_ylim(len(rules) - 0.4, -0.6)
+    axes.tick_params(axis="y", length=0)

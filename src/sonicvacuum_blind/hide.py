@@ -1,0 +1,306 @@
+"""Hide an effect in a record: draw the record's design, what is hidden, every error and the noise; write both
+sides.
+
+The record goes to one folder, the truth to another; nothing in the record says what is hidden in it.
+"""
+
+import itertools
+import json
+from dataclasses import asdict, dataclass
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from sonicvacuum import records
+from sonicvacuum.files import replacing
+from sonicvacuum_blind import catalogue, design, foreign
+from sonicvacuum_blind.design import Design
+from sonicvacuum_blind.prediction import Errors, predict
+from sonicvacuum_blind.record import as_record
+from sonicvacuum_blind.signature import Frame
+from sonicvacuum_blind.strength import Rival, ceiling, leftover, nearest, pair_ceiling, rivals, scale
+
+KINDS = ("null", "single", "pair", "foreign")
+NOISES = ("white", "ar1", "quantised")
+# Of the integrator, for the data themselves: 1e-7 of a peak.
+TOLERANCE = 1e-9
+# A design in which the effect cannot reach this share of the wanted d′ is drawn anew, so often at most.
+ENOUGH, TRIES = 0.9, 12
+# Designs drawn in search of one in which the effects can act at all.
+DRAWS = 200
+CORRELATIONS = (0.2, 0.5, 0.8)
+# Of random numbers, by name, in the order in which they are spawned; new ones go to the end.
+STREAMS = ("case", "errors", "noise", "rule", "further run", "choice")
+
+
+@dataclass(frozen=True)
+class Spec:
+    """What is asked of one case.
+
+    Attributes:
+        id: name of the record's folder.
+        kind: one of `KINDS`.
+        design: one of `design.KINDS`.
+        noise: one of `NOISES`.
+        effects: ids of the catalogue (kind single: one, pair: two) or of `foreign` (one); none for null.
+        d_prime: wanted d′ of each effect; for foreign ones, of what no single effect of the catalogue
+            explains.
+        seed: of the study, and the case's own place in it.
+        place: of the case in the study.
+    """
+
+    id: str
+    kind: str
+    design: str
+    noise: str
+    effects: tuple[str, ...]
+    d_prime: float
+    seed: int
+    place: int
+
+    def __post_init__(self):
+        for name, value, allowed in (
+            ("kind", self.kind, KINDS),
+            ("design", self.design, design.KINDS),
+            ("noise", self.noise, NOISES),
+        ):
+            if value not in allowed:
+                raise ValueError(f"case {self.id}: {name} is {value!r}; use one of {', '.join(allowed)}")
+        known = foreign.BY_ID if self.kind == "foreign" else catalogue.BY_ID
+        wanted = {"null": 0, "single": 1, "pair": 2, "foreign": 1}[self.kind]
+        if len(self.effects) != wanted:
+            raise ValueError(f"case {self.id}: kind {self.kind} hides {wanted} effects, got {self.effects}")
+        for name in self.effects:
+            if name not in known:
+                raise ValueError(f"case {self.id}: effect {name!r} is not one of {', '.join(known)}")
+
+
+@dataclass(frozen=True)
+class Hidden:
+    """One hidden effect as drawn and scaled."""
+
+    id: str
+    parameters: dict
+    place: str | int | None
+    place_kind: str | None
+    change: object
+    seen: np.ndarray
+    d_prime: float
+
+
+@dataclass(frozen=True)
+class Case:
+    """A record's design with what is hidden in it, and what the catalogue's effects do there (empty where
+    nobody asked yet).
+    """
+
+    frame: Frame
+    hidden: tuple[Hidden, ...]
+    directions: tuple[Rival, ...]
+
+    @property
+    def change(self):
+        """All hidden effects, one after the other."""
+
+        def all_of(plan):
+            for one in self.hidden:
+                plan = one.change(plan)
+            return plan
+
+        return all_of
+
+
+@dataclass(frozen=True)
+class Laboratory:
+    """Who measures a case: what is hidden there, and what is off with this record's strikers and gauges.
+
+    Attributes:
+        case: design and hidden effects.
+        correlation: of the noise of neighbouring samples, where it is correlated.
+        errors: of the record.
+    """
+
+    case: Case
+    correlation: float
+    errors: Errors
+
+    @property
+    def design(self) -> Design:
+        """What the laboratory knows of its record."""
+        return self.case.frame.design
+
+
+def stream(spec: Spec, name: str) -> np.random.Generator:
+    """One of the case's independent streams of random numbers, from its start."""
+    seeds = np.random.SeedSequence(spec.seed, spawn_key=(spec.place,)).spawn(len(STREAMS))
+    return np.random.default_rng(seeds[STREAMS.index(name)])
+
+
+def laboratory(spec: Spec) -> Laboratory:
+    """The laboratory of a case, the same whenever it is asked for.
+
+    Raises:
+        ValueError: where no drawn design lets the effects act.
+    """
+    case, correlation = _case(spec, stream(spec, "case"))
+    return Laboratory(case, correlation, drawn_errors(case.frame.design, stream(spec, "errors")))
+
+
+def hide(spec: Spec) -> tuple[records.Record, dict]:
+    """A record with something hidden in it, and the truth.
+
+    The same spec gives the same record, bit for bit: every draw comes from `SeedSequence(seed, place)`.
+
+    Raises:
+        ValueError: where no drawn design lets the effects act.
+    """
+    own, noise_random = laboratory(spec), stream(spec, "noise")
+    made = own.design
+    clean = predict(made, own.case.change, own.errors, TOLERANCE)
+    traces, noise = noisy(made, clean.traces, spec.noise, own.correlation, noise_random)
+    sigmas = np.array([s.sigma for s in made.scalars], dtype=float)
+    scalars = clean.scalars + sigmas * noise_random.standard_normal(len(sigmas))
+    # The folder's name says nothing of what is inside; neither does the title.
+    record = as_record(made, traces, scalars, title=f"Data set {spec.id}")
+    return record, _truth(spec, own.case, own.errors, noise, stream(spec, "rule"))
+
+
+def write(spec: Spec, records_folder, truth_folder) -> None:
+    """Hide, then write `records_folder/<id>/` and `truth_folder/<id>/truth.json`."""
+    record, truth = hide(spec)
+    records.write(record, Path(records_folder) / spec.id)
+    with replacing(Path(truth_folder) / spec.id / "truth.json") as stream:
+        json.dump(truth, stream, indent=1, sort_keys=True)
+        stream.write("\n")
+
+
+def _case(spec, random):
+    """A design in which all effects reach the wanted d′; the best of the designs tried otherwise."""
+    best, reached = None, -1.0
+    correlation = float(random.choice(CORRELATIONS)) if spec.noise == "ar1" else 0.0
+    drawn = (design.draw(spec.design, random) for _ in range(DRAWS))
+    able = (d for d in drawn if all(_acts(d, _entry(spec, name)) for name in spec.effects))
+    for made in itertools.islice(able, TRIES):
+        frame = Frame.of(made, correlation)
+        directions = tuple(rivals(frame)) if spec.kind == "foreign" else ()
+        # The strength of an effect outside the catalogue is what no single effect of the catalogue explains.
+        measure = partial(leftover, directions) if directions else np.linalg.norm
+        hidden = tuple(_hidden(frame, _entry(spec, e), spec.d_prime, measure, random) for e in spec.effects)
+        least = min((measure(h.seen) for h in hidden), default=np.inf)
+        if least > reached:
+            best, reached = Case(frame, hidden, directions), least
+        if least >= ENOUGH * spec.d_prime:
+            break
+    if best is None:
+        raise ValueError(f"case {spec.id}: {', '.join(spec.effects)} cannot act in designs {spec.design}")
+    return best, correlation
+
+
+def _entry(spec, name):
+    return (foreign.BY_ID if spec.kind == "foreign" else catalogue.BY_ID)[name]
+
+
+def _acts(made: Design, entry):
+    if entry.id == "coating-thickness" and made.coating is None:
+        return False
+    return entry.fits(made.reference) and bool(entry.where(made.reference))
+
+
+def _hidden(frame, entry, target, measure, random):
+    reference = frame.design.reference
+    sign = int(random.choice(entry.signs))
+    shape = entry.draw(random, reference)
+    places = _visible(frame, entry)
+    place = places[int(random.integers(len(places)))]
+    found = scale(frame, entry, target, sign, shape, place, measure)
+    parameters = entry.values(sign * found.strength, reference, shape)
+    return Hidden(
+        entry.id,
+        {k: float(v) for k, v in parameters.items()},
+        place,
+        entry.places,
+        catalogue.hidden(entry, sign * found.strength, shape, place, reference),
+        found.seen,
+        float(np.linalg.norm(found.seen)),
+    )
+
+
+def _visible(frame, entry):
+    """Places that some gauge can see before the record ends: not next to the striker only."""
+    places = entry.where(frame.design.reference)
+    if entry.places in ("bead", "contact"):
+        return tuple(p for p in places if 3 <= p <= frame.design.reference.beads - 1)
+    return places
+
+
+def drawn_errors(made: Design, random: np.random.Generator) -> Errors:
+    """Errors of one standard deviation each, cut at 2.5."""
+    size = len(Errors.of(made).vector)
+    return Errors.of(made, np.clip(random.standard_normal(size), -2.5, 2.5))
+
+
+def noisy(made: Design, traces: np.ndarray, kind: str, correlation: float, random) -> tuple[np.ndarray, dict]:
+    """Traces (runs, gauges, samples) in N with noise of the stated sigma, and what the noise was."""
+    if not made.samples:
+        return traces, {"kind": "none"}
+    sigma = np.array(made.sigma)[:, None]
+    fresh = random.standard_normal(traces.shape)
+    if kind == "ar1":
+        for k in range(1, traces.shape[-1]):
+            fresh[..., k] = correlation * fresh[..., k - 1] + np.sqrt(1.0 - correlation**2) * fresh[..., k]
+        return traces + sigma * fresh, {"kind": kind, "correlation": correlation}
+    if kind == "quantised":
+        steps = 2.0
+        lsb = steps * sigma
+        white = sigma * np.sqrt(1.0 - steps**2 / 12.0)
+        return lsb * np.round((traces + white * fresh) / lsb), {"kind": kind, "lsb_sigma": steps}
+    return traces + sigma * fresh, {"kind": kind}
+
+
+def _truth(spec, case, errors, noise, random):
+    frame, made = case.frame, case.frame.design
+    # In the linear approximation, effects of a pair add up.
+    seen = sum((h.seen for h in case.hidden), np.zeros(len(frame.base) + frame.slopes.shape[1]))
+    directions = list(case.directions)
+    if spec.kind in ("single", "pair"):
+        # Of the size of what is hidden: strong rivals are not weak ones made larger.
+        directions = rivals(frame, spec.d_prime)
+        # Shapes and strengths of the catalogue's directions lie on a grid; what is hidden need not.
+        directions += [Rival(h.id, h.place, h.seen / h.d_prime) for h in case.hidden]
+    near = nearest(directions, seen, case.hidden[0].id) if directions else ("none", 0.0)
+    return {
+        "format": 1,
+        **asdict(spec),
+        "hidden": [
+            {
+                "id": h.id,
+                "parameters": h.parameters,
+                **({h.place_kind: h.place} if h.place_kind else {}),
+                "d_prime": h.d_prime,
+                "d_prime_flat": frame.flat(h.seen),
+            }
+            for h in case.hidden
+        ],
+        "d_prime_all": float(np.linalg.norm(seen)),
+        "leftover_d_prime": leftover(directions, seen) if directions else 0.0,
+        "nearest": {"id": near[0], "leaves_d_prime": near[1]},
+        "ideal": _ideal(spec, case.hidden, directions, random),
+        "runs": len(made.runs),
+        "gauges": len(made.reference.gauges),
+        "noise_drawn": noise,
+        "errors_sigma": {
+            "speeds": errors.speeds.tolist(),
+            "modulus": errors.modulus,
+            "gains": errors.gains.tolist(),
+            "triggers": errors.triggers.tolist(),
+        },
+    }
+
+
+def _ideal(spec, hidden, directions, random):
+    """Verdict → share of data sets in which an ideal rule gives it."""
+    if spec.kind == "pair":
+        share = pair_ceiling(directions, [(h.id, h.seen) for h in hidden], random)
+        return {"+".join(spec.effects): share}
+    return ceiling(directions, hidden[0].seen, random) if spec.kind == "single" else {}

@@ -1,0 +1,148 @@
+"""What one more run decides: records whose first verdict left several effects, taken together with the run
+that was proposed and, for comparison, with a random one.
+"""
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from sonicvacuum.files import InputError
+from sonicvacuum_blind.followup import CHOICES, FILE
+from sonicvacuum_blind.score import Line, found_in, load
+from sonicvacuum_blind.shares import ratio_of_sums, share
+
+
+@dataclass(frozen=True)
+class Followed:
+    """One case with one further run. Truths: 1 or 0.
+
+    Attributes:
+        id, design, noise, effects, d_prime: as asked for.
+        before, left_before: name given to the first record, and what could not be told from it.
+        choice: one of `CHOICES`.
+        change: of the experiment, quantity=value.
+        predicted: χ² by which the proposed run was expected to decide; NaN for a random one.
+        named, left: the same with the further run; joined by `+`.
+        resolved: named exactly what is hidden, and no other effect is left beside it.
+        exact_before, exact: named exactly what is hidden, whatever is left beside it.
+    """
+
+    id: str
+    design: str
+    noise: str
+    effects: str
+    d_prime: float
+    before: str
+    left_before: str
+    choice: str
+    change: str
+    predicted: float
+    named: str
+    left: str
+    resolved: int
+    exact_before: int
+    exact: int
+
+
+def resolved(truth_folder, verdict_folder, choice: str, record_folder, joint_folder) -> list[Followed]:
+    """Rows of all cases that have a further run, by id; none where no case has.
+
+    Args:
+        truth_folder, verdict_folder: of the first records.
+        choice: one of `CHOICES`.
+        record_folder: of the further runs, as `followup.write` makes them.
+        joint_folder: of the verdicts on both together.
+
+    Raises:
+        InputError: where a truth or verdict is missing or lacks a key.
+    """
+    changes = found_in(record_folder, FILE)
+    folders = {"truth.json": truth_folder, "verdict.json": verdict_folder}
+    found = {name: found_in(folder, name) for name, folder in folders.items()}
+    found["joint"] = found_in(joint_folder, "verdict.json")
+    folders["joint"] = joint_folder
+    for name, folder in folders.items():
+        missing = sorted(set(changes) - set(found[name]))
+        if missing:
+            what = "joint verdict (sonicvacuum discover --together)" if name == "joint" else name
+            raise InputError(f"{folder}: no {what} for {len(missing)} of {len(changes)} cases: {missing[0]}")
+    files = ((changes[id], *(found[name][id] for name in folders)) for id in sorted(changes))
+    return [_row(choice, *paths) for paths in files]
+
+
+def _row(choice, change_path, truth_path, verdict_path, joint_path):
+    change, truth, first, joint = map(load, (change_path, truth_path, verdict_path, joint_path))
+    if change["choice"] != choice:
+        raise InputError(
+            f"{change_path}: choice is {change['choice']}, not {choice}; give the folder of these"
+        )
+    try:
+        return row(truth, first, change, joint)
+    except KeyError as error:
+        raise InputError(f"{joint_path}: {error.args[0]}: missing; this key is required") from None
+
+
+def row(truth: dict, first: dict, change: dict, joint: dict) -> Followed:
+    """One case with one further run.
+
+    Raises:
+        KeyError: for a key that is missing.
+    """
+    hidden, named, left = set(truth["effects"]), joint["named"], _left(joint)
+    exact, proposed = set(named) == hidden, change["choice"] == "proposed"
+    return Followed(
+        id=truth["id"],
+        design=truth["design"],
+        noise=truth["noise"],
+        effects="+".join(truth["effects"]),
+        d_prime=truth["d_prime"],
+        before="+".join(first["named"]),
+        left_before="+".join(_left(first)),
+        choice=change["choice"],
+        change=" ".join(f"{k}={v}" for k, v in change["change"].items()),
+        predicted=float(first["next_experiment"]["delta_chi2"]) if proposed else math.nan,
+        named="+".join(named),
+        left="+".join(left),
+        resolved=int(exact and not left),
+        exact_before=int(set(first["named"]) == hidden),
+        exact=int(exact),
+    )
+
+
+def _left(verdict):
+    """Effects that a verdict cannot tell from those it names."""
+    return sorted({name for names in verdict["confusable"] for name in names} - set(verdict["named"]))
+
+
+def summary(rows: Iterable[Followed]) -> list[Line]:
+    """Shares with 95 % intervals: resolved by each choice, by it alone; how much oftener by the proposed run;
+    exact names before and after.
+    """
+    rows = list(rows)
+    of = {choice: {r.id: r for r in rows if r.choice == choice} for choice in CHOICES}
+    both = [id for id in of["proposed"] if id in of["random"]]
+    goals = {"proposed": ">= 0.8"}
+    lines = [
+        _line("resolved by one more run", c, [r.resolved for r in of[c].values()], goals.get(c, ""))
+        for c in CHOICES
+    ]
+    if any(of["random"][id].resolved for id in both):
+        hits = (np.array([of[c][id].resolved for id in both]) for c in CHOICES)
+        lines.append(_of("resolved, ratio", "proposed over random", len(both), ratio_of_sums(*hits), ">= 2"))
+    for one, other in (CHOICES, CHOICES[::-1]):
+        alone = [of[one][id].resolved and not of[other][id].resolved for id in both]
+        lines.append(_line("resolved by this run alone", one, alone))
+    before = {r.id: r.exact_before for r in rows}
+    lines.append(_line("exact name of ambiguous cases", "before", list(before.values())))
+    lines += [_line("exact name of ambiguous cases", c, [r.exact for r in of[c].values()]) for c in CHOICES]
+    return lines
+
+
+def _line(measure, group, hits, goal=""):
+    return _of(measure, group, len(hits), share(int(sum(hits)), len(hits)), goal)
+
+
+def _of(measure, group, count, found, goal):
+    return Line(measure, group, count, *found, math.nan, math.nan, goal)

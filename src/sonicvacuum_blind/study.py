@@ -1,0 +1,158 @@
+"""Studies: which cases are made, each with its own seed, and their list as CSV.
+
+A study is a fixed list: case k of a study of one seed is the same whatever else is made, on any machine.
+"""
+
+import csv
+from collections.abc import Iterable
+from dataclasses import asdict, fields
+
+import numpy as np
+
+from sonicvacuum.files import InputError, replacing
+from sonicvacuum_blind import catalogue, foreign
+from sonicvacuum_blind.hide import Spec
+
+SEEDS = {"small": 20061, "full": 20062, "training": 20063}
+TRAINING = 300
+STRENGTHS = (5.0, 7.5, 10.0, 20.0)
+# Effects that act on one ball; gauges and beads do not exist there.
+BALL = (
+    "dynamic-modulus",
+    "contact-exponent",
+    "plastic-contact",
+    "linear-dashpot",
+    "kuwabara-kono",
+    "tsuji",
+    "hunt-crossley",
+    "velocity-power",
+    "relaxing-contact",
+    "striker-error",
+)
+
+
+def cases(study: str) -> list[Spec]:
+    """The cases of a study, "small", "full" or "training".
+
+    The training study takes cases evenly out of a list like the full one, with seeds of its own: what is
+    calibrated on it has seen nothing of the full study.
+
+    Raises:
+        ValueError: for another name.
+    """
+    if study not in SEEDS:
+        raise ValueError(f"study {study!r} is not one of {', '.join(SEEDS)}")
+    random = np.random.default_rng(np.random.SeedSequence(SEEDS[study]))
+    rows = list(_small() if study == "small" else _full(random))
+    if study == "training":
+        rows = [rows[(2 * k + 1) * len(rows) // (2 * TRAINING)] for k in range(TRAINING)]
+    # Folder names must not follow the order of kinds.
+    order = random.permutation(len(rows))
+    return [
+        Spec(f"{study}-{k:04d}", *rows[i], seed=SEEDS[study], place=k) for k, i in enumerate(order.tolist())
+    ]
+
+
+def _small():
+    """36 cases: 18 singles over all designs, 8 nulls, 6 foreign ones, 4 pairs."""
+    singles = ("kuwabara-kono", "viscous-drag", "coating-thickness", "contact-gap", "sensor-droop", "gravity")
+    singles += ("dynamic-modulus", "plastic-contact", "wall-compliance", "sensor-offset", "mass-defect")
+    for k, name in enumerate(singles):
+        yield "single", "traces", "white", (name,), STRENGTHS[2 + k % 2]
+    for name in ("contact-exponent", "hunt-crossley", "guide-friction"):
+        yield "single", "traces", "quantised", (name,), 15.0
+    yield "single", "one-speed", "white", ("sensor-lowpass",), 10.0
+    yield "single", "one-speed", "white", ("relaxing-contact",), 20.0
+    yield "single", "scalars", "white", ("striker-error",), 10.0
+    yield "single", "ball", "white", ("hunt-crossley",), 20.0
+    for noise in ("white", "white", "white", "ar1", "quantised"):
+        yield "null", "traces", noise, (), 0.0
+    for kind in ("one-speed", "scalars", "ball"):
+        yield "null", kind, "white", (), 0.0
+    names = ("graded-modulus", "dimer", "sensor-saturation", "two-defects", "resonant-wall", "quadratic-drag")
+    for name in names:
+        yield "foreign", "traces", "white", (name,), 12.0
+    for pair in (
+        ("kuwabara-kono", "sensor-gain"),
+        ("dynamic-modulus", "viscous-drag"),
+        ("wall-compliance", "sensor-droop"),
+        ("mass-defect", "tsuji"),
+    ):
+        yield "pair", "traces", "white", pair, 20.0
+
+
+def _full(random):
+    """Strengths, noise kinds and designs in fixed shares, pairs drawn."""
+    ids = [e.id for e in catalogue.ENTRIES]
+    noises = ("white", "white", "white", "ar1", "quantised")
+    for name in ids:
+        for strength in STRENGTHS:
+            for k in range(9):
+                yield "single", "traces", noises[k % 5], (name,), strength
+        for _ in range(4):
+            yield "single", "varied", "white", (name,), 10.0
+        for _ in range(4):
+            yield "single", "one-speed", "white", (name,), 10.0
+        for _ in range(4):
+            yield "single", "scalars", "white", (name,), 10.0
+    for name in BALL:
+        for _ in range(4):
+            yield "single", "ball", "white", (name,), 10.0
+    for design, noise, count in (
+        ("traces", "white", 200),
+        ("traces", "ar1", 80),
+        ("traces", "quantised", 40),
+        ("varied", "white", 40),
+        ("one-speed", "white", 40),
+        ("scalars", "white", 40),
+        ("ball", "white", 20),
+    ):
+        for _ in range(count):
+            yield "null", design, noise, (), 0.0
+    for entry in foreign.ENTRIES:
+        for strength in (8.0, 12.0, 20.0):
+            for _ in range(6):
+                yield "foreign", "traces", "white", (entry.id,), strength
+    for strength in (10.0, 20.0):
+        for _ in range(122):
+            pair = random.choice(len(ids), 2, replace=False)
+            yield "pair", "traces", "white", (ids[pair[0]], ids[pair[1]]), strength
+
+
+def write_cases(specs: Iterable[Spec], path) -> None:
+    """The list of cases as CSV; effects joined by `+`."""
+    with replacing(path) as stream:
+        writer = csv.DictWriter(stream, [f.name for f in fields(Spec)], lineterminator="\n")
+        writer.writeheader()
+        for spec in specs:
+            writer.writerow(asdict(spec) | {"effects": "+".join(spec.effects)})
+
+
+def read_cases(path) -> list[Spec]:
+    """The cases of a CSV file.
+
+    Raises:
+        InputError: naming file and line of what is wrong.
+    """
+    with open(path, newline="", encoding="utf-8") as stream:
+        reader = csv.DictReader(stream)
+        names = [f.name for f in fields(Spec)]
+        if reader.fieldnames != names:
+            raise InputError(f"{path}: columns are {reader.fieldnames}; write {','.join(names)}")
+        return [_spec(row, path, line) for line, row in enumerate(reader, start=2)]
+
+
+def _spec(row, path, line):
+    try:
+        numbers = {"d_prime": float(row["d_prime"]), "seed": int(row["seed"]), "place": int(row["place"])}
+        effects = tuple(row["effects"].split("+")) if row["effects"] else ()
+        return Spec(**{**row, **numbers, "effects": effects})
+    except (ValueError, TypeError) as error:
+        raise InputError(f"{path}, line {line}: {error}") from None
+
+
+def batch(specs: list[Spec], place: int, of: int) -> list[Spec]:
+    """Every `of`-th case from `place` (counted from 0) on: batches of like cost."""
+    if not 0 <= place < of:
+        raise ValueError(f"batch {place} of {of} does not exist")
+    return specs[place::of]

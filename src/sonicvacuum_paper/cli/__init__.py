@@ -1,0 +1,18 @@
+"""`sonicvacuum paper …`: from simulated cards to figures, ledger and report of the reproduction."""
+
+from sonicvacuum.cli import Verbs
+
+paper = Verbs(
+    name="paper",
+    help="The reproduction of the paper: metrics, ledger, figures and report.",
+    verbs={
+        "observe": "sonicvacuum_paper.cli.observe:observe",
+        "metrics": "sonicvacuum_paper.cli.metrics:metrics",
+        "ledger": "sonicvacuum_paper.cli.ledger:ledger",
+        "audit": "sonicvacuum_paper.cli.ledger:audit",
+        "draw": "sonicvacuum_paper.cli.draw:draw",
+        "report": "sonicvacuum_paper.cli.report:report",
+        "publish": "sonicvacuum_paper.cli.publish:publish",
+        "timings": "sonicvacuum_paper.cli.timings:timings",
+    },
+)

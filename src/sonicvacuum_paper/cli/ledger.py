@@ -1,0 +1,33 @@
+"""`sonicvacuum paper ledger`, `audit`: the paper's claims and assumptions held against the metrics."""
+
+import click
+
+from sonicvacuum import config as configuration
+from sonicvacuum.cli import existing
+
+_FILE = existing()
+_CONFIG = click.option("--config", "path", default="config.yaml", show_default=True, type=_FILE)
+
+
+@click.command()
+@click.argument("metrics", type=_FILE)
+@click.option("--claims", required=True, type=_FILE, help="Table of the paper's claims.")
+@_CONFIG
+@click.option("--out", required=True, type=click.Path(dir_okay=False), help="Ledger (CSV) to write.")
+def ledger(metrics, claims, path, out):
+    """Hold the claims against METRICS."""
+    from sonicvacuum_paper.stages import write_ledger
+
+    write_ledger(metrics, claims, configuration.read(path), out)
+
+
+@click.command()
+@click.argument("metrics", type=_FILE)
+@click.option("--assumptions", required=True, type=_FILE, help="Table of the assumptions.")
+@_CONFIG
+@click.option("--out", required=True, type=click.Path(dir_okay=False), help="Audit (CSV) to write.")
+def audit(metrics, assumptions, path, out):
+    """Hold the assumptions against METRICS."""
+    from sonicvacuum_paper.stages import write_assumptions
+
+    write_assumptions(metrics, assumptions, configuration.read(path), out)

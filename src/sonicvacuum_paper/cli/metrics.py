@@ -1,0 +1,17 @@
+"""`sonicvacuum paper metrics`: the numbers of all cards, with those of theory and comparison."""
+
+import click
+
+from sonicvacuum.cli import existing
+
+
+@click.command()
+@click.argument("files", nargs=-1, required=True, type=existing())
+@click.option("--config", "path", default="config.yaml", show_default=True, type=existing())
+@click.option("--out", required=True, type=click.Path(dir_okay=False), help="All metrics (CSV) to write.")
+def metrics(files, path, out):
+    """Gather the metrics of all cards (FILES) and add those of theory, arithmetic, audit and comparison."""
+    from sonicvacuum import config
+    from sonicvacuum_paper.stages import write_metrics
+
+    write_metrics(files, config.read(path), out)

@@ -1,0 +1,38 @@
+"""`sonicvacuum paper observe`: what the gauges of a card read, and the numbers derived from it."""
+
+import click
+import numpy as np
+
+from sonicvacuum.cli import existing
+from sonicvacuum.cli.cards import read_card
+from sonicvacuum.files import replacing
+
+
+@click.command()
+@click.argument("card", type=existing())
+@click.argument("history", type=existing())
+@click.option(
+    "--signals", required=True, type=click.Path(dir_okay=False), help="Gauge readings (CSV) to write."
+)
+@click.option("--metrics", required=True, type=click.Path(dir_okay=False), help="Metrics (CSV) to write.")
+def observe(card, history, signals, metrics):
+    """Read the gauges of a simulated CARD's HISTORY and measure the pulses."""
+    from sonicvacuum import study
+    from sonicvacuum_paper.metrics import card_rows
+    from sonicvacuum_paper.rows import write_rows
+
+    simulated = study.load(read_card(card), history)
+    write_signals(simulated, signals)
+    write_rows(card_rows(simulated), metrics)
+
+
+def write_signals(simulated, path):
+    """CSV with the columns run, speed_m_s, time_us and one per gauge (N, without the static part)."""
+    readings = simulated.readings()
+    time = simulated.time * 1e6
+    with replacing(path) as stream:
+        stream.write(",".join(["run", "speed_m_s", "time_us", *readings]) + "\n")
+        for run, speed in enumerate(simulated.speeds):
+            columns = [np.full(len(time), run), np.full(len(time), speed), time]
+            table = np.column_stack([*columns, *(r[:, run] for r in readings.values())])
+            np.savetxt(stream, table, delimiter=",", fmt=["%d", "%.9g", "%.9g", *["%.9g"] * len(readings)])

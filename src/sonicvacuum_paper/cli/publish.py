@@ -1,0 +1,35 @@
+"""`sonicvacuum paper publish`: what of the results is kept in git."""
+
+import click
+
+from sonicvacuum.cli import existing
+from sonicvacuum.files import InputError, replacing
+
+_FILE = existing()
+
+
+@click.command()
+@click.option("--ledger", required=True, type=_FILE)
+@click.option("--claims", required=True, type=_FILE, help="Table of the paper's claims.")
+@click.option("--readme", required=True, type=_FILE, help="README whose result table is renewed.")
+@click.option(
+    "--guide", required=True, type=click.Path(dir_okay=False), help="Guide to the figures (Markdown)."
+)
+@click.option(
+    "--reference", required=True, type=click.Path(dir_okay=False), help="Where the ledger is kept in git."
+)
+@click.option("--benchmark", type=_FILE, help="Table of the benchmark (Markdown), where one was made.")
+@click.option("--study", type=_FILE, help="Scores of the small blind study.")
+@click.option("--naming", type=click.Path(dir_okay=False), help="Where its naming is kept in git.")
+def publish(ledger, claims, readme, guide, reference, benchmark, study, naming):
+    """Keep the ledger as the reference of later checks; renew the README's table and the figures' guide."""
+    from sonicvacuum_paper.report import guide as figure_guide
+    from sonicvacuum_paper.report import publish as keep
+
+    if (study is None) != (naming is None):
+        raise InputError("publish: --study and --naming go together: give both, or neither")
+    keep.publish(ledger, readme, reference, benchmark)
+    if study:
+        keep.publish_study(study, naming)
+    with replacing(guide) as stream:
+        stream.write(figure_guide.text(claims))

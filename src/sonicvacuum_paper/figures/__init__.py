@@ -1,0 +1,107 @@
+"""Figures 3–6 of the paper, redrawn from simulated cards: numbers first, pictures from these numbers only.
+
+Each module `figN` has `table(studies)`, which returns the numbers drawn, `draw(table)`, which makes a figure
+of them and of nothing else, and `CAPTION`. Importing this package loads neither matplotlib nor pandas.
+"""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from sonicvacuum.files import InputError, replacing
+
+# Figure → the cards it shows, panel by panel.
+CARDS = {
+    "fig3": ("fig3a.matched", "fig3a.handbook", "fig3b.nominal"),
+    "fig4": (
+        "fig4a.matched",
+        "fig4a.membrane",
+        "fig4a.handbook",
+        "fig4a.matched-horizontal",
+        "fig4a.handbook-horizontal",
+        "fig4b.nominal",
+        "fig4b.horizontal",
+    ),
+    "fig5": ("fig5a.matched", "fig5a.handbook", "fig5b.nominal"),
+    "fig6": (
+        "fig6a.matched",
+        "fig6a.membrane",
+        "fig6a.handbook",
+        "fig6b.matched",
+        "fig6b.membrane",
+        "fig6b.handbook",
+    ),
+}
+
+
+def names() -> tuple[str, ...]:
+    """The figures there are."""
+    return tuple(CARDS)
+
+
+def cards_of(name: str) -> tuple[str, ...]:
+    """Cards that a figure shows; InputError for an unknown figure."""
+    if name not in CARDS:
+        raise InputError(f"figure {name!r}: unknown; use one of {', '.join(CARDS)}")
+    return CARDS[name]
+
+
+def caption(name: str) -> str:
+    """Caption of a figure, one paragraph of plain text."""
+    return _module(name).CAPTION
+
+
+def make(name: str, studies: Mapping, out_dir) -> tuple[Path, Path, Path]:
+    """Write `name`.csv, then read it back and draw `name`.svg and `name`.png from it.
+
+    Equal studies give equal bytes.
+
+    Args:
+        name: of the figure.
+        studies: card name → `sonicvacuum.study.Study` of the cards in `cards_of(name)`; others are ignored,
+            and a card may be absent as long as its panel has another.
+        out_dir: folder, made where it does not exist.
+
+    Returns:
+        The paths of the three files.
+
+    Raises:
+        InputError: for an unknown figure or a panel without a card.
+    """
+    from sonicvacuum.figures import style
+
+    wanted = {card: studies[card] for card in cards_of(name) if card in studies}
+    for panel in dict.fromkeys(card.split(".")[0] for card in CARDS[name]):
+        if not any(card.startswith(f"{panel}.") for card in wanted):
+            known = ", ".join(c for c in CARDS[name] if c.startswith(f"{panel}."))
+            raise InputError(f"figure {name}: no simulated card of {panel}; simulate one of {known}")
+    module, stem = _module(name), Path(out_dir) / name
+    paths = tuple(stem.with_suffix(suffix) for suffix in (".csv", ".svg", ".png"))
+    with replacing(paths[0]) as stream:
+        module.table(wanted).to_csv(stream, index=False, float_format="%.9g", lineterminator="\n")
+    figure = draw(name, paths[0])
+    style.save(figure, *paths[1:])
+    return paths
+
+
+def draw(name: str, path):
+    """The matplotlib Figure of the numbers in a CSV that `make` wrote; InputError where it is not one."""
+    import pandas
+
+    module = _module(name)
+    try:
+        table = pandas.read_csv(path)
+    except (OSError, ValueError) as error:
+        raise InputError(
+            f"{path}: cannot be read as CSV ({error}); draw {name} from its cards again"
+        ) from None
+    if list(table.columns) != module.COLUMNS or table.empty:
+        raise InputError(f"{path}: not the numbers of {name}; draw it from its cards again")
+    return module.draw(table)
+
+
+def _module(name):
+    cards_of(name)
+    # Written out, so that what a figure depends on can be read off the imports.
+    from sonicvacuum_paper.figures import fig3, fig4, fig5, fig6
+
+    return {"fig3": fig3, "fig4": fig4, "fig5": fig5, "fig6": fig6}[name]

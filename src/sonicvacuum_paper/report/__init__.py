@@ -1,0 +1,1 @@
+"""The page of the reproduction, and what of the results is kept in git."""

@@ -1,0 +1,134 @@
+"""One metric of one case, and the tables that hold them.
+
+`results/metrics.csv` has one line per metric. A metric that does not exist, because its pulse is absent or
+merged, keeps its line with an empty value; the reason stands in `results/absent.csv`.
+"""
+
+import csv
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+from sonicvacuum.files import InputError, read_text, replacing
+
+COLUMNS = ("case", "quantity", "sensor", "value", "unit", "numerical_error")
+REASONED = (*COLUMNS, "reason")
+ABSENT = ("case", "quantity", "sensor", "reason")
+
+
+@dataclass(frozen=True)
+class Row:
+    """One metric.
+
+    Attributes:
+        case: card (`fig3a.matched`), one run of a sweep (`fig4a.matched@0.44`, speed in m/s) or a pseudo-case
+            (`paper`, `theory.matched`, ...).
+        quantity: its name in `claims.md`.
+        sensor: gauge, pair of gauges, or empty.
+        value: NaN where the quantity does not exist.
+        unit: `1` for ratios; `us` and `um` stand for micro.
+        numerical_error: change when the time step is halved; NaN where that has no meaning.
+        reason: why there is no value.
+    """
+
+    case: str
+    quantity: str
+    sensor: str
+    value: float
+    unit: str
+    numerical_error: float = 0.0
+    reason: str = ""
+
+    @property
+    def key(self) -> tuple[str, str, str]:
+        """What identifies the metric."""
+        return self.case, self.quantity, self.sensor
+
+    @property
+    def known(self) -> bool:
+        """Whether there is a value."""
+        return math.isfinite(self.value)
+
+
+def absent(case: str, quantity: str, sensor: str, unit: str, reason: str) -> Row:
+    """The line of a quantity that does not exist."""
+    return Row(case, quantity, sensor, math.nan, unit, math.nan, reason)
+
+
+def write_rows(rows: Iterable[Row], path, reasons: bool = True) -> None:
+    """Write rows, sorted by key: `COLUMNS`, and the reason as a seventh column unless it has its own table.
+
+    Raises:
+        ValueError: when two rows have one key.
+    """
+    ordered = _sorted(rows)
+    with replacing(path) as stream:
+        table = csv.writer(stream, lineterminator="\n")
+        table.writerow(REASONED if reasons else COLUMNS)
+        for r in ordered:
+            cells = [*r.key, number(r.value), r.unit, number(r.numerical_error, 3)]
+            table.writerow([*cells, r.reason] if reasons else cells)
+
+
+def write_absent(rows: Iterable[Row], path) -> None:
+    """Write the reasons of the rows that have no value."""
+    with replacing(path) as stream:
+        table = csv.writer(stream, lineterminator="\n")
+        table.writerow(ABSENT)
+        table.writerows([*r.key, r.reason] for r in _sorted(rows) if not r.known)
+
+
+def read_rows(path, absent_path=None) -> list[Row]:
+    """The rows of a table with or without reasons; those of `absent_path` are added where it is given.
+
+    Raises:
+        InputError: naming file, line and what is wrong.
+    """
+    lines = list(csv.reader(read_text(path).splitlines()))
+    if not lines or tuple(lines[0]) not in (COLUMNS, REASONED):
+        raise InputError(
+            f"{path}: the first line must read {','.join(COLUMNS)}; run sonicvacuum paper observe again"
+        )
+    rows = [_row(cells, len(lines[0]), path, number) for number, cells in enumerate(lines[1:], 2)]
+    if absent_path is None:
+        return rows
+    reasons = {tuple(r[:3]): r[3] for r in cells_of(absent_path, ABSENT)}
+    return [replace(r, reason=reasons.get(r.key, r.reason)) for r in rows]
+
+
+def cells_of(path, columns: tuple[str, ...]) -> list[list[str]]:
+    """Cells of a CSV file below its first line, which must name `columns`; InputError otherwise."""
+    lines = list(csv.reader(read_text(path).splitlines()))
+    if not lines or tuple(lines[0]) != columns:
+        raise InputError(f"{path}: the first line must read {','.join(columns)}")
+    for place, cells in enumerate(lines[1:], 2):
+        if len(cells) != len(columns):
+            raise InputError(
+                f"{path}, line {place}: {len(cells)} cells, expected {len(columns)}; quote what holds commas"
+            )
+    return lines[1:]
+
+
+def number(value: float, digits: int = 12) -> str:
+    """A number as text, empty for NaN; one spelling for one number."""
+    return "" if math.isnan(value) else f"{value + 0.0:.{digits}g}"
+
+
+def _sorted(rows):
+    ordered = sorted(rows, key=lambda r: r.key)
+    for one, other in pairwise(ordered):
+        if one.key == other.key:
+            raise ValueError(f"two rows for {'/'.join(one.key)}")
+    return ordered
+
+
+def _row(cells, count, path, place):
+    if len(cells) != count:
+        raise InputError(f"{path}, line {place}: {len(cells)} cells, expected {count}")
+    case, quantity, sensor, value, unit, error, *reason = cells
+    try:
+        value, error = (float(c) if c else math.nan for c in (value, error))
+    except ValueError:
+        raise InputError(f"{path}, line {place}: {value!r} or {error!r} is not a number") from None
+    return Row(case, quantity, sensor, value, unit, error, *reason)
