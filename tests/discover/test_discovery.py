@@ -10,7 +10,8 @@ from made_records import made
 from scipy.optimize import least_squares
 
 from sonicvacuum import records
-from sonicvacuum.cli.discover import compare, discover
+from sonicvacuum.cli.compare import compare
+from sonicvacuum.cli.discover import discover
 from sonicvacuum.discover import directions, screen, session
 from sonicvacuum.discover.compare import read_model
 from sonicvacuum.discover.forward import Forward

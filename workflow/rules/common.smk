@@ -39,7 +39,7 @@ wildcard_constraints:
 
 
 LOCKS = ["requirements.lock", "requirements-build.lock"]
-# The verb `discover` loads this for pictures and page, which no rule asks it for: `record_page` makes them.
+# The verb `discover` loads this for pictures and page, which the workflow makes by the verb `page`.
 PAGES = ["sonicvacuum.cli.page"]
 # Verbs that take a card load this where a model is put into it.
 MODEL = ["sonicvacuum.cli.model"]
