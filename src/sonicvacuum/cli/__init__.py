@@ -88,6 +88,9 @@ def main():
     except InputError as error:
         click.echo(f"Error: {error}", err=True)
         sys.exit(2)
+    except OSError as error:  # a full disk, say: the machine's fault, not the input's
+        click.echo(f"Error: {error.filename or 'file'}: {error.strerror or error}", err=True)
+        sys.exit(1)
     except (click.Abort, KeyboardInterrupt):
         sys.exit(130)
 

@@ -9,6 +9,7 @@ from sonicvacuum.card import dump
 from sonicvacuum.cli import existing
 from sonicvacuum.files import InputError, replacing
 from sonicvacuum.materials import MATERIALS
+from sonicvacuum.outputs import check_apart
 
 
 @click.command()
@@ -19,6 +20,7 @@ from sonicvacuum.materials import MATERIALS
 @click.option("--out", type=click.Path(dir_okay=False), help="File to write; default: standard output.")
 def card(path, case, variant, model, out):
     """Resolve one case of the configuration into a card (JSON, SI units)."""
+    check_apart([out], [path, model])
     config = configuration.read(path)
     if case is None:
         click.echo("\n".join(configuration.card_names(config)))

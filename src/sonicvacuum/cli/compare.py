@@ -16,9 +16,12 @@ def compare(record, model, path, threads):
     """Score a MODEL on a RECORD; only the record's own nuisances are fitted."""
     from sonicvacuum.discover import compare as scoring
     from sonicvacuum.discover.verdict import write_json
+    from sonicvacuum.outputs import check_apart, check_folder
     from sonicvacuum.physics.run import available_threads
     from sonicvacuum.records import read
 
+    check_apart([path], [record, model])
+    check_folder(Path(path).parent)
     score = scoring.compare(scoring.read_model(model), read(record), threads or available_threads())
     write_json(score, Path(path))
     click.echo(f"{record}: {score.gap.before:.3g} before, {score.gap.after:.3g} after, floor 1")

@@ -25,18 +25,22 @@ def discover(records, out, together, figures, threads):
 
     One record is written to OUT; of several each has its own folder OUT/<folder name>.
     """
+    from sonicvacuum.cli.page import illustrate, page_files
     from sonicvacuum.discover import session
+    from sonicvacuum.outputs import renewed
     from sonicvacuum.physics.run import available_threads
     from sonicvacuum.records import read
+    from sonicvacuum.records.guard import check_out
 
     groups = {Path(out): records} if together else {f: (p,) for p, f in _folders(records, Path(out)).items()}
+    for folder in groups:
+        check_out(folder, records)
     for folder, paths in groups.items():
         result = session.discover(*(read(p) for p in paths), threads=threads or available_threads())
-        session.write(result, folder)
-        if figures:
-            from sonicvacuum.cli.page import illustrate
-
-            illustrate(folder)
+        with renewed(folder, last="verdict.json", stale=page_files()) as fresh:
+            session.write(result, fresh)
+            if figures:
+                illustrate(fresh)
         click.echo(f"{', '.join(paths)}: {_sentence(result.verdict)}")
 
 

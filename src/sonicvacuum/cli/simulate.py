@@ -4,6 +4,7 @@ import click
 
 from sonicvacuum.cli import existing
 from sonicvacuum.cli.cards import read_card
+from sonicvacuum.outputs import check_apart
 
 
 @click.command()
@@ -18,6 +19,7 @@ def simulate(card, model, out):
     """Integrate the chains of a CARD and keep the contact forces."""
     from sonicvacuum import study
 
+    check_apart([out], [card, model])
     resolved = read_card(card)
     if model:
         from sonicvacuum.cli.model import with_model

@@ -1,4 +1,4 @@
-"""One record from reading to files: verdict.json, model.json and the tables, written whole or not at all."""
+"""One record from reading to files: verdict.json, model.json and the tables."""
 
 import math
 import time
@@ -20,7 +20,6 @@ from sonicvacuum.discover import (
 from sonicvacuum.discover.problem import together
 from sonicvacuum.discover.rounds import Investigation, investigate
 from sonicvacuum.discover.verdict import Verdict
-from sonicvacuum.files import InputError
 from sonicvacuum.records import Record
 
 
@@ -98,10 +97,6 @@ class Clock:
 
 def write(result: Result, folder: Path) -> None:
     """Write verdict, model and tables; the verdict last, so that a folder that holds one is complete."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"{folder}: {error.strerror}; give a folder that can be written") from None
     header = ["run", "sensor", "feature", "z_before", "p_before", "q_before", "size", "z_after"]
     left = {(p.run, p.sensor, p.feature): p.z for p in result.after}
     verdict.write_table(

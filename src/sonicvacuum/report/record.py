@@ -29,6 +29,8 @@ PICTURES = {
     "traces": "First and last run: measured, nominal and extended traces; below them running means of the "
     "residuals over their own standard error (band: two of them).",
 }
+# What a page adds to the folder of discover.
+PAGE = ("index.html", "parameters.csv", *(f"{name}.{kind}" for name in PICTURES for kind in ("svg", "png")))
 _PAIRS = 6
 
 

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import click
 
+from sonicvacuum.outputs import check_apart
 from sonicvacuum_blind.cli.options import present
 
 _RULES = ("best-chi2", "bic", "nearest-shape", "forest", "state")
@@ -35,6 +36,7 @@ def baselines(records, truth, verdicts, out, training, wanted, state_cases):
     from sonicvacuum_blind.baselines.cases import read
     from sonicvacuum_blind.score import write_table
 
+    check_apart([out], [records, truth, verdicts, training])
     cases = read(records, truth, verdicts)
     known = read(*(Path(training) / part for part in ("records", "truth", "verdicts"))) if training else []
     lines = table.compare(cases, known, wanted or table.RULES, state_cases)

@@ -4,6 +4,7 @@ import click
 
 from sonicvacuum import config as configuration
 from sonicvacuum.cli import existing
+from sonicvacuum.outputs import check_apart
 
 _FILE = existing()
 _CONFIG = click.option("--config", "path", default="config.yaml", show_default=True, type=_FILE)
@@ -18,6 +19,7 @@ def ledger(metrics, claims, path, out):
     """Hold the claims against METRICS."""
     from sonicvacuum_paper.stages import write_ledger
 
+    check_apart([out], [metrics, claims, path])
     write_ledger(metrics, claims, configuration.read(path), out)
 
 
@@ -30,4 +32,5 @@ def audit(metrics, assumptions, path, out):
     """Hold the assumptions against METRICS."""
     from sonicvacuum_paper.stages import write_assumptions
 
+    check_apart([out], [metrics, assumptions, path])
     write_assumptions(metrics, assumptions, configuration.read(path), out)

@@ -3,6 +3,7 @@
 import click
 
 from sonicvacuum.cli import existing
+from sonicvacuum.outputs import check_apart
 
 
 @click.command()
@@ -14,4 +15,5 @@ def metrics(files, path, out):
     from sonicvacuum import config
     from sonicvacuum_paper.stages import write_metrics
 
+    check_apart([out], [*files, path])
     write_metrics(files, config.read(path), out)

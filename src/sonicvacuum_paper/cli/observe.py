@@ -6,6 +6,7 @@ import numpy as np
 from sonicvacuum.cli import existing
 from sonicvacuum.cli.cards import read_card
 from sonicvacuum.files import replacing
+from sonicvacuum.outputs import check_apart
 
 
 @click.command()
@@ -21,6 +22,7 @@ def observe(card, history, signals, metrics):
     from sonicvacuum_paper.metrics import card_rows
     from sonicvacuum_paper.rows import write_rows
 
+    check_apart([signals, metrics], [card, history])
     simulated = study.load(read_card(card), history)
     write_signals(simulated, signals)
     write_rows(card_rows(simulated), metrics)

@@ -1,0 +1,30 @@
+"""No result is written into a record: measured data are irreplaceable."""
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from sonicvacuum.files import InputError
+from sonicvacuum.outputs import check_apart, check_folder
+from sonicvacuum.records.reader import FILE
+
+
+def check_out(folder, records: Iterable = ()) -> None:
+    """Refuse a folder for results that would touch a record or cannot be written.
+
+    Args:
+        folder: to be written.
+        records: folders of the records that are read, or their `record.yaml`.
+
+    Raises:
+        InputError: where the folder is that of a record (any, not only those read), lies in one, or holds a
+            file of one that is read, be it through links; or where it cannot be made or written.
+    """
+    place = Path(folder).resolve()
+    for above in (place, *place.parents):
+        if (above / FILE).is_file():
+            told = "is the folder of a record" if above == place else f"lies in the record {above}"
+            raise InputError(f"{folder}: {told}; give a folder outside of it to write")
+    check_folder(folder)
+    if place.is_dir():
+        read = (path.parent if path.is_file() else path for path in map(Path, records))
+        check_apart(place.iterdir(), read)

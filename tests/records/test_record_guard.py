@@ -1,0 +1,158 @@
+"""A record is never written over, and a new result replaces an old one whole or not at all."""
+
+import os
+
+import pytest
+import yaml
+from record_cases import BALL
+
+from sonicvacuum import cli, outputs
+from sonicvacuum.discover import session
+from sonicvacuum.files import InputError
+from sonicvacuum.records.guard import check_out
+
+
+@pytest.fixture
+def place(tmp_path, monkeypatch):
+    """A working folder with the record rec, another called other, and nothing that may be computed."""
+    monkeypatch.chdir(tmp_path)
+    for name in ("rec", "other"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "record.yaml").write_text(yaml.safe_dump(BALL))
+        (tmp_path / name / "model.json").write_text("{}")
+
+    def never(*records, threads):
+        raise AssertionError("computed")
+
+    monkeypatch.setattr(session, "discover", never)
+    return tmp_path
+
+
+def refused(monkeypatch, capsys, *arguments):
+    """The message of a call that must end with 2, having written nothing."""
+    monkeypatch.setattr("sys.argv", ["sonicvacuum", *arguments])
+    before = snapshot(".")
+    with pytest.raises(SystemExit) as end:
+        cli.main()
+    assert end.value.code == 2
+    assert snapshot(".") == before
+    return capsys.readouterr().err
+
+
+def snapshot(folder):
+    return {
+        os.path.join(top, name): open(os.path.join(top, name), "rb").read()
+        for top, _, names in os.walk(folder)
+        for name in names
+    } | {top: b"" for top, _, _ in os.walk(folder)}
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["rec", "--out", "rec"],
+        ["rec", "--out", "other/../rec"],
+        ["rec", "--out", "rec/found/deep"],
+        ["rec", "--out", "other"],
+        ["rec", "--out", "link"],
+        ["rec/record.yaml", "--out", "link/found"],
+        ["rec", "other", "--out", "."],
+        ["rec", "other", "--together", "--out", "other"],
+    ],
+)
+def test_a_folder_in_a_record_is_refused_before_anything_is_computed(place, monkeypatch, capsys, arguments):
+    (place / "link").symlink_to("rec")
+    shown = refused(monkeypatch, capsys, "discover", *arguments)
+    assert "give a folder outside of it" in shown
+
+
+@pytest.mark.parametrize("link", [os.symlink, os.link])
+def test_a_folder_that_holds_a_file_of_a_record_through_a_link_is_refused(place, monkeypatch, capsys, link):
+    (place / "out").mkdir()
+    link(place / "rec/model.json", place / "out/model.json")
+    assert "which is read here" in refused(monkeypatch, capsys, "discover", "rec", "--out", "out")
+
+
+def test_a_record_whose_file_is_a_link_into_the_folder_is_refused(place, monkeypatch, capsys):
+    (place / "raw").mkdir()
+    (place / "raw/traces.csv").write_text("measured")
+    (place / "rec/traces.csv").symlink_to("../raw/traces.csv")
+    assert "which is read here" in refused(monkeypatch, capsys, "discover", "rec", "--out", "raw")
+
+
+@pytest.mark.parametrize("out", ["taken", "taken/deep", "/proc/nowhere/found"])
+def test_a_folder_that_cannot_be_written_is_told_first(place, monkeypatch, capsys, out):
+    (place / "taken").write_text("a file")
+    shown = refused(monkeypatch, capsys, "discover", "rec", "--out", out)
+    assert out in shown
+    assert "Traceback" not in shown
+
+
+@pytest.mark.parametrize("target", ["rec/record.yaml", "rec/../rec/model.json", "score.json"])
+def test_a_score_is_not_written_over_what_is_read(place, monkeypatch, capsys, target):
+    (place / "score.json").symlink_to("rec/record.yaml")
+    call = ("compare", "rec", "--model", "other/model.json", "--json", target)
+    assert "which is read here; give another place" in refused(monkeypatch, capsys, *call)
+
+
+def test_a_page_is_not_written_into_a_record(place, monkeypatch, capsys):
+    (place / "rec/verdict.json").write_text("{}")
+    assert "is the folder of a record" in refused(monkeypatch, capsys, "page", "rec")
+
+
+def test_a_card_is_not_written_over_what_it_is_made_of(place, monkeypatch, capsys):
+    (place / "card.json").write_text("{}")
+    assert "which is read here" in refused(
+        monkeypatch, capsys, "simulate", "card.json", "--out", "./card.json"
+    )
+
+
+def test_a_new_folder_beside_a_record_is_free(place):
+    check_out("found", ["rec"])
+    check_out(".", ["rec"])
+    assert not (place / "found").exists()
+
+
+def test_a_failure_leaves_the_old_result_whole(tmp_path):
+    (tmp_path / "verdict.json").write_text("old")
+    (tmp_path / "gap.csv").write_text("old")
+    before = snapshot(tmp_path)
+    with pytest.raises(InputError), outputs.renewed(tmp_path, last="verdict.json") as fresh:
+        (fresh / "gap.csv").write_text("new")
+        raise InputError
+    assert snapshot(tmp_path) == before
+
+
+def test_a_failure_leaves_no_empty_folder(tmp_path):
+    with pytest.raises(InputError), outputs.renewed(tmp_path / "new", last="verdict.json"):
+        raise InputError
+    assert not (tmp_path / "new").exists()
+
+
+def test_a_new_result_replaces_what_an_earlier_one_left_and_nothing_else(tmp_path):
+    for name in ("verdict.json", "gap.csv", "index.html", "notes.txt"):
+        (tmp_path / name).write_text("old")
+    with outputs.renewed(tmp_path, last="verdict.json", stale=["index.html"]) as fresh:
+        for name in ("verdict.json", "gap.csv"):
+            (fresh / name).write_text("new")
+    assert {path.name: path.read_text() for path in tmp_path.iterdir()} == {
+        "verdict.json": "new", "gap.csv": "new", "notes.txt": "old"
+    }  # fmt: skip
+
+
+def test_an_interruption_while_files_change_places_leaves_no_verdict(tmp_path, monkeypatch):
+    """A folder with a verdict always holds the files of one run."""
+    for name in ("verdict.json", "gap.csv", "where.csv"):
+        (tmp_path / name).write_text("old")
+    replace = os.replace
+
+    def interrupted(source, target):
+        if target.name == "where.csv":
+            raise KeyboardInterrupt
+        replace(source, target)
+
+    monkeypatch.setattr(os, "replace", interrupted)
+    with pytest.raises(KeyboardInterrupt), outputs.renewed(tmp_path, last="verdict.json") as fresh:
+        for name in ("verdict.json", "gap.csv", "where.csv"):
+            (fresh / name).write_text("new")
+    assert not (tmp_path / "verdict.json").exists()
