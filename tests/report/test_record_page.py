@@ -230,6 +230,15 @@ def test_the_posterior_is_drawn_where_the_verdict_has_it(folders):
     assert list(searched.lines[0].get_xdata()) == [float(row["low"]), float(row["high"])]
 
 
+def test_all_significant_comparisons_are_counted_and_not_only_those_kept():
+    """The verdict keeps 40 at most; the page counts what where.csv holds."""
+    cell = {"sensor": "g1", "feature": "amplitude", "z_before": "-9"}
+    cells = [{**cell, "run": f"r{k}", "q_before": "1e-9" if k < 45 else "0.5"} for k in range(60)]
+    told = words.where(verdict(where=KINDS["single"].where * 40), cells)
+    assert "In 45 of 60 comparisons" in told
+    assert "amplitude (45)" in told
+
+
 def test_every_picture_is_described(folders):
     text = (folders["single"] / "index.html").read_text()
     assert len(re.findall(r'<svg role="img" aria-label=', text)) == len(re.findall("<svg", text))

@@ -78,7 +78,8 @@ class Verdict(_Part, kw_only=True):
         confusable: sets of effects between which this data do not decide, the named one first.
         parameters: effect → parameter → value.
         gap: before and after.
-        where: significant disagreements of the nominal model, largest first.
+        where: the largest significant disagreements of the nominal model, largest first, 40 at most;
+            where.csv has all comparisons.
         upper_limits: effect → parameter → 95 % limit; effects that cannot be tested here are left out.
         not_testable: effects whose limit lies beyond the bounds of the search.
         next_experiment: null where nothing is left to separate.
@@ -182,7 +183,7 @@ def named_effects(found: Investigation) -> list[str]:
 
 
 def where(places: list[Place], most: int = 40) -> list[Where]:
-    """The significant cells, largest first."""
+    """The largest of the significant cells, largest first."""
     cells = sorted((p for p in places if p.found), key=lambda p: -abs(p.z))[:most]
     return [Where(run=c.run, sensor=c.sensor, feature=c.feature, z=c.z, p=c.p) for c in cells]
 

@@ -4,7 +4,9 @@ Every sentence is made from `verdict.json`, `model.json` and the tables beside t
 """
 
 import math
+from collections import Counter
 
+from sonicvacuum.discover.locate import DISCOVERY_RATE
 from sonicvacuum.discover.verdict import Gap, Model, Next, Verdict
 from sonicvacuum.effects import effect
 from sonicvacuum.report.tables import number
@@ -120,24 +122,25 @@ def _singles(odds):
 
 
 def where(verdict: Verdict, cells: list[dict]) -> str:
-    """Where the nominal model and the data disagree."""
+    """Where the nominal model and the data disagree.
+
+    The verdict keeps the largest disagreements; `cells`, the rows of where.csv, are all comparisons made.
+    """
     traces = any(c["sensor"] for c in cells)
+    failing = [c["feature"] for c in cells if float(c["q_before"] or 1.0) < DISCOVERY_RATE]
     kind = "run, gauge and feature of the trace" if traces else "run and measured quantity"
     if not cells:
         return "There was nothing to compare by feature."
-    if not verdict.where:
+    if not (failing and verdict.where):
         return (
             f"Nowhere: of {plural(len(cells), 'comparison')} ({kind}), none stands out beyond what so many "
             "comparisons give by chance."
         )
     first = verdict.where[0]
-    counts: dict[str, int] = {}
-    for cell in verdict.where:
-        counts[cell.feature] = counts.get(cell.feature, 0) + 1
-    groups = joined([f"{name} ({count})" for name, count in sorted(counts.items(), key=lambda c: -c[1])])
+    groups = joined([f"{name} ({count})" for name, count in Counter(failing).most_common()])
     place = f"run {first.run}" + (f", gauge {first.sensor}" if first.sensor else "")
     return (
-        f"In {len(verdict.where)} of {plural(len(cells), 'comparison')} ({kind}) the nominal model fails: "
+        f"In {len(failing)} of {plural(len(cells), 'comparison')} ({kind}) the nominal model fails: "
         f"{groups}. The largest is in {place}: the data show {_side(first)} than predicted, by "
         f"{abs(first.z):.3g} standard errors."
     )
