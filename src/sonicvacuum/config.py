@@ -1,5 +1,6 @@
 """`config.yaml`: the cases to simulate and what to make of them, checked before any job runs."""
 
+import re
 from pathlib import PurePosixPath
 from typing import Annotated, Any
 
@@ -37,6 +38,7 @@ def read(path) -> Config:
     """
     config = convert(read_yaml(path), Config, path)
     for place, folder in enumerate(config.discover):
+        _check_folder(folder, f"{path}: discover[{place}]")
         if config.records[PurePosixPath(folder).name] != folder:
             raise InputError(
                 f"{path}: discover[{place}]: is {folder!r}; another record has that folder name: rename one"
@@ -46,6 +48,19 @@ def read(path) -> Config:
             card(config, case, variant, path)
             _check_model(config, case, variant, path)
     return config
+
+
+def _check_folder(folder, key):
+    """Names that the workflow takes for something else; all others are only ever passed on quoted."""
+    if PurePosixPath(folder).name in ("", ".."):
+        raise InputError(f"{key}: is {folder!r}; write the path such that it ends with the folder's name")
+    if folder.startswith("-"):
+        raise InputError(f"{key}: is {folder!r}, which looks like an option; write ./{folder}")
+    if re.search(r"[{}\x00-\x1f\x7f]", folder) or folder != folder.strip():
+        raise InputError(
+            f"{key}: is {folder!r}; Snakemake takes no braces, control characters or spaces at the ends in "
+            "names: rename the folder"
+        )
 
 
 def _check_model(config, case, variant, path):

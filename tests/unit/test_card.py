@@ -1,6 +1,8 @@
 """Cards: what a user writes becomes SI once, variants change what they say and nothing else."""
 
 import copy
+import json
+import re
 
 import pytest
 from hypothesis import given
@@ -158,3 +160,29 @@ def test_the_schema_in_git_is_the_one_that_checks(request):
 
     kept = request.config.rootpath / "workflow/schemas/config.schema.json"
     assert json.loads(kept.read_text()) == json.loads(json.dumps(schema()))
+
+
+@pytest.mark.parametrize(
+    ("folder", "cure"),
+    [
+        (".", "ends with the folder's name"),
+        ("records/..", "ends with the folder's name"),
+        ("-x", "write ./-x"),
+        ("a{b}", "rename the folder"),
+        ("a\nb", "rename the folder"),
+        ("a ", "rename the folder"),
+    ],
+)
+def test_a_folder_that_the_workflow_would_take_for_something_else_is_refused(tmp_path, folder, cure):
+    path = tmp_path / "config.yaml"
+    content = {"ledger": {}, "cases": {"one": CASE}, "discover": [folder]}
+    path.write_text(json.dumps(content))
+    with pytest.raises(InputError, match=r"discover\[0\].*" + re.escape(cure)):
+        read(path)
+
+
+def test_any_other_folder_is_taken(tmp_path):
+    path = tmp_path / "config.yaml"
+    name = "a b; $(x) 'q' \"d\" * ü"
+    path.write_text(json.dumps({"ledger": {}, "cases": {"one": CASE}, "discover": ["records/" + name]}))
+    assert list(read(path).records) == [name]

@@ -4,6 +4,7 @@ The pipeline is run once on two small cases and a small record; what a change wo
 plan.
 """
 
+import json
 import os
 import re
 import shutil
@@ -13,12 +14,17 @@ import sys
 import pytest
 from ball import RECORD
 
-CONFIG = """\
+# A folder's name may be anything; of this one a shell would make commands.
+ODD = """a b; touch pwned $(touch pwned) `touch pwned` 'q' "d" * ü"""
+CONFIG = (
+    f"""\
+discover: [records/ball, {json.dumps("records/" + ODD, ensure_ascii=False)}]
+"""
+    + """\
 ledger:
   handbook: [soft, nominal]
   matched: [hard, nominal]
   named: [found]
-discover: [records/ball]
 cases:
   coated:
     title: Five coated beads
@@ -41,11 +47,13 @@ cases:
     sensors: [{id: g2, kind: embedded, bead: 3}, {id: wall, kind: wall}]
     duration_us: 400
 """
+)
 TARGET = "results/metrics.csv"
 ALL = {"discover": 1, "card": 4, "simulate": 4, "observe": 4, "metrics": 1}
 # What follows from the record alone.
 FOUND = {"discover": 1, "card": 1, "simulate": 1, "observe": 1, "metrics": 1}
 PAGE = "results/discover/ball/index.html"
+ODD_PAGE = f"results/discover/{ODD}/index.html"
 
 
 def snakemake(folder, *arguments):
@@ -73,10 +81,11 @@ def finished(tmp_path_factory, pytestconfig):
     for part in ("Snakefile", "requirements.lock", "requirements-build.lock"):
         shutil.copy2(root / part, folder / part)
     (folder / "config.yaml").write_text(CONFIG)
-    (folder / "records/ball").mkdir(parents=True)
-    (folder / "records/ball/record.yaml").write_text(RECORD)
+    for name in ("ball", ODD):
+        (folder / "records" / name).mkdir(parents=True)
+        (folder / "records" / name / "record.yaml").write_text(RECORD)
     assert planned(folder) == ALL
-    done = snakemake(folder, TARGET, PAGE)
+    done = snakemake(folder, TARGET, PAGE, ODD_PAGE)
     assert done.returncode == 0, done.stderr
     return folder
 
@@ -91,6 +100,28 @@ def project(finished, tmp_path):
 
 def test_a_second_run_plans_nothing(finished):
     assert planned(finished) == {}
+
+
+def test_a_folder_whose_name_a_shell_would_run_is_only_a_folder(finished):
+    assert (finished / ODD_PAGE).is_file()
+    assert list(finished.rglob("pwned")) == []
+
+
+def test_every_interpolation_of_a_shell_command_is_quoted(pytestconfig):
+    """In all rules, {x:q} and never {x}: a name may hold what a shell would run."""
+    files = [pytestconfig.rootpath / "Snakefile", *(pytestconfig.rootpath / "workflow/rules").glob("*.smk")]
+    commands = [
+        (path.name, command)
+        for path in files
+        for command in re.findall(r"^ +shell:\n((?: +[\"'].*\n)+)", path.read_text() + "\n", re.MULTILINE)
+    ]
+    rules_with_commands = sum(path.read_text().count("    shell:\n") for path in files)
+    assert len(commands) == rules_with_commands > 20
+    fields = [(name, field) for name, text in commands for field in re.findall(r"\{([^{}]*)\}", text)]
+    assert len(fields) > 100
+    assert [(name, field) for name, field in fields if not field.endswith(":q")] == []
+    loose = [(n, v) for n, text in commands for v in re.findall(r'(?<!")\$\w+', text)]
+    assert loose == []
 
 
 def test_touching_without_changing_plans_nothing(project):

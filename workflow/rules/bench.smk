@@ -20,4 +20,4 @@ rule bench:
     message:
         "Measuring all codes in turns; this takes some minutes and wants an idle machine"
     shell:
-        "(python workflow/bench/measure.py --out results && python workflow/bench/draw.py results) 2>&1 | tee {log}"
+        "(python workflow/bench/measure.py --out results && python workflow/bench/draw.py results) 2>&1 | tee {log:q}"

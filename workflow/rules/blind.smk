@@ -29,8 +29,8 @@ rule hide:
     message:
         "Hiding effects in batch {wildcards.batch} of the {wildcards.study} study"
     shell:
-        "sonicvacuum blind hide --study {wildcards.study} --batch {wildcards.batch}/{params.batches}"
-        " --records {output.records} --truth {output.truth} > {log} 2>&1"
+        "sonicvacuum blind hide --study {wildcards.study:q} --batch {wildcards.batch:q}/{params.batches:q}"
+        " --records {output.records:q} --truth {output.truth:q} > {log:q} 2>&1"
 
 
 rule discover_hidden:
@@ -48,7 +48,7 @@ rule discover_hidden:
     message:
         "Discovering what is hidden in batch {wildcards.batch} of the {wildcards.study} study"
     shell:
-        "sonicvacuum discover {input.records}/* --out {output} --no-figures --threads {threads} > {log} 2>&1"
+        "sonicvacuum discover {input.records:q}/* --out {output:q} --no-figures --threads {threads:q} > {log:q} 2>&1"
 
 
 rule score:
@@ -71,9 +71,9 @@ rule score:
     message:
         "Scoring the {wildcards.study} study"
     shell:
-        "sonicvacuum blind score --truth {params.folder}/truth --verdicts {params.folder}/verdicts"
-        " --out {params.folder}/score.csv --summary {params.folder}/summary.csv --tables {params.folder}"
-        " > {log} 2>&1"
+        "sonicvacuum blind score --truth {params.folder:q}/truth --verdicts {params.folder:q}/verdicts"
+        " --out {params.folder:q}/score.csv --summary {params.folder:q}/summary.csv --tables {params.folder:q}"
+        " > {log:q} 2>&1"
 
 
 rule baselines:
@@ -94,12 +94,14 @@ rule baselines:
         ENVIRONMENT
     params:
         folder=lambda wildcards: f"results/blind/{wildcards.study}",
-        training=lambda wildcards, input: "--training results/blind/training" if input.training else "",
+        training=lambda wildcards, input: repeated(
+            "--training", ["results/blind/training"] if input.training else []
+        ),
     message:
         "Trying simpler rules on the {wildcards.study} study"
     shell:
-        "sonicvacuum blind baselines --records {params.folder}/records --truth {params.folder}/truth"
-        " --verdicts {params.folder}/verdicts {params.training} --out {output} > {log} 2>&1"
+        "sonicvacuum blind baselines --records {params.folder:q}/records --truth {params.folder:q}/truth"
+        " --verdicts {params.folder:q}/verdicts {params.training:q} --out {output:q} > {log:q} 2>&1"
 
 
 rule draw_study:
@@ -118,7 +120,7 @@ rule draw_study:
     message:
         "Drawing {wildcards.picture} of the {wildcards.study} study"
     shell:
-        "sonicvacuum blind draw {params.folder} --picture {wildcards.picture} > {log} 2>&1"
+        "sonicvacuum blind draw {params.folder:q} --picture {wildcards.picture:q} > {log:q} 2>&1"
 
 
 # The full study takes hours: its tables are kept in git and drawn from there.
@@ -138,7 +140,7 @@ rule draw_kept:
     message:
         "Drawing {wildcards.picture} of the full study as kept in git"
     shell:
-        "sonicvacuum blind draw {params.folder} --picture {wildcards.picture} --out figures --prefix blind_ > {log} 2>&1"
+        "sonicvacuum blind draw {params.folder:q} --picture {wildcards.picture:q} --out figures --prefix blind_ > {log:q} 2>&1"
 
 
 # The small study with what the default environment can draw; its baselines: blind_small_baselines.
@@ -176,7 +178,7 @@ rule publish_study:
     message:
         "Keeping the blind study in git and in the README"
     shell:
-        "sonicvacuum blind publish {params.folder} --readme {params.readme} --keep {params.keep} > {log} 2>&1"
+        "sonicvacuum blind publish {params.folder:q} --readme {params.readme:q} --keep {params.keep:q} > {log:q} 2>&1"
 
 
 # One more run for each case left ambiguous: the one that its verdict proposes, or a random one.
@@ -197,8 +199,8 @@ rule follow:
     message:
         "Making {wildcards.choice} runs for ambiguous cases in batch {wildcards.batch} of the {wildcards.study} study"
     shell:
-        "sonicvacuum blind follow --study {wildcards.study} --batch {wildcards.batch}/{params.batches}"
-        " --verdicts {input.verdicts} --choice {wildcards.choice} --records {output} > {log} 2>&1"
+        "sonicvacuum blind follow --study {wildcards.study:q} --batch {wildcards.batch:q}/{params.batches:q}"
+        " --verdicts {input.verdicts:q} --choice {wildcards.choice:q} --records {output:q} > {log:q} 2>&1"
 
 
 rule discover_followed:
@@ -217,9 +219,10 @@ rule discover_followed:
     message:
         "Discovering with {wildcards.choice} runs in batch {wildcards.batch} of the {wildcards.study} study"
     shell:
-        "mkdir -p {output}; for run in {input.followed}/*/; do [ -d $run ] || continue; id=$(basename $run);"
-        " sonicvacuum discover --together {input.records}/$id $run --out {output}/$id --no-figures;"
-        " done > {log} 2>&1"
+        'mkdir -p {output:q}; for run in {input.followed:q}/*/; do [ -d "$run" ] || continue;'
+        ' id=$(basename "$run");'
+        ' sonicvacuum discover --together {input.records:q}/"$id" "$run" --out {output:q}/"$id" --no-figures;'
+        " done > {log:q} 2>&1"
 
 
 rule resolved:
@@ -245,10 +248,10 @@ rule resolved:
     message:
         "Counting the ambiguous cases of the {wildcards.study} study that one more run decides"
     shell:
-        "sonicvacuum blind resolved --truth {params.folder}/truth --verdicts {params.folder}/verdicts"
-        " --proposed {params.folder}/followed/proposed {params.folder}/joint/proposed"
-        " --random {params.folder}/followed/random {params.folder}/joint/random"
-        " --out {output.rows} --summary {output.summary} > {log} 2>&1"
+        "sonicvacuum blind resolved --truth {params.folder:q}/truth --verdicts {params.folder:q}/verdicts"
+        " --proposed {params.folder:q}/followed/proposed {params.folder:q}/joint/proposed"
+        " --random {params.folder:q}/followed/random {params.folder:q}/joint/random"
+        " --out {output.rows:q} --summary {output.summary:q} > {log:q} 2>&1"
 
 
 rule blind_resolved:

@@ -17,11 +17,11 @@ rule card:
         config=CONFIG_FILE,
         case=lambda wildcards: wildcards.card.split(".")[0],
         variant=lambda wildcards: wildcards.card.split(".")[1],
-        model=lambda wildcards, input: f"--model {input.model}" if input.model else "",
+        model=lambda wildcards, input: repeated("--model", input.model),
         # The card's own text, so that an edit of config.yaml reruns the cards that it changes and no other.
         resolved=resolved,
     message:
         "Resolving {wildcards.card}"
     shell:
-        "sonicvacuum card --config {params.config} --case {params.case} --variant {params.variant}"
-        " {params.model} --out {output} 2> {log}"
+        "sonicvacuum card --config {params.config:q} --case {params.case:q} --variant {params.variant:q}"
+        " {params.model:q} --out {output:q} 2> {log:q}"

@@ -1,5 +1,7 @@
 """What all rules share: the checked configuration, the names of cards and figures, the sources of each verb."""
 
+import os
+import shlex
 import sys
 from pathlib import Path
 
@@ -15,7 +17,9 @@ CONFIG_FILE = "config.yaml"
 # For runs with conda; `make` has put the same packages on the path already.
 ENVIRONMENT = "../envs/locked.yaml"
 # Jobs call the command that stands beside this interpreter, whether or not its environment is activated.
-shell.prefix(f'export PATH="{Path(sys.executable).parent}:$PATH"; ')
+# Braces are doubled for Snakemake, which formats the prefix.
+COMMANDS = shlex.quote(str(Path(sys.executable).parent)).replace("{", "{{").replace("}", "}}")
+shell.prefix(f'export PATH={COMMANDS}:"$PATH"; ')
 FIGURES = ["fig3", "fig4", "fig5", "fig6"]
 
 
@@ -48,6 +52,11 @@ MODEL = ["sonicvacuum.cli.model"]
 def sources(*verbs, without=()):
     """Files that some verbs of the command run, read off their imports, and the locks, in a fixed order."""
     return files(verbs, without) + LOCKS
+
+
+def repeated(option, values):
+    """Words of a command: the option before each value, to be interpolated with :q."""
+    return [word for value in values for word in (option, str(value))]
 
 
 def resolved(wildcards):

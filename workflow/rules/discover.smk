@@ -30,7 +30,7 @@ rule discover:
     message:
         "Discovering what the model of {wildcards.record} lacks"
     shell:
-        "sonicvacuum discover {params.folder} --out {params.out} --no-figures --threads {threads} > {log} 2>&1"
+        "sonicvacuum discover {params.folder:q} --out {params.out:q} --no-figures --threads {threads:q} > {log:q} 2>&1"
 
 
 rule record_page:
@@ -51,4 +51,4 @@ rule record_page:
     message:
         "Writing the page of {wildcards.record}"
     shell:
-        "sonicvacuum page {params.out} 2> {log}"
+        "sonicvacuum page {params.out:q} 2> {log:q}"

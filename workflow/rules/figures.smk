@@ -27,5 +27,5 @@ rule draw:
     message:
         "Drawing {wildcards.figure}"
     shell:
-        "sonicvacuum paper draw {wildcards.figure} --cards results/cards --histories results/histories"
-        " --out figures 2> {log}"
+        "sonicvacuum paper draw {wildcards.figure:q} --cards results/cards --histories results/histories"
+        " --out figures 2> {log:q}"

@@ -18,8 +18,8 @@ rule observe:
     message:
         "Reading the gauges of {wildcards.card}"
     shell:
-        "sonicvacuum paper observe {input.card} {input.history} --signals {output.signals}"
-        " --metrics {output.metrics} 2> {log}"
+        "sonicvacuum paper observe {input.card:q} {input.history:q} --signals {output.signals:q}"
+        " --metrics {output.metrics:q} 2> {log:q}"
 
 
 rule metrics:
@@ -42,4 +42,4 @@ rule metrics:
     message:
         "Gathering the metrics of all cards"
     shell:
-        "sonicvacuum paper metrics {input.metrics} --config {params.config} --out {output.metrics} 2> {log}"
+        "sonicvacuum paper metrics {input.metrics:q} --config {params.config:q} --out {output.metrics:q} 2> {log:q}"

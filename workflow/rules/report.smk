@@ -24,8 +24,8 @@ rule ledger:
     message:
         "Holding the claims against the metrics"
     shell:
-        "sonicvacuum paper ledger {input.metrics} --claims {input.claims} --config {params.config}"
-        " --out {output} 2> {log}"
+        "sonicvacuum paper ledger {input.metrics:q} --claims {input.claims:q} --config {params.config:q}"
+        " --out {output:q} 2> {log:q}"
 
 
 rule audit:
@@ -48,8 +48,8 @@ rule audit:
     message:
         "Holding the assumptions against the metrics"
     shell:
-        "sonicvacuum paper audit {input.metrics} --assumptions {input.assumptions} --config {params.config}"
-        " --out {output} 2> {log}"
+        "sonicvacuum paper audit {input.metrics:q} --assumptions {input.assumptions:q} --config {params.config:q}"
+        " --out {output:q} 2> {log:q}"
 
 
 rule page:
@@ -75,21 +75,21 @@ rule page:
     conda:
         ENVIRONMENT
     params:
-        figures=lambda wildcards, input: [f"--figure {path}" for path in input.figures],
-        cards=lambda wildcards, input: [f"--card {path}" for path in input.cards],
-        locks=lambda wildcards, input: [f"--lock {path}" for path in input.locks],
-        discoveries=lambda wildcards, input: [
-            f"--discovery {Path(path).parent}" for path in input.discoveries
-        ],
+        figures=lambda wildcards, input: repeated("--figure", input.figures),
+        cards=lambda wildcards, input: repeated("--card", input.cards),
+        locks=lambda wildcards, input: repeated("--lock", input.locks),
+        discoveries=lambda wildcards, input: repeated(
+            "--discovery", [Path(path).parent for path in input.discoveries]
+        ),
         blind_full=lambda wildcards, input: Path(input.blind_full[0]).parent,
-        pictures=lambda wildcards, input: [f"--picture {path}" for path in input.pictures],
+        pictures=lambda wildcards, input: repeated("--picture", input.pictures),
     message:
         "Writing the report"
     shell:
-        "sonicvacuum paper report --ledger {input.ledger} --assumptions {input.assumptions}"
-        " --metrics {input.metrics} --claims {input.claims} {params.figures}"
-        " {params.cards} {params.locks} {params.discoveries} --blind-small {input.blind_small}"
-        " --blind-full {params.blind_full} {params.pictures} --out {output} 2> {log}"
+        "sonicvacuum paper report --ledger {input.ledger:q} --assumptions {input.assumptions:q}"
+        " --metrics {input.metrics:q} --claims {input.claims:q} {params.figures:q}"
+        " {params.cards:q} {params.locks:q} {params.discoveries:q} --blind-small {input.blind_small:q}"
+        " --blind-full {params.blind_full:q} {params.pictures:q} --out {output:q} 2> {log:q}"
 
 
 rule timings:
@@ -106,7 +106,7 @@ rule timings:
     message:
         "Summarising the time that each rule took"
     shell:
-        "sonicvacuum paper timings results/benchmarks --out {output} 2> {log}"
+        "sonicvacuum paper timings results/benchmarks --out {output:q} 2> {log:q}"
 
 
 # Run on purpose: ledger and naming of this run become those that later runs are compared with.
@@ -126,13 +126,13 @@ rule publish:
         guide="figures/README.md",
         naming="workflow/resources/reference/blind_small.csv",
         # Made by `make bench` only, on purpose.
-        benchmark="--benchmark results/bench.md" if Path("results/bench.md").exists() else "",
+        benchmark=repeated("--benchmark", filter(os.path.exists, ["results/bench.md"])),
     message:
         "Keeping the ledger in git and in the README"
     shell:
-        "sonicvacuum paper publish --ledger {input.ledger} --claims {input.claims} --readme {params.readme}"
-        " --guide {params.guide} --reference {params.reference} --study {input.study} --naming {params.naming}"
-        " {params.benchmark} 2> {log}"
+        "sonicvacuum paper publish --ledger {input.ledger:q} --claims {input.claims:q} --readme {params.readme:q}"
+        " --guide {params.guide:q} --reference {params.reference:q} --study {input.study:q} --naming {params.naming:q}"
+        " {params.benchmark:q} 2> {log:q}"
 
 
 # Figure tables and ledger made anew in clean folders, compared with those in git.
@@ -145,4 +145,4 @@ rule reproduce:
     message:
         "Making everything anew in clean folders"
     shell:
-        "python workflow/scripts/reproduce.py 2>&1 | tee {log}"
+        "python workflow/scripts/reproduce.py 2>&1 | tee {log:q}"

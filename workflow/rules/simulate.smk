@@ -16,4 +16,4 @@ rule simulate:
     message:
         "Simulating {wildcards.card}"
     shell:
-        "sonicvacuum simulate {input.card} --out {output} 2> {log}"
+        "sonicvacuum simulate {input.card:q} --out {output:q} 2> {log:q}"
