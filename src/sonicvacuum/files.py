@@ -1,12 +1,19 @@
 """Reading and writing files: whole or not at all, and one clear message for what is wrong with a file."""
 
+import math
 import os
 import re
+import stat
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import msgspec
+
+# No file written by hand comes near: config.yaml expands to 860 values on 9 levels.
+LARGEST_YAML = 4 << 20
+MOST_VALUES = 200_000
+DEEPEST = 50
 
 
 class InputError(Exception):
@@ -34,20 +41,59 @@ def replacing(path: str | os.PathLike, mode: str = "w"):
         partial.unlink(missing_ok=True)
 
 
+def check_file(path: str | os.PathLike) -> None:
+    """InputError where a path is no regular file: a pipe, say, for which a reader would wait for ever."""
+    try:
+        mode = os.stat(path).st_mode
+    except (OSError, ValueError) as error:
+        told = getattr(error, "strerror", None) or error
+        raise InputError(f"{path}: {told}; give the path of a readable file") from None
+    if not stat.S_ISREG(mode):
+        kind = "a folder" if stat.S_ISDIR(mode) else "a pipe or a device"
+        raise InputError(f"{path}: is {kind}; give the path of a readable file")
+
+
 def read_text(path: str | os.PathLike) -> str:
     """Text of a file; InputError where it cannot be read."""
+    check_file(path)
     try:
         return Path(path).read_text(encoding="utf-8")
     except OSError as error:
         raise InputError(f"{path}: {error.strerror or error}; give the path of a readable file") from None
     except UnicodeDecodeError as error:
         raise InputError(f"{path}: not a text file (byte {error.start} is not UTF-8)") from None
-    except ValueError as error:
-        raise InputError(f"{path}: {error}; give the path of a readable file") from None
 
 
 def read_yaml(path: str | os.PathLike) -> dict[str, Any]:
-    """Mapping of a YAML file; InputError names the line at fault, duplicate keys among the faults."""
+    """Mapping of a YAML file; InputError names the line at fault.
+
+    Faults are also keys that stand twice, and more than a hand-written file holds (`LARGEST_YAML`,
+    `MOST_VALUES`, `DEEPEST`): aliases let a few lines stand for more values than a computer holds.
+    """
+    import yaml
+
+    check_file(path)
+    if os.path.getsize(path) > LARGEST_YAML:
+        raise InputError(f"{path}: larger than {LARGEST_YAML >> 20} MB; leave out what does not belong here")
+    try:
+        loader = _loader(path)(read_text(path))
+        node = loader.get_single_node()
+        _check_extent(node, path)
+        content = loader.construct_document(node) if node else None
+    except yaml.YAMLError as error:
+        mark = getattr(error, "problem_mark", None)
+        place = f", line {mark.line + 1}" if mark else ""
+        raise _not_yaml(path, place, getattr(error, "problem", None) or error) from None
+    except (ValueError, TypeError, AttributeError, RecursionError) as error:
+        # What the YAML library stumbles over without a word of its own: impossible dates, lists as keys.
+        raise _not_yaml(path, "", error) from None
+    if not isinstance(content, dict):
+        raise InputError(f"{path}: expected keys and values at the top level, found {type(content).__name__}")
+    return content
+
+
+def _loader(path):
+    """Class of a safe YAML loader that refuses keys that stand twice."""
     import yaml
 
     class Loader(yaml.SafeLoader):
@@ -65,18 +111,30 @@ def read_yaml(path: str | os.PathLike) -> dict[str, Any]:
         return yaml.SafeLoader.construct_mapping(loader, node, deep=True)
 
     Loader.add_constructor(yaml.resolver.BaseResolver.DEFAULT_MAPPING_TAG, mapping)
-    try:
-        content = yaml.load(read_text(path), Loader)
-    except yaml.YAMLError as error:
-        mark = getattr(error, "problem_mark", None)
-        place = f", line {mark.line + 1}" if mark else ""
-        raise _not_yaml(path, place, getattr(error, "problem", None) or error) from None
-    except (ValueError, TypeError, AttributeError, RecursionError) as error:
-        # What the YAML library stumbles over without a word of its own: impossible dates, lists as keys.
-        raise _not_yaml(path, "", error) from None
-    if not isinstance(content, dict):
-        raise InputError(f"{path}: expected keys and values at the top level, found {type(content).__name__}")
-    return content
+    return Loader
+
+
+def _check_extent(root, path):
+    """Count what a YAML tree holds once its aliases are written out; each shared part is visited once."""
+    extents = {}
+
+    def extent(node):
+        """(values, depth) below a node."""
+        if isinstance(node.value, str):
+            return 1, 1
+        if id(node) not in extents:
+            extents[id(node)] = math.inf, math.inf  # what a part holds that holds itself
+            parts = [p for pair in node.value for p in (pair if isinstance(pair, tuple) else (pair,))]
+            found = [extent(part) for part in parts]
+            extents[id(node)] = 1 + sum(f[0] for f in found), 1 + max((f[1] for f in found), default=0)
+        return extents[id(node)]
+
+    values, depth = extent(root) if root else (0, 0)
+    if values > MOST_VALUES or depth > DEEPEST:
+        raise InputError(
+            f"{path}: holds more than {MOST_VALUES} values or {DEEPEST} levels once its aliases (*name) are "
+            "written out; write fewer"
+        )
 
 
 def _not_yaml(path, place, problem):

@@ -1,5 +1,7 @@
 """Files are written whole or not at all; what is wrong with one is said in one line."""
 
+import os
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -48,6 +50,56 @@ def test_merge_keys_are_allowed(tmp_path):
     path = tmp_path / "c.yaml"
     path.write_text("a: &a {x: 1, y: 2}\nb: {<<: *a, y: 3}\n")
     assert read_yaml(path)["b"] == {"x": 1, "y": 3}
+
+
+def bomb(levels, merge=False):
+    """Some lines whose aliases stand for 10 to the power of so many levels."""
+    lines = ["a0: &a0 {x: 1}"]
+    for k in range(1, levels + 1):
+        parts = ", ".join([f"*a{k - 1}"] * 10)
+        lines.append(f"a{k}: &a{k} {{<<: [{parts}], k{k}: [{parts}]}}" if merge else f"a{k}: &a{k} [{parts}]")
+    return "\n".join(lines)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        bomb(9),
+        bomb(300),
+        bomb(9, merge=True),
+        "a: &a [*a]",
+        "a: &a {b: *a}",
+        "a: " + "[" * 60 + "]" * 60,
+        "a: [" + "1, " * 250_000 + "1]",
+    ],
+)
+def test_more_than_a_hand_writes_is_refused_at_once(tmp_path, text):
+    path = tmp_path / "c.yaml"
+    path.write_text(text)
+    with pytest.raises(InputError, match=r"c\.yaml: holds more than 200000 values or 50 levels"):
+        read_yaml(path)
+
+
+def test_nesting_beyond_what_the_parser_takes_is_one_line(tmp_path):
+    path = tmp_path / "c.yaml"
+    path.write_text("a: " + "[" * 5000)
+    with pytest.raises(InputError, match=r"c\.yaml"):
+        read_yaml(path)
+
+
+def test_a_huge_file_is_not_parsed(tmp_path):
+    path = tmp_path / "c.yaml"
+    path.write_text("#" * (5 << 20))
+    with pytest.raises(InputError, match=r"larger than 4 MB"):
+        read_yaml(path)
+
+
+@pytest.mark.parametrize("read", [read_text, read_yaml])
+def test_what_is_no_file_is_refused_and_not_waited_for(tmp_path, read):
+    os.mkfifo(tmp_path / "pipe")
+    for path, kind in ((tmp_path / "pipe", "a pipe"), ("/dev/zero", "a device"), (tmp_path, "a folder")):
+        with pytest.raises(InputError, match=f"{kind}.*give the path of a readable file"):
+            read(path)
 
 
 def test_missing_and_binary_files_are_named(tmp_path):

@@ -112,6 +112,24 @@ def test_a_missing_file_is_named(monkeypatch, capsys, tmp_path):
     assert "none.json" in shown
 
 
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["simulate", "pipe", "--out", "h.npz"],
+        ["card", "--config", "pipe"],
+        ["compare", "rec", "--model", "pipe", "--json", "score.json"],
+        ["metrics", "/dev/zero", "--out", "m.csv"],
+        ["record", "check", "rec"],
+    ],
+)
+def test_a_pipe_or_a_device_is_refused_and_not_waited_for(monkeypatch, capsys, tmp_path, arguments):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "rec").mkdir()
+    os.mkfifo("pipe")
+    os.mkfifo("rec/record.yaml")
+    failing(monkeypatch, capsys, *arguments)
+
+
 def test_a_card_with_a_fault_is_named_with_its_field(monkeypatch, capsys, card, tmp_path):
     content = json.loads(card.read_text())
     content["bead"]["mass_kg"] = -1.0

@@ -9,7 +9,7 @@ from importlib import import_module
 
 import click
 
-from sonicvacuum.files import InputError
+from sonicvacuum.files import InputError, check_file
 
 # Sums must not depend on the number of processors, nor on the threads that Snakemake gives a rule: numpy's
 # linear algebra gets one. It reads this when it is loaded, which no verb has done yet.
@@ -95,6 +95,15 @@ def main():
         sys.exit(130)
 
 
+class _File(click.Path):
+    """A path to an ordinary file: of a pipe or a device no reader would see the end."""
+
+    def convert(self, value, param, ctx):
+        path = super().convert(value, param, ctx)
+        check_file(path)
+        return path
+
+
 def existing(**options):
     """Type of a path argument that must be a readable file."""
-    return click.Path(exists=True, dir_okay=False, readable=True, **options)
+    return _File(exists=True, dir_okay=False, readable=True, **options)
