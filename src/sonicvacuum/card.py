@@ -240,6 +240,11 @@ def resolve(case: str, variant: str, block: CaseBlock) -> Card:
     if striker.aim is not None and striker.aim.sensor not in [s.id for s in block.sensors]:
         raise CardError("striker.aim.sensor", f"is {striker.aim.sensor!r}; no sensor has this id")
 
+    ids = [s.id for s in block.sensors]
+    for place, name in enumerate(ids):
+        if name in ids[:place]:
+            raise CardError(f"sensors[{place}].id", f"is {name!r}; another sensor has this id: rename one")
+
     def look(name, key):
         return material(name, block.materials, key)
 

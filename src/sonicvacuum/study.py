@@ -45,9 +45,18 @@ class Study:
     momentum: np.ndarray
 
     @cached_property
+    def _setup(self) -> Setup:
+        return set_up(self.card, self.speeds)
+
+    @property
     def chain(self) -> Chain:
         """The chains as integrated, lane k at speed k."""
-        return set_up(self.card, self.speeds).chain
+        return self._setup.chain
+
+    @property
+    def sensors(self) -> tuple[Sensor, ...]:
+        """The card's own gauges, with its effects on them."""
+        return self._setup.sensors
 
     @property
     def interval(self) -> float:
@@ -66,7 +75,7 @@ class Study:
 
     def readings(self, refined: bool = False) -> dict[str, np.ndarray]:
         """Sensor id → (samples, runs) reading of the card's own gauges, with the effects on gauges."""
-        return {s.id: self.read(s, refined) for s in set_up(self.card, self.speeds).sensors}
+        return {s.id: self.read(s, refined) for s in self.sensors}
 
 
 def set_up(card: Card, speeds=None) -> Setup:
@@ -93,13 +102,14 @@ def sensors(card: Card) -> tuple[Sensor, ...]:
 
 
 def recorded_contacts(card: Card) -> tuple[int, ...]:
-    """All contacts of a single run; of a sweep those from the first gauge to the last, and the wall."""
-    if len(card.striker.speeds_m_s) == 1:
+    """All contacts of a single run; of a sweep those from the first gauge to the last, and the wall.
+
+    All as well of a sweep with gauges in fewer than two beads: virtual ones are put elsewhere then.
+    """
+    inside = {s.bead for s in card.sensors if s.kind == "embedded"}
+    if len(card.striker.speeds_m_s) == 1 or len(inside) < 2:
         return tuple(range(card.beads + 1))
-    needed = contacts_needed(sensors(card), card.beads)
-    inner = [c for c in needed if c < card.beads]
-    between = range(min(inner), max(inner) + 1) if inner else ()
-    return (*between, card.beads)
+    return (*range(min(inside) - 1, max(inside) + 1), card.beads)
 
 
 def run(card: Card) -> Study:

@@ -116,7 +116,9 @@ def shape_deviation(run: OneRun, gauge: Sensor) -> Measured:
 
 
 def speed(run: OneRun, upper: Sensor, lower: Sensor) -> Measured:
-    """Distance over the time from peak to peak, in m/s."""
+    """Distance over the time from peak to peak, in m/s; absent of two gauges in one bead."""
+    if upper.bead == lower.bead:
+        return missing("absent: both gauges sit in one bead")
     return q.speed(run.view, upper.id, lower.id)
 
 

@@ -13,7 +13,7 @@ from sonicvacuum.observe import quantities
 from sonicvacuum.observe.run import Geometry, Run
 from sonicvacuum.observe.sensor import Sensor, contacts_of, reading
 from sonicvacuum.observe.trace import Measured, Trace
-from sonicvacuum.study import Study, sensors
+from sonicvacuum.study import Study
 
 # Gauges of the paper, counted from the bottom; virtual ones take their place in chains without.
 UPPER, LOWER = 9, 5
@@ -40,14 +40,21 @@ class OneRun:
 
     @cached_property
     def gauges(self) -> tuple[Sensor, ...]:
-        """The gauges reported on, from the striker to the wall: the card's own, with g9 and g5 if too few."""
-        found = list(sensors(self.card))
+        """The gauges reported on, from the striker to the wall: the card's own, with its effects on gauges.
+
+        Where they sit in fewer than two beads, virtual ones are put into those of g9 and g5.
+        """
+        found = list(self.study.sensors)
         if not any(s.kind == "wall" for s in found):
-            found.append(Sensor(id="wall", kind="wall", bead=None))
-        if sum(s.kind == "embedded" for s in found) < 2 and self.card.beads >= UPPER:
-            names = {s.id for s in found}
-            extra = [replace(self._virtual(self.card.beads + 1 - k), id=f"g{k}") for k in (UPPER, LOWER)]
-            found += [s for s in extra if s.id not in names]
+            found.append(Sensor(id=_free("wall", found), kind="wall", bead=None))
+        taken = {s.bead for s in found if s.kind == "embedded"}
+        if len(taken) < 2 and self.card.beads >= UPPER:
+            places = {f"g{k}": self.card.beads + 1 - k for k in (UPPER, LOWER)}
+            found += [
+                replace(self._virtual(bead), id=_free(name, found))
+                for name, bead in places.items()
+                if bead not in taken
+            ]
         return tuple(sorted(found, key=lambda s: (s.kind == "wall", s.bead or 0)))
 
     @cached_property
@@ -119,3 +126,8 @@ class OneRun:
     @staticmethod
     def _virtual(bead):
         return Sensor(id=f"bead {bead}", kind="embedded", bead=bead)
+
+
+def _free(name, gauges):
+    """A name for a virtual gauge that no gauge of the card has."""
+    return name if all(g.id != name for g in gauges) else _free(f"{name}_virtual", gauges)

@@ -46,10 +46,13 @@ def test_energy_and_momentum_stay_in_balance():
 
 
 def test_a_sweep_keeps_the_contacts_between_its_gauges_only():
-    sweep = card(striker=CardStriker(mass_kg=0.5e-3, surface=STEEL, speeds_m_s=(0.2, 0.4, 0.8)))
-    assert study.recorded_contacts(sweep) == (4, 5, 8)
+    striker = CardStriker(mass_kg=0.5e-3, surface=STEEL, speeds_m_s=(0.2, 0.4, 0.8))
+    upper = CardSensor(id="u", kind="embedded", bead=4)
+    sweep = card(striker=striker, sensors=(upper, *card().sensors))
+    assert study.recorded_contacts(sweep) == (3, 4, 5, 8)
     assert study.recorded_contacts(card()) == tuple(range(9))
-    assert study.run(sweep).force.shape == (601, 3, 3)
+    assert study.recorded_contacts(card(striker=striker)) == tuple(range(9))
+    assert study.run(sweep).force.shape == (601, 4, 3)
 
 
 def test_the_aimed_amplitude_is_met():
