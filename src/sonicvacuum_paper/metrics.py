@@ -85,7 +85,7 @@ def card_rows(study: Study) -> list[Row]:
 def _model(study: Study) -> Iterator[Row]:
     """What was simulated: modulus of the beads' surface, effects included; number of effects with losses."""
     losses = sum(effect(name).dissipative for name in study.card.effects)
-    yield Row(study.card.name, "modulus", "", float(study.chain.bead.modulus[0]) / 1e9, "GPa", 0.0)
+    yield Row(study.card.name, "modulus", "", float(study.chain.first.surface.modulus[0]) / 1e9, "GPa", 0.0)
     yield Row(study.card.name, "loss_effects", "", float(losses), "1", 0.0)
 
 

@@ -8,7 +8,7 @@ from reference import Plain
 
 from sonicvacuum.effects import CATALOGUE, Setup, effect
 from sonicvacuum.observe.sensor import reading
-from sonicvacuum.physics.chain import Chain, Elastic
+from sonicvacuum.physics.chain import Body, Chain, Elastic
 from sonicvacuum.physics.run import History, simulate
 
 DURATION, INTERVAL = 6e-4, 2.5e-7
@@ -49,12 +49,10 @@ def nominal(p: Plain | None = None) -> Setup:
     p = p or Plain()
     chain = Chain(
         beads=p.beads,
-        bead=Elastic("soft", p.modulus, p.poisson),
+        bodies=Body(Elastic("soft", p.modulus, p.poisson), p.mass, p.radius),
         striker=Elastic("hard", p.striker_modulus, p.striker_poisson),
         wall=Elastic("steel", p.wall_modulus, p.wall_poisson),
-        bead_radius=p.radius,
         striker_radius=np.inf,
-        bead_mass=p.mass,
         striker_mass=p.striker_mass,
         speed=p.speed,
         gravity=p.gravity,

@@ -92,8 +92,8 @@ def test_two_coated_spheres_are_each_half_of_a_mirrored_pair():
     table = np.array(
         [np.broadcast_to(c, (7, 1)) for c in coefficients(chain, chain.stiffnesses(7), None, thickness=50e-6)]
     )[..., 0]
-    delta, radius = 5e-6, chain.bead_radius
-    modulus = chain.bead.modulus[0] / (1.0 - chain.bead.poisson**2)
+    delta, radius = 5e-6, chain.first.radius[0]
+    modulus = chain.first.surface.modulus[0] / (1.0 - chain.first.surface.poisson**2)
     # One sphere against the mirror plane, indented by delta/2.
     alone = (
         hertz_constant(modulus, radius)

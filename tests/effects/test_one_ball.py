@@ -20,7 +20,8 @@ LOSSLESS = ("dynamic-modulus", "contact-exponent", "coating-thickness", "wall-co
 def ball(speed):
     """A coated ball that flies at a steel wall."""
     chain = nominal().chain
-    solid = {"beads": 0, "striker": chain.bead, "striker_radius": chain.bead_radius, "striker_mass": MASS}
+    one = chain.first
+    solid = {"beads": 0, "striker": one.surface, "striker_radius": one.radius[0], "striker_mass": MASS}
     return replace(nominal(), chain=replace(chain, speed=speed, **solid), sensors=())
 
 

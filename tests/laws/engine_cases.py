@@ -5,22 +5,21 @@ import math
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from sonicvacuum.physics.chain import Chain, Elastic
+from sonicvacuum.physics.bodies import Body, Elastic
+from sonicvacuum.physics.chain import Chain
 
 DURATION = 0.6e-3
 
 
-def coated(modulus=15e9, **changes) -> Chain:
+def coated(modulus=15e9, bead_mass=0.44e-3, **changes) -> Chain:
     """The coated beads of Daraio & Nesterenko (2006) with a flat striker and wall of the beads' material."""
     body = Elastic("coating", modulus, 0.388)
     numbers = {
         "beads": 21,
-        "bead": body,
+        "bodies": Body(body, bead_mass, 2.43e-3),
         "striker": body,
         "wall": body,
-        "bead_radius": 2.43e-3,
         "striker_radius": math.inf,
-        "bead_mass": 0.44e-3,
         "striker_mass": 0.47e-3,
         "speed": 0.44,
     }

@@ -19,10 +19,10 @@ PACKAGE = Path(sonicvacuum.__file__).parent
 SCRIPT = """
 import math
 from sonicvacuum.physics import compiled
-from sonicvacuum.physics.chain import Chain, Elastic
+from sonicvacuum.physics.chain import Body, Chain, Elastic
 from sonicvacuum.physics.run import advance, simulate
 body = Elastic("coating", 15e9, 0.388)
-chain = Chain(3, body, body, body, 2.43e-3, math.inf, 0.44e-3, 0.47e-3, 0.44)
+chain = Chain(3, Body(body, 0.44e-3, 2.43e-3), body, body, math.inf, 0.47e-3, 0.44)
 print(repr(float(simulate(chain, [0], 1e-4, 1e-6).force.max())))
 print(sum(advance.stats.cache_misses.values()), sum(advance.stats.cache_hits.values()))
 """
@@ -34,9 +34,9 @@ def copy(tmp_path_factory):
     root = tmp_path_factory.mktemp("source")
     (root / "sonicvacuum").mkdir()
     shutil.copy(PACKAGE / "__init__.py", root / "sonicvacuum")
-    shutil.copytree(
-        PACKAGE / "physics", root / "sonicvacuum" / "physics", ignore=shutil.ignore_patterns("__pycache__")
-    )
+    unwanted = shutil.ignore_patterns("__pycache__")
+    for part in ("physics", "laboratory"):
+        shutil.copytree(PACKAGE / part, root / "sonicvacuum" / part, ignore=unwanted)
     return root
 
 

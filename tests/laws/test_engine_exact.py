@@ -79,8 +79,8 @@ def test_leading_wave_far_from_the_striker_is_the_solitary_wave():
     contacts = (60, 61)
     h = simulate(chain, contacts, 1.8e-3, 1e-6)
     peaks, moments = zip(*(peak(h.time, h.of(c)[:, 0]) for c in contacts), strict=True)
-    speed = 2 * chain.bead_radius / (moments[1] - moments[0])
-    exact = SolitaryWave.compute().speed(peaks[0], chain.stiffness[0], 2 * chain.bead_radius, 0.44e-3)
+    speed = 2 * chain.first.radius[0] / (moments[1] - moments[0])
+    exact = SolitaryWave.compute().speed(peaks[0], chain.stiffness[0], 2 * chain.first.radius[0], 0.44e-3)
     assert speed == pytest.approx(exact, rel=1e-4)  # the pulse still sheds its tail at 60 beads
     assert peaks[1] == pytest.approx(peaks[0], rel=1e-4)
 

@@ -6,7 +6,8 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from sonicvacuum.physics.chain import Chain, Elastic
+from sonicvacuum.physics.bodies import Body, Elastic
+from sonicvacuum.physics.chain import Chain
 from sonicvacuum.physics.run import simulate
 
 MIB = 2**20
@@ -14,7 +15,7 @@ MIB = 2**20
 
 def chain(modulus, beads):
     body = Elastic("coating", modulus, 0.388)
-    return Chain(beads, body, body, body, 2.43e-3, math.inf, 0.44e-3, 0.47e-3, 0.44)
+    return Chain(beads, Body(body, 0.44e-3, 2.43e-3), body, body, math.inf, 0.47e-3, 0.44)
 
 
 def largest_use(*arguments):

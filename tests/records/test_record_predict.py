@@ -60,9 +60,9 @@ def test_what_a_chain_is_made_of_comes_from_the_record():
         runs__0__signals=None, runs__0__observables=SCALARS[:1], runs__1__signals=None,
     )  # fmt: skip
     (batch,) = assemble(record)
-    assert batch.chain.bead.modulus == pytest.approx(3e9)
-    assert batch.chain.bead.poisson == 0.388
-    assert batch.chain.coating == pytest.approx(50e-6)
+    assert batch.chain.first.surface.modulus == pytest.approx(3e9)
+    assert batch.chain.first.surface.poisson == 0.388
+    assert batch.chain.first.coating == pytest.approx(50e-6)
     assert batch.chain.gravity == pytest.approx(9.81)
     assert batch.chain.static_force == pytest.approx(0.5)
     assert record.modulus_rel_sigma("parylene-c") == 0.1

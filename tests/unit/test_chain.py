@@ -5,7 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from sonicvacuum.physics.chain import Chain, Elastic
+from sonicvacuum.physics.bodies import Body, Elastic
+from sonicvacuum.physics.chain import Chain
 from sonicvacuum.physics.contact import (
     compression_at,
     contact_time,
@@ -19,15 +20,13 @@ POLYMER = Elastic("polymer", 2.76e9, 0.388)
 STEEL = Elastic("steel", 193e9, 0.3)
 
 
-def chain(**changes):
+def chain(bead_mass=0.44e-3, **changes):
     values = {
         "beads": 4,
-        "bead": POLYMER,
+        "bodies": Body(POLYMER, bead_mass, 2.43e-3),
         "striker": STEEL,
         "wall": STEEL,
-        "bead_radius": 2.43e-3,
         "striker_radius": math.inf,
-        "bead_mass": 0.44e-3,
         "striker_mass": 0.47e-3,
         "speed": 0.44,
     }
@@ -102,14 +101,14 @@ def test_lanes_can_be_taken_apart():
     part = c.take(np.array([2, 0]))
     assert part.speed.tolist() == [0.3, 0.1]
     assert part.masses(5)[1] / 0.44e-3 == pytest.approx([3.0, 1.0])
-    assert part.bead.modulus.shape == (2,)
+    assert part.first.surface.modulus.shape == (2,)
 
 
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
         ({"speed": 0.0}, "speed is 0"),
-        ({"bead_mass": -1.0}, "bead_mass is -1"),
+        ({"bead_mass": -1.0}, "mass of a bead is -1"),
         ({"gravity": -9.81}, "gravity is -9.81"),
         ({"beads": -1}, "beads is -1"),
     ],

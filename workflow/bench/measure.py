@@ -207,10 +207,11 @@ def measure_length():
 START = """
 import time; begin = time.perf_counter()
 import math
-from sonicvacuum.physics.chain import Chain, Elastic
+from sonicvacuum.physics.chain import Body, Chain, Elastic
 from sonicvacuum.physics.run import simulate
 body = Elastic("coating", 15e9, 0.388)
-simulate(Chain(21, body, body, body, 2.43e-3, math.inf, 0.44e-3, 0.47e-3, 0.44), [12], 0.6e-3, 1e-6)
+chain = Chain(21, Body(body, 0.44e-3, 2.43e-3), body, body, math.inf, 0.47e-3, 0.44)
+simulate(chain, [12], 0.6e-3, 1e-6)
 """
 MEMORY = """
 import sys

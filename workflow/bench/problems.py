@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sonicvacuum.physics.chain import Chain, Elastic
+from sonicvacuum.physics.chain import Body, Chain, Elastic
 from sonicvacuum.physics.run import simulate
 
 STEP = 1e-7
@@ -37,7 +37,7 @@ class Problem:
     def chain(self) -> Chain:
         """The chains, for the engine."""
         body = Elastic("coating", self.moduli, 0.388)
-        return Chain(self.beads, body, body, body, 2.43e-3, math.inf, 0.44e-3, 0.47e-3, 0.44)
+        return Chain(self.beads, Body(body, 0.44e-3, 2.43e-3), body, body, math.inf, 0.47e-3, 0.44)
 
     @property
     def samples(self) -> int:

@@ -46,7 +46,7 @@ def _contact(chain, stiffness, mass, **a):
 
 def _drag(chain, stiffness, mass, **b):
     """Scale of the velocity, then accelerations in units of speed over contact time."""
-    time = contact_time(chain.bead_mass, _stiffness(chain), chain.speed)
+    time = contact_time(chain.first.mass, _stiffness(chain), chain.speed)
     unit = chain.speed / time / max(1, chain.beads)
     return [scales(chain)[1], *(b[n] * unit for n in _DRAGS)]
 
@@ -61,7 +61,7 @@ def scales(chain) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     The mean speed of the lanes is used, so that one coefficient means one law.
     """
     speed = float(np.mean(chain.speed))
-    depth = speed * contact_time(chain.bead_mass, _stiffness(chain), speed)
+    depth = speed * contact_time(chain.first.mass, _stiffness(chain), speed)
     return depth, np.full(chain.lanes, 1.0 / speed), _stiffness(chain) * depth**1.5
 
 

@@ -261,12 +261,8 @@ class Forward:
         chain = batch.chain.take(np.tile(np.arange(len(runs)), lanes))
         speed = chain.speed * np.exp(nu[:, runs] * sigma[runs]).ravel()
         stiffer = np.repeat(np.exp(nu[:, self.layout.modulus] * sigma[self.layout.modulus]), len(runs))
-        bodies = {
-            name: replace(body, modulus=body.modulus * stiffer)
-            for name in ("bead", "striker", "wall")
-            if (body := getattr(chain, name)).name == chain.bead.name
-        }
-        return Setup(replace(chain, speed=speed, **bodies), batch.gauges or self.experiment.gauges)
+        chain = replace(chain, speed=speed).stiffened(chain.first.surface.name, stiffer)
+        return Setup(chain, batch.gauges or self.experiment.gauges)
 
     def simulate(self, batch, setup: Setup):
         """Readings (lanes, S, T') on the simulated grid, with what the scalars need besides."""

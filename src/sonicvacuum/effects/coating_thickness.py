@@ -58,7 +58,7 @@ TERM = Term("bonded-layer", "factor", layer_factor, 6)
 def coefficients(chain, stiffness, mass, thickness):
     """The series in powers of sqrt(delta): chi = width × sqrt(delta), width = sqrt(R*)/h."""
     width = np.sqrt(chain.reduced_radii(len(stiffness))) / thickness
-    series = layer_series(chain.bead.poisson)
+    series = layer_series(chain.first.surface.poisson)
     chi, slope = tangent_point(series)
     with np.errstate(divide="ignore"):
         limit = chi / width

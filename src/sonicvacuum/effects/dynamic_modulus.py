@@ -8,12 +8,7 @@ from sonicvacuum.effects.base import Effect, Parameter, Setup
 def change(setup: Setup, modulus_ratio) -> Setup:
     """Scale the modulus of every body that is made of the beads' contact material."""
     chain = setup.chain
-    scaled = {
-        body: replace(elastic, modulus=elastic.modulus * modulus_ratio)
-        for body in ("bead", "striker", "wall")
-        if (elastic := getattr(chain, body)).name == chain.bead.name
-    }
-    return replace(setup, chain=replace(chain, **scaled))
+    return replace(setup, chain=chain.stiffened(chain.first.surface.name, modulus_ratio))
 
 
 EFFECT = Effect(

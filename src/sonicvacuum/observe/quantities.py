@@ -133,11 +133,11 @@ def duration_half(run: Run, sensor: str) -> Measured:
 
 
 def width(run: Run, from_: str, to: str, sensor: str, level: float = 0.01) -> Measured:
-    """Length of the main pulse in bead diameters: duration × speed / diameter."""
+    """Length of the main pulse, duration × speed, in (mean) diameters of the beads between the gauges."""
     lasting, fast = duration(run, sensor, level), speed(run, from_, to)
     if not (lasting.known and fast.known):
         return fast if lasting.known else lasting
-    return Measured(lasting.value * fast.value / run.geometry.diameter_m)
+    return Measured(lasting.value * fast.value / run.geometry.diameter_between(from_, to))
 
 
 def width_half(run: Run, from_: str, to: str, sensor: str) -> Measured:

@@ -15,6 +15,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from sonicvacuum.laboratory.bodies import Bodies
 from sonicvacuum.observe.pulse import Pulse, main_pulse
 from sonicvacuum.observe.sensor import Sensor, position
 from sonicvacuum.observe.shape import onset
@@ -30,7 +31,7 @@ class Geometry:
 
     Attributes:
         beads: number of beads.
-        diameter_m: outer diameter of a bead in m.
+        diameter_m: outer diameter of a bead in m, or of each of them.
         sensors: the gauges.
 
     Raises:
@@ -38,12 +39,13 @@ class Geometry:
     """
 
     beads: int
-    diameter_m: float
+    diameter_m: Bodies | float
     sensors: tuple[Sensor, ...]
 
     def __post_init__(self):
-        if not self.diameter_m > 0.0:
-            raise ValueError(f"diameter_m is {self.diameter_m}; it must be positive")
+        for diameter in self._diameters.kinds:
+            if not diameter > 0.0:
+                raise ValueError(f"diameter_m is {diameter}; it must be positive")
         ids = [s.id for s in self.sensors]
         for sensor in self.sensors:
             position(sensor, self.beads, self.diameter_m)
@@ -51,6 +53,10 @@ class Geometry:
                 raise ValueError(
                     f"sensor {sensor.id} is given {ids.count(sensor.id)} times; names must differ"
                 )
+
+    @property
+    def _diameters(self):
+        return self.diameter_m if isinstance(self.diameter_m, Bodies) else Bodies((self.diameter_m,))
 
     def sensor(self, id: str) -> Sensor:
         """The gauge of this name; ValueError when there is none."""
@@ -62,6 +68,23 @@ class Geometry:
     def position(self, id: str) -> float:
         """Distance of a gauge from the wall in m."""
         return position(self.sensor(id), self.beads, self.diameter_m)
+
+    @property
+    def length(self) -> float:
+        """Length of the chain in m."""
+        counts = self._diameters.counts(1, self.beads)
+        return sum(n * self._diameters.kinds[kind] for kind, n in sorted(counts.items()))
+
+    def diameter_between(self, one: str, other: str) -> float:
+        """Mean diameter in m of the beads between two gauges, each gauge's own bead counting half."""
+        if self._diameters.uniform:
+            return self._diameters.kinds[0]
+        beads = [self.beads + 0.5 if s.bead is None else s.bead for s in map(self.sensor, (one, other))]
+        return abs(self.position(one) - self.position(other)) / abs(beads[0] - beads[1])
+
+    def at_last_bead(self, id: str) -> bool:
+        """Whether a gauge sits no further from the wall than the last bead reaches."""
+        return self.position(id) < self._diameters[max(1, self.beads)]
 
     @property
     def wall(self) -> str | None:
@@ -162,7 +185,7 @@ class Run:
     def _overlapped(self, sensor, first):
         wall = self._wall_arrival()
         if wall is None:
-            return self.geometry.position(sensor) < self.geometry.diameter_m
+            return self.geometry.at_last_bead(sensor)
         rise = onset(self.trace(sensor), first, 0.5)
         return rise.known and wall - first.time <= first.time - rise.value
 
@@ -194,4 +217,4 @@ class Run:
             return None
         far = max(apart, key=lambda s: abs(apart[s]))
         slowness = (main.time - self.main(far).time) / apart[far]
-        return (here or geometry.beads * geometry.diameter_m) * slowness if slowness > 0.0 else None
+        return (here or geometry.length) * slowness if slowness > 0.0 else None

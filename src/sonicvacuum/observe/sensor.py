@@ -14,6 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from sonicvacuum.laboratory.bodies import Bodies, to_wall
+
 # Equal time constants are parted by this fraction either way: errors of its square, and of rounding over it.
 _EQUAL = 1e-5
 
@@ -90,12 +92,15 @@ def contacts_needed(sensors: Iterable[Sensor], beads: int) -> tuple[int, ...]:
     return tuple(sorted({contact for sensor in sensors for contact in contacts_of(sensor, beads)}))
 
 
-def position(sensor: Sensor, beads: int, diameter: float) -> float:
-    """Distance from the wall in m: an embedded gauge sits at its bead's centre, the wall gauge at 0."""
+def position(sensor: Sensor, beads: int, diameter: Bodies | float) -> float:
+    """Distance from the wall in m: an embedded gauge sits at its bead's centre, the wall gauge at 0.
+
+    `diameter` is that of a bead in m, or of each of them.
+    """
     if sensor.kind == "wall":
         return 0.0
     contacts_of(sensor, beads)
-    return (beads - sensor.bead + 0.5) * diameter
+    return to_wall(diameter, sensor.bead, beads)
 
 
 def reading(sensor: Sensor, force_of: Mapping[int, np.ndarray], interval_s: float, beads: int) -> np.ndarray:

@@ -5,7 +5,8 @@ import math
 import numpy as np
 
 from sonicvacuum.card import Card, CardMaterial
-from sonicvacuum.physics.chain import Chain, Elastic
+from sonicvacuum.physics.bodies import Body, Elastic
+from sonicvacuum.physics.chain import Chain
 
 
 def assemble(card: Card, speeds=None) -> Chain:
@@ -14,17 +15,19 @@ def assemble(card: Card, speeds=None) -> Chain:
     radius = card.striker.radius_m
     return Chain(
         beads=card.beads,
-        bead=_elastic(card.bead.surface),
+        bodies=Body(
+            surface=_elastic(card.bead.surface),
+            mass=card.bead.mass_kg,
+            radius=card.bead.diameter_m / 2.0,
+            coating=math.inf if card.bead.coating_m is None else card.bead.coating_m,
+        ),
         striker=_elastic(card.striker.surface),
         wall=_elastic(card.wall),
-        bead_radius=card.bead.diameter_m / 2.0,
         striker_radius=math.inf if radius is None else radius,
-        bead_mass=card.bead.mass_kg,
         striker_mass=card.striker.mass_kg,
         speed=speeds,
         gravity=card.gravity_m_s2,
         static_force=card.static_force_N,
-        coating=math.inf if card.bead.coating_m is None else card.bead.coating_m,
     )
 
 

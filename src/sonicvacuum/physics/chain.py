@@ -1,8 +1,9 @@
 """A batch of chains: what hits what, how stiff each contact is, what it bears at rest.
 
 All chains of a batch have the same number of beads and the same kind of law; every number may differ
-from chain to chain (shape `(lanes,)`). Beads within a chain are alike but for the listed departures,
-so that a chain of a million beads costs no more memory than the part that the wave reaches.
+from chain to chain (shape `(lanes,)`). Beads repeat a pattern but for exceptions, and tables are made for
+the first bodies only, so that a chain of a million beads costs no more memory than the part that the wave
+reaches.
 """
 
 import math
@@ -12,7 +13,9 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 
-from sonicvacuum.physics.contact import hertz_constant, reduced_modulus, reduced_radius
+from sonicvacuum.laboratory.bodies import Bodies
+from sonicvacuum.physics.bodies import Body, Elastic
+from sonicvacuum.physics.contact import hertz_constant, radius_of_curvature, reduced_modulus
 from sonicvacuum.physics.laws import HERTZ, LawSet, Term
 
 GRAVITY = 9.81
@@ -20,10 +23,10 @@ GRAVITY = 9.81
 
 @dataclass(frozen=True)
 class Departure:
-    """One number that departs from the uniform chain.
+    """One number that departs from what the bodies make it.
 
     Attributes:
-        what: "mass", "stiffness" (factors on the uniform value) or "gap" (m, open at rest).
+        what: "mass", "stiffness" (factors) or "gap" (m, open at rest).
         index: body for masses, contact otherwise.
         value: (lanes,) factor or gap.
     """
@@ -56,101 +59,151 @@ class Action:
 
 
 @dataclass(frozen=True)
-class Elastic:
-    """Elastic constants of a body where it touches.
-
-    Attributes:
-        name: of the material; bodies of one name share one modulus.
-        modulus: (lanes,) Young's modulus in Pa.
-        poisson: Poisson's ratio.
-    """
-
-    name: str
-    modulus: np.ndarray
-    poisson: float
-
-
-@dataclass(frozen=True)
 class Chain:
-    """Uniform chains of beads between a striker and a wall; SI units, arrays of shape (lanes,).
+    """Chains of beads between a striker and a wall; SI units, arrays of shape (lanes,).
 
     Attributes:
         beads: number of beads, ≥ 1; 0 is one ball (the striker) on the wall.
-        bead: elastic constants of the beads' surfaces; of the ball when there are no beads.
-        striker, wall: the same of the other bodies.
-        bead_radius: m, outer.
+        bodies: the beads, `physics.bodies.Body` each; a single Body is a uniform chain.
+        striker, wall: elastic constants of these.
         striker_radius: m, `math.inf` for a flat one.
-        bead_mass, striker_mass: kg.
+        striker_mass: kg.
         speed: striker's speed at impact in m/s.
         gravity: acceleration towards the wall in m/s², 0 for a horizontal chain.
         static_force: axial preload on bead 1 in N, besides gravity.
-        coating: thickness of the beads' coating in m, `math.inf` for solid beads.
-        departures: what departs from uniformity.
+        departures: what departs from these numbers at single places.
         actions: force laws beyond (or instead of) Hertz.
+
+    Raises:
+        ValueError: for a number without meaning; for two flats that touch, once their contact is asked for.
     """
 
     beads: int
-    bead: Elastic
+    bodies: Bodies | Body
     striker: Elastic
     wall: Elastic
-    bead_radius: float
     striker_radius: float
-    bead_mass: np.ndarray
     striker_mass: np.ndarray
     speed: np.ndarray
     gravity: np.ndarray = 0.0
     static_force: np.ndarray = 0.0
-    coating: float = math.inf
     departures: tuple[Departure, ...] = ()
     actions: tuple[Action, ...] = ()
 
     def __post_init__(self):
+        if isinstance(self.bodies, Body):
+            object.__setattr__(self, "bodies", Bodies((self.bodies,)))
         shapes = [np.shape(getattr(self, name)) for name in _NUMBERS]
-        shapes += [np.shape(getattr(self, name).modulus) for name in _BODIES]
+        shapes += [np.shape(getattr(self, name).modulus) for name in _ENDS]
+        shapes += [shape for body in self.bodies.kinds for shape in body.shapes()]
         lanes = np.broadcast_shapes(*shapes) or (1,)
-        for name in _NUMBERS:
-            object.__setattr__(self, name, _spread(getattr(self, name), lanes))
-        for name in _BODIES:
-            body = getattr(self, name)
-            object.__setattr__(self, name, replace(body, modulus=_spread(body.modulus, lanes)))
-        for name in ("bead_mass", "striker_mass", "speed"):
+        self._map(lambda value: np.broadcast_to(np.asarray(value, dtype=float), lanes))
+        for name in ("striker_mass", "speed"):
             _check(name, getattr(self, name) > 0.0, "positive", getattr(self, name))
+        for body in self.bodies.kinds:
+            _check("mass of a bead", body.mass > 0.0, "positive", body.mass)
+            _check("radius of a bead", body.radius > 0.0, "positive", body.radius)
         for name in ("gravity", "static_force"):
             _check(name, getattr(self, name) >= 0.0, "zero or more", getattr(self, name))
         if self.beads < 0:
             raise ValueError(f"beads is {self.beads}; it must be 0 (one ball on the wall) or more")
 
+    def _map(self, change):
+        """Set change(number) for each number that may differ from lane to lane; only while being made."""
+        for name in _NUMBERS:
+            object.__setattr__(self, name, change(getattr(self, name)))
+        for name in _ENDS:
+            object.__setattr__(self, name, getattr(self, name).mapped(change))
+        object.__setattr__(self, "bodies", self.bodies.replaced(lambda body: body.mapped(change)))
+
+    @property
+    def first(self) -> Body:
+        """The first bead; without beads, what the pattern begins with."""
+        return self.bodies[1]
+
     @cached_property
+    def solids(self) -> tuple[Body, ...]:
+        """The striker, the kinds of beads and the wall."""
+        striker = Body(self.striker, self.striker_mass, np.full(self.lanes, self.striker_radius))
+        wall = Body(self.wall, np.full(self.lanes, math.inf), np.full(self.lanes, math.inf))
+        return (striker, *self.bodies.kinds, wall)
+
+    def touching(self, bodies: int) -> np.ndarray:
+        """(2, bodies) places in `solids` of what touches at the contact behind each of the first bodies."""
+        line = np.zeros(bodies + 1, dtype=np.int64)
+        line[1:] = self.bodies.kinds_of(bodies) + 1
+        if bodies == self.beads + 1:
+            line[-1] = len(self.solids) - 1
+        return np.stack([line[:-1], line[1:]])
+
+    @cached_property
+    def _surfaces(self):
+        """Modulus (solids, lanes), Poisson's ratio (solids, 1), curvature (solids, lanes) of `solids`."""
+        modulus = np.array([s.surface.modulus for s in self.solids])
+        poisson = np.array([[s.surface.poisson] for s in self.solids])
+        return modulus, poisson, np.array([s.curvature for s in self.solids])
+
+    def _hertz(self, pairs):
+        """(n, lanes) Hertz constants in N/m^{3/2} of (2, n) pairs of `solids`."""
+        modulus, poisson, curvature = self._surfaces
+        one, other = pairs
+        reduced = reduced_modulus(modulus[one], poisson[one], modulus[other], poisson[other])
+        return hertz_constant(reduced, radius_of_curvature(curvature[one] + curvature[other]))
+
+    @cached_property
+    def _between_beads(self):
+        """(n, lanes) Hertz constants of the contacts between neighbouring kinds of beads."""
+        return self._hertz(np.array(self.bodies.neighbours(self.beads)).T + 1)
+
+    @property
     def stiffness(self) -> np.ndarray:
-        """(lanes,) Hertz constant of the contact of two beads, N/m^{3/2}."""
-        return self._hertz(self.bead, self.bead, self.bead_radius, self.bead_radius)
+        """(lanes,) Hertz constant in N/m^{3/2} of the stiffest contact of two beads."""
+        return self._between_beads.max(axis=0)
+
+    @property
+    def softest(self) -> np.ndarray:
+        """(lanes,) of the softest contact of two beads."""
+        return self._between_beads.min(axis=0)
 
     @cached_property
     def striker_stiffness(self) -> np.ndarray:
         """(lanes,) of contact 0: striker on the first bead, or on the wall when there are no beads."""
-        if self.beads == 0:
-            return self._hertz(self.striker, self.wall, self.striker_radius, math.inf)
-        return self._hertz(self.striker, self.bead, self.striker_radius, self.bead_radius)
+        return self._hertz(self.touching(1))[0]
 
     @cached_property
     def wall_stiffness(self) -> np.ndarray:
         """(lanes,) of the last contact."""
-        if self.beads == 0:
-            return self.striker_stiffness
-        return self._hertz(self.bead, self.wall, self.bead_radius, math.inf)
+        last = self.bodies.kind(self.beads) + 1 if self.beads else 0
+        return self._hertz(np.array([[last], [len(self.solids) - 1]]))[0]
+
+    @cached_property
+    def _bead_masses(self):
+        return np.array([body.mass for body in self.bodies.kinds])
+
+    @property
+    def lightest(self) -> np.ndarray:
+        """(lanes,) mass in kg of the lightest bead."""
+        return self._bead_masses.min(axis=0)
+
+    @property
+    def heaviest(self) -> np.ndarray:
+        """(lanes,) mass in kg of the heaviest bead."""
+        return self._bead_masses.max(axis=0)
+
+    @property
+    def load(self) -> np.ndarray:
+        """(lanes,) force in N that the beads press on the wall with at rest, departures aside."""
+        counts = self.bodies.counts(1, self.beads)
+        weights = (n * self.bodies.kinds[kind].mass * self.gravity for kind, n in sorted(counts.items()))
+        return self.static_force + sum(weights, start=np.zeros(self.lanes))
 
     def reduced_radii(self, bodies: int) -> np.ndarray:
-        """(bodies, 1) effective radius in m of the contact behind each of the first bodies."""
-        radius = np.full((bodies, 1), 0.5 * self.bead_radius)
-        radius[0] = reduced_radius(self.striker_radius, self.bead_radius if self.beads else math.inf)
-        if bodies == self.beads + 1 and self.beads:
-            radius[-1] = self.bead_radius
-        return radius
-
-    @staticmethod
-    def _hertz(one, other, radius_one, radius_other):
-        modulus = reduced_modulus(one.modulus, one.poisson, other.modulus, other.poisson)
-        return hertz_constant(modulus, reduced_radius(radius_one, radius_other))
+        """(bodies, lanes) effective radius in m of the contact behind each of the first bodies."""
+        radius = np.array([np.where(s.flat, math.inf, s.radius) for s in self.solids])
+        one, other = radius[self.touching(bodies)]
+        # This form is exact for equal spheres and for a sphere on a flat.
+        small, large = np.minimum(one, other), np.maximum(one, other)
+        return small / (1.0 + small / large)
 
     @property
     def lanes(self) -> int:
@@ -159,16 +212,28 @@ class Chain:
 
     def take(self, lanes) -> "Chain":
         """The chains with the given indices."""
-        numbers = {name: getattr(self, name)[lanes] for name in _NUMBERS}
-        bodies = {
-            name: replace(b, modulus=b.modulus[lanes]) for name in _BODIES if (b := getattr(self, name))
-        }
         departures = tuple(replace(e, value=e.value[lanes]) for e in self.departures)
         actions = tuple(
             replace(a, parameters={k: np.asarray(p)[lanes] for k, p in a.parameters.items()})
             for a in self.actions
         )
-        return replace(self, **numbers, **bodies, departures=departures, actions=actions)
+        return replace(
+            self,
+            **{name: getattr(self, name)[lanes] for name in _NUMBERS},
+            **{name: getattr(self, name).mapped(lambda value: value[lanes]) for name in _ENDS},
+            bodies=self.bodies.replaced(lambda body: body.mapped(lambda value: value[lanes])),
+            departures=departures,
+            actions=actions,
+        )
+
+    def stiffened(self, material: str, ratio) -> "Chain":
+        """The chains with the modulus of one material times a ratio, (lanes,) or a number, wherever it is."""
+        ends = {
+            name: end.mapped(lambda modulus: modulus * ratio)
+            for name in _ENDS
+            if (end := getattr(self, name)).name == material
+        }
+        return replace(self, bodies=self.bodies.replaced(lambda b: b.stiffened(material, ratio)), **ends)
 
     def with_departure(self, what: str, index: int, value) -> "Chain":
         """This chain with one more departure; `value` broadcasts to (lanes,)."""
@@ -184,16 +249,16 @@ class Chain:
 
     def masses(self, bodies: int) -> np.ndarray:
         """(bodies, lanes) masses in kg of the striker and the first beads."""
-        mass = np.repeat(self.bead_mass[None, :], bodies, axis=0)
+        mass = np.empty((bodies, self.lanes))
         mass[0] = self.striker_mass
+        mass[1:] = self._bead_masses[self.bodies.kinds_of(bodies - 1)]
         return self._scaled(mass, "mass")
 
     def stiffnesses(self, bodies: int) -> np.ndarray:
         """(bodies, lanes) Hertz constants in N/m^{3/2}: of the contact behind each of the first bodies."""
-        stiffness = np.repeat(self.stiffness[None, :], bodies, axis=0)
-        stiffness[0] = self.striker_stiffness
-        if bodies == self.beads + 1:
-            stiffness[-1] = self.wall_stiffness
+        one, other = self.touching(bodies)
+        codes, places = np.unique(one * len(self.solids) + other, return_inverse=True)
+        stiffness = self._hertz(np.divmod(codes, len(self.solids)))[places.ravel()]
         return self._scaled(stiffness, "stiffness")
 
     def static_forces(self, bodies: int) -> np.ndarray:
@@ -255,12 +320,8 @@ def _law_set(terms, preloaded, symplectic):
     return LawSet(terms, preloaded, symplectic)
 
 
-_NUMBERS = ("bead_mass", "striker_mass", "speed", "gravity", "static_force")
-_BODIES = ("bead", "striker", "wall")
-
-
-def _spread(value, lanes):
-    return np.broadcast_to(np.asarray(value, dtype=float), lanes)
+_NUMBERS = ("striker_mass", "speed", "gravity", "static_force")
+_ENDS = ("striker", "wall")
 
 
 def _check(name, good, must_be, values):

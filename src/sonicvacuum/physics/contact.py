@@ -1,7 +1,5 @@
 """Hertz contact of two bodies: from elastic constants and radii to the constant K of F = K delta^{3/2}."""
 
-import math
-
 import numpy as np
 
 
@@ -21,7 +19,7 @@ def reduced_modulus(modulus_a, poisson_a, modulus_b, poisson_b):
     return 1.0 / ((1.0 - np.square(poisson_a)) / modulus_a + (1.0 - np.square(poisson_b)) / modulus_b)
 
 
-def reduced_radius(radius_a: float, radius_b: float) -> float:
+def reduced_radius(radius_a, radius_b):
     """Effective radius R* in m of two spheres, 1/R* = 1/R_a + 1/R_b; `math.inf` stands for a flat.
 
     Johnson, Contact Mechanics (1985), Eq. (4.3).
@@ -31,15 +29,23 @@ def reduced_radius(radius_a: float, radius_b: float) -> float:
     """
     if not (radius_a > 0.0 and radius_b > 0.0):
         raise ValueError(f"radii are {radius_a} and {radius_b} m; they must be positive")
-    curvature = 1.0 / radius_a + 1.0 / radius_b
-    if curvature == 0.0:
+    return radius_of_curvature(1.0 / radius_a + 1.0 / radius_b)
+
+
+def radius_of_curvature(curvature):
+    """Effective radius R* in m of two faces whose curvatures (1/R, 0 for a flat) add up to `curvature`.
+
+    Raises:
+        ValueError: when both are flat.
+    """
+    if not np.all(np.asarray(curvature) > 0.0):
         raise ValueError("two flats have no Hertz contact; at least one body must be a sphere")
     return 1.0 / curvature
 
 
-def hertz_constant(reduced_modulus, radius: float):
+def hertz_constant(reduced_modulus, radius):
     """K = (4/3) E* √R* in N/m^{3/2}, so that F = K delta^{3/2} (Johnson 1985, Eq. 4.23)."""
-    return 4.0 / 3.0 * reduced_modulus * math.sqrt(radius)
+    return 4.0 / 3.0 * reduced_modulus * np.sqrt(radius)
 
 
 def compression_at(force, stiffness):

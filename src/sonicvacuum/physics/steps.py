@@ -34,10 +34,9 @@ def time_scale(chain: Chain, laws: LawSet, table: np.ndarray, mass: np.ndarray) 
     impact = contact_time(lightest, stiffness, chain.speed)
     if not chain.preloaded:
         return impact
-    load = chain.static_force + chain.beads * chain.bead_mass * chain.gravity
     # Highest frequency of the linear chain 2 √(k/m), k = (3/2) K √δ₀ = (3/2) K^{2/3} F₀^{1/3}.
     with np.errstate(divide="ignore"):
-        vibration = np.sqrt(lightest / (1.5 * np.cbrt(stiffness**2 * load)))
+        vibration = np.sqrt(lightest / (1.5 * np.cbrt(stiffness**2 * chain.load)))
     return np.minimum(impact, vibration)
 
 
@@ -61,8 +60,7 @@ def _hertz_like(chain, laws, table, mass):
 def _typical_compression(chain, mass):
     """(lanes,) m: 1.5 (m v²/K)^{2/5}, of a Hertz contact at the striker's speed; or that at rest."""
     impact = 1.5 * (mass * chain.speed**2 / chain.stiffness) ** 0.4
-    load = chain.static_force + chain.beads * chain.bead_mass * chain.gravity
-    return np.maximum(impact, np.cbrt(np.square(load / chain.stiffness)))
+    return np.maximum(impact, np.cbrt(np.square(chain.load / chain.stiffness)))
 
 
 def decay_time(chain: Chain, laws: LawSet, table: np.ndarray, mass: np.ndarray) -> np.ndarray:
@@ -95,17 +93,19 @@ def choose_steps(chain: Chain, laws: LawSet, table: np.ndarray, mass: np.ndarray
     late = STEP[stepper] * time_scale(chain, laws, table, mass)
     if not laws.is_positional:
         late = np.minimum(late, DECAY_STEP * decay_time(chain, laws, table, mass))
-    heavy = np.maximum(1.0, chain.striker_mass / chain.bead_mass)
-    until = EARLY_CONTACT_TIMES * heavy * contact_time(chain.bead_mass, chain.striker_stiffness, chain.speed)
+    struck = chain.first.mass
+    heavy = np.maximum(1.0, chain.striker_mass / struck)
+    until = EARLY_CONTACT_TIMES * heavy * contact_time(struck, chain.striker_stiffness, chain.speed)
     return late / EARLY_REFINEMENT, late, until
 
 
 def reachable_bodies(chain: Chain, duration: float) -> int:
     """Bodies that the wave is expected to reach within `duration` (s), with a margin.
 
-    A solitary wave needs about 1.2 (m²/(K² v))^{1/5} per bead, a linear one √(m/k).
+    A solitary wave needs about 1.2 (m²/(K² v))^{1/5} per bead, a linear one √(m/k), of the lightest bead and
+    the stiffest contact.
     """
-    pace = 1.0 / contact_time(chain.bead_mass, chain.stiffness, chain.speed)
+    pace = 1.0 / contact_time(chain.lightest, chain.stiffness, chain.speed)
     load = chain.static_force
-    pace = pace + np.sqrt(1.5 * np.cbrt(chain.stiffness**2 * load) / chain.bead_mass)
+    pace = pace + np.sqrt(1.5 * np.cbrt(chain.stiffness**2 * load) / chain.lightest)
     return int(1.1 * duration * pace.max()) + 32

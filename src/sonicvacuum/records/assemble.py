@@ -11,7 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from sonicvacuum.card import CardMaterial
-from sonicvacuum.physics.chain import Chain, Elastic
+from sonicvacuum.physics.bodies import Body, Elastic
+from sonicvacuum.physics.chain import Chain
 from sonicvacuum.physics.contact import contact_time
 from sonicvacuum.records.ranges import impact_scales
 from sonicvacuum.records.record import Record, Run
@@ -57,17 +58,19 @@ def chain_of(record: Record, runs: list[Run]) -> Chain:
     striker = runs[0].striker
     return Chain(
         beads=record.beads,
-        bead=_elastic(record.surface),
+        bodies=Body(
+            surface=_elastic(record.surface),
+            mass=record.bead_mass_kg,
+            radius=record.diameter_m / 2.0,
+            coating=record.coating_m,
+        ),
         striker=_elastic(striker.surface),
         wall=_elastic(record.wall),
-        bead_radius=record.diameter_m / 2.0,
         striker_radius=striker.radius_m,
-        bead_mass=record.bead_mass_kg,
         striker_mass=np.array([r.striker.mass_kg for r in runs]),
         speed=np.array([r.striker.speed_m_s for r in runs]),
         gravity=record.gravity_m_s2,
         static_force=record.static_force_N,
-        coating=record.coating_m,
     )
 
 
@@ -90,7 +93,7 @@ def interval_of(record: Record, runs: list[Run], chain: Chain) -> float:
 def sampling_of(chain: Chain) -> float:
     """Sampling interval in s that resolves the shortest pulse of a batch."""
     stiffness = chain.stiffness if chain.beads else chain.striker_stiffness
-    mass = chain.bead_mass if chain.beads else chain.striker_mass
+    mass = chain.lightest if chain.beads else chain.striker_mass
     fraction = SAMPLING if chain.beads else SAMPLING_BALL
     return fraction * 3.21 * float(contact_time(mass, stiffness, chain.speed).min())
 
@@ -100,7 +103,7 @@ def passage_of(chain: Chain, crossings: float = COUNTING) -> float:
     contact = impact_scales(chain)[1]
     if chain.beads == 0:
         return COUNTING * contact
-    heavy = max(1.0, float((chain.striker_mass / chain.bead_mass).max()))
+    heavy = max(1.0, float((chain.striker_mass / chain.lightest).max()))
     return crossings * (_PASSAGE / 3.21 * chain.beads + 2.0 * heavy) * contact
 
 

@@ -137,20 +137,20 @@ def check_modulus(key: str, name: str, modulus_GPa: float) -> None:
 
 
 def impact_scales(chain: Chain) -> tuple[float, float]:
-    """Force in N and contact time in s of the chain's impact, the largest and the longest of its lanes.
+    """Force in N and contact time in s of the chain's impact, the largest and longest of lanes and contacts.
 
     Force: K (5 m v²/(4 K))^{3/5} of a Hertz impact, m the striker's mass, or v √(k m) where a static force
     makes the contacts stiff springs; time: 3.21 (m²/(K² v))^{1/5}
     (Johnson, Contact Mechanics, 1985, Sec. 11.4).
     """
     stiffness = chain.stiffness if chain.beads else chain.striker_stiffness
-    mass = chain.bead_mass if chain.beads else chain.striker_mass
+    softest = chain.softest if chain.beads else stiffness
+    mass = chain.heaviest if chain.beads else chain.striker_mass
     energy = max_of(1.25 * chain.striker_mass * chain.speed**2)
     force = max_of(stiffness) * (energy / max_of(stiffness)) ** 0.6
-    static = max_of(chain.static_force + chain.beads * chain.bead_mass * chain.gravity)
-    spring = 1.5 * max_of(stiffness) ** (2.0 / 3.0) * static ** (1.0 / 3.0)
+    spring = 1.5 * max_of(stiffness) ** (2.0 / 3.0) * max_of(chain.load) ** (1.0 / 3.0)
     linear = max_of(chain.speed) * math.sqrt(spring * max_of(mass))
-    return max(force, linear), 3.21 * max_of(contact_time(mass, stiffness, chain.speed))
+    return max(force, linear), 3.21 * max_of(contact_time(mass, softest, chain.speed))
 
 
 def max_of(values) -> float:

@@ -1,0 +1,1 @@
+"""The laboratory in one vocabulary: materials, bodies, strikers and specimens, in SI units."""
