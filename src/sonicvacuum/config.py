@@ -7,8 +7,9 @@ from typing import Annotated, Any
 import msgspec
 from msgspec import Meta, Struct
 
-from sonicvacuum.card import Card, CardError, CaseBlock, ModelBlock, Name, merged, resolve, variant_names
+from sonicvacuum.card import Card, CaseBlock, ModelBlock, Name, merged, resolve, variant_names
 from sonicvacuum.files import InputError, convert, read_yaml
+from sonicvacuum.laboratory.ranges import LaboratoryError
 
 
 class Config(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -94,7 +95,7 @@ def card(config: Config, case: str, variant: str, path="config.yaml") -> Card:
     block = convert(merged(written, variant), CaseBlock, path, f"cases.{case}")
     try:
         return resolve(case, variant, block)
-    except CardError as error:
+    except LaboratoryError as error:
         raise InputError(f"{path}: cases.{case}.{error}") from None
 
 

@@ -84,7 +84,7 @@ def set_up(card: Card, speeds=None) -> Setup:
     Raises:
         InputError: for an effect that is not in the catalogue, or parameters that it does not take.
     """
-    setup = Setup(assemble(card, speeds), sensors(card))
+    setup = Setup(assemble(card.specimen, card.strikers(speeds)), sensors(card))
     for name, parameters in card.effects.items():
         try:
             setup = effect(name).apply(setup, **parameters)

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from sonicvacuum import records
 from sonicvacuum.files import replacing
-from sonicvacuum.records.ranges import likely_ball
+from sonicvacuum.laboratory.ranges import likely_ball
 from sonicvacuum_blind.design import Design
 from sonicvacuum_blind.hide import TOLERANCE, Laboratory, Spec, drawn_errors, laboratory, noisy, stream
 from sonicvacuum_blind.plan import G, Plan

@@ -35,7 +35,7 @@ class OneRun:
 
     @property
     def diameter(self) -> float:
-        """Outer diameter of the beads in m."""
+        """Outer diameter of the first bead in m."""
         return self.card.bead.diameter_m
 
     @cached_property
@@ -85,7 +85,7 @@ class OneRun:
         placed = (*self.gauges, *kept)
         forces = {c: self.contact(c).force for c in self.study.contacts}
         readings = {s.id: reading(s, forces, self.study.interval, beads) for s in placed}
-        return Run(readings, self.study.time, Geometry(beads, self.diameter, placed))
+        return Run(readings, self.study.time, Geometry(beads, self.card.specimen.diameters, placed))
 
     def speed(self) -> Measured:
         """Speed in m/s between the first and the last embedded gauge."""

@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from sonicvacuum.card import GRAVITY
+from sonicvacuum.laboratory.specimen import GRAVITY
 from sonicvacuum.materials import MATERIALS
 from sonicvacuum.physics import solitary, theory
 from sonicvacuum_paper.printed import ASSUMED, PRELOAD_WEIGHTS, PRINTED

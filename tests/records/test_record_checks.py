@@ -215,7 +215,7 @@ def test_the_handbook_modulus_is_too_soft_for_the_coated_chain_only():
 
 def test_the_record_s_beads_and_gauges_are_the_paper_s():
     record = read(MEASURED / "daraio-nesterenko-2006-coated")
-    positions = [record.geometry.position(s) / record.diameter_m for s in ("g9", "g5")]
+    positions = [record.geometry.position(s) / record.specimen.first.diameter_m for s in ("g9", "g5")]
     assert positions == pytest.approx(
         [8.5, 4.5], rel=1e-12
     )  # centres of the 9th and 5th bead from the bottom

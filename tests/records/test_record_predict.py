@@ -148,7 +148,7 @@ def test_speed_at_amplitude_is_that_of_the_exact_solitary_wave():
     (found,) = predict(record)[0].observables
     wave = SolitaryWave.compute()
     contact = SCALARS[6]["amplitude_N"] / wave.gauge_ratio
-    exact = wave.speed(contact, batch.chain.stiffness[0], record.diameter_m, record.bead_mass_kg)
+    exact = wave.speed(contact, batch.chain.stiffness[0], record.specimen.first.diameter_m, 0.44e-3)
     # The wave is not quite alone after 24 beads, and speeds are interpolated between strikers: 1e-3.
     assert found.value == pytest.approx(exact, rel=1e-3)
 

@@ -8,9 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sonicvacuum.card import CardError, CaseBlock, dump, load, merged, resolve, variant_names
+from sonicvacuum.card import CaseBlock, dump, load, merged, resolve, variant_names
 from sonicvacuum.config import Config, card, card_names, read, schema
 from sonicvacuum.files import InputError, convert
+from sonicvacuum.laboratory.ranges import LaboratoryError
 
 CASE = {
     "title": "a chain",
@@ -111,13 +112,13 @@ MISTAKES = [
     (["striker", "material"], "kryptonite", "striker.material", "modulus_GPa"),
     (["striker", "aim"], {"sensor": "g7", "amplitude_N": 1.0}, "striker.aim.sensor", "g7"),
     (["chain", "bead", "mass_g"], ..., "chain.bead.mass_g", "missing"),
-    (["chain", "bead", "core"], ..., "chain.bead", "coating_um and core"),
-    (["chain", "bead", "coating_um"], 5000, "chain.bead.coating_um", "thinner"),
+    (["chain", "bead", "core"], ..., "chain.bead", "coating_um is given without core"),
+    (["chain", "bead", "coating_um"], 5000, "chain.bead.coating_um", "must be below half"),
     (["chain", "beads"], 0, "chain.beads", "0"),
     (["chain", "beads"], 2, "sensors[0].bead", "2 beads"),
     (["chain", "orientation"], False, "chain.orientation", "YAML reads"),
     (["sensors", 0, "bead"], ..., "sensors[0].bead", "embedded"),
-    (["sensors", 1, "bead"], 2, "sensors[1].bead", "remove"),
+    (["sensors", 1, "bead"], 2, "sensors[1].bead", "drop"),
     (["sensors"], [], "sensors", "[]"),
     (["title"], ..., "title", "missing"),
     (["variants"], ["soft"], "variants", "overrides"),
@@ -143,7 +144,7 @@ def test_unknown_case_and_variant_list_the_known_ones():
 
 def test_resolve_names_the_key_of_an_unsound_block():
     block = convert(altered(["variants"], ...) | {"variants": {}}, CaseBlock, "f")
-    with pytest.raises(CardError, match=r"sensors\[0\]\.bead"):
+    with pytest.raises(LaboratoryError, match=r"sensors\[0\]\.bead"):
         resolve("c", "nominal", convert(altered(["sensors", 0, "bead"], 9), CaseBlock, "f"))
     assert resolve("c", "nominal", block).beads == 5
 

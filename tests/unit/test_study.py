@@ -5,10 +5,11 @@ import numpy as np
 import pytest
 
 from sonicvacuum import study
-from sonicvacuum.card import AimBlock, Card, CardBead, CardMaterial, CardSensor, CardStriker
+from sonicvacuum.card import AimBlock, Card, CardSensor, CardStriker
 from sonicvacuum.files import InputError
+from sonicvacuum.laboratory.specimen import Bead, Material
 
-STEEL = CardMaterial(name="steel", modulus_Pa=193e9, poisson=0.3)
+STEEL = Material(name="steel", modulus_Pa=193e9, poisson=0.3)
 
 
 def card(**changes):
@@ -17,7 +18,7 @@ def card(**changes):
         "variant": "nominal",
         "title": "Eight steel beads",
         "beads": 8,
-        "bead": CardBead(diameter_m=5e-3, mass_kg=0.5e-3, surface=STEEL),
+        "bead": Bead(diameter_m=5e-3, mass_kg=0.5e-3, surface=STEEL),
         "wall": STEEL,
         "striker": CardStriker(mass_kg=0.5e-3, surface=STEEL, speeds_m_s=(0.5,)),
         "gravity_m_s2": 0.0,

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from sonicvacuum.laboratory.bodies import Bodies
 from sonicvacuum.physics.chain import Chain
 
 # Of the bead material's modulus where a record does not say: a handbook value of a metal or polymer is
@@ -106,7 +107,7 @@ class Experiment:
         gain_rel_sigma: (S,) standard error of the gains, relative.
         trigger_sigma: s, of the common time zero of a run.
         modulus_rel_sigma: of the bead material, relative.
-        diameter: of a bead in m.
+        diameter: of a bead in m, or of each of them.
         record: the record it was made from, None in tests.
         excluded: ids of effects that these data cannot be asked about.
         integrated: compare running integrals of the traces instead: a coarse view in which a late pulse is
@@ -122,7 +123,7 @@ class Experiment:
     gain_rel_sigma: np.ndarray
     trigger_sigma: float
     modulus_rel_sigma: float
-    diameter: float
+    diameter: Bodies | float
     record: object = None
     excluded: tuple[str, ...] = ()
     integrated: bool = False

@@ -8,7 +8,7 @@ import math
 
 from msgspec.structs import replace
 
-from sonicvacuum.card import Card, CardMaterial, ModelBlock
+from sonicvacuum.card import Card, ModelBlock
 from sonicvacuum.discover.verdict import Model
 from sonicvacuum.effects import effect
 
@@ -47,7 +47,7 @@ def extended(card: Card, model: Model, wanted: ModelBlock | None = None) -> Card
             continue
         effects[name] = _places_whole(name, parameters)
     ratio = model.modulus_ratio * effects.pop("dynamic-modulus", {}).get("modulus_ratio", 1.0)
-    return _stiffened(replace(card, effects=effects), ratio)
+    return replace(card, effects=effects).stiffened(card.bead.surface.name, ratio)
 
 
 def _places_whole(name, parameters):
@@ -55,19 +55,3 @@ def _places_whole(name, parameters):
     place = effect(name).places
     kept = {key: value for key, value in parameters.items() if math.isfinite(value)}
     return {key: int(value) if key == place else value for key, value in kept.items()}
-
-
-def _stiffened(card, ratio):
-    """Every body whose surface is the beads' contact material has its modulus scaled."""
-    name = card.bead.surface.name
-
-    def scaled(surface: CardMaterial):
-        own = surface.name == name
-        return replace(surface, modulus_Pa=surface.modulus_Pa * ratio) if own else surface
-
-    return replace(
-        card,
-        bead=replace(card.bead, surface=scaled(card.bead.surface)),
-        striker=replace(card.striker, surface=scaled(card.striker.surface)),
-        wall=scaled(card.wall),
-    )

@@ -14,8 +14,8 @@ from sonicvacuum.discover.experiment import Batch, Experiment, RunData
 from sonicvacuum.discover.forward import Forward
 from sonicvacuum.discover.rounds import Investigation
 from sonicvacuum.discover.verdict import Next
-from sonicvacuum.physics.chain import GRAVITY
-from sonicvacuum.records.ranges import likely_ball
+from sonicvacuum.laboratory.ranges import likely_ball
+from sonicvacuum.laboratory.specimen import GRAVITY
 
 SPEEDS = (0.2, 0.5, 2.0, 5.0)
 MASSES = (0.25, 4.0)

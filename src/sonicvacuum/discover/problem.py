@@ -37,7 +37,7 @@ def experiment(record: Record) -> Experiment:
     """The data set of a record."""
     runs = tuple(_run(record, run) for run in record.runs)
     sigma, correlation = noise((record,))
-    named = record.modulus_rel_sigma(record.surface.name)
+    named = record.modulus_rel_sigma(record.specimen.first.surface.name)
     return Experiment(
         name=record.name or record.title,
         runs=runs,
@@ -48,7 +48,7 @@ def experiment(record: Record) -> Experiment:
         gain_rel_sigma=np.array([g.gain_rel_sigma for g in record.gauges]),
         trigger_sigma=record.trigger_sigma_s,
         modulus_rel_sigma=named or MODULUS_REL_SIGMA,
-        diameter=record.diameter_m,
+        diameter=record.specimen.diameters,
         record=record,
     )
 
@@ -67,7 +67,7 @@ def together(records: Sequence[Record]) -> Experiment:
         _check_alike(records[0], record, other)
     for record, other in zip(records[1:], others, strict=True):
         first = _joined(first, record, other)
-    turned = len({r.gravity_m_s2 for r in records}) > 1
+    turned = len({r.specimen.gravity_m_s2 for r in records}) > 1
     sigma, correlation = noise(records)
     return replace(
         first, sigma=sigma, correlation=correlation, excluded=("gravity",) if turned else first.excluded
@@ -77,14 +77,23 @@ def together(records: Sequence[Record]) -> Experiment:
 def _check_alike(record, other, seen: Experiment):
     for what, one, two in (
         ("beads", record.beads, other.beads),
-        ("bead", (record.diameter_m, record.bead_mass_kg), (other.diameter_m, other.bead_mass_kg)),
-        ("material", record.surface, other.surface),
+        ("chain", _described(record.specimen), _described(other.specimen)),
         ("sensors", [g.id for g in record.gauges], [g.id for g in other.gauges]),
     ):
         if one != two:
             raise InputError(f"{other.name}: {what} is {two}, in {record.name} {one}; discover them apart")
     if any(r.scalars for r in seen.runs):
         raise InputError(f"{other.name}: observables; only the first of records taken together may have them")
+
+
+def _described(specimen):
+    """Sizes, masses and materials of the kinds of beads."""
+    kinds = [
+        f"{1e3 * b.diameter_m:g} mm, {1e3 * b.mass_kg:g} g of {b.surface.name} "
+        f"({b.surface.modulus_Pa / 1e9:g} GPa{', flat' if b.flat else ''})"
+        for b in specimen.bodies.kinds
+    ]
+    return "; ".join(kinds + [f"but at bead {bead}" for bead in specimen.bodies.exceptions])
 
 
 def _joined(first: Experiment, record, other: Experiment) -> Experiment:

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from sonicvacuum.effects.base import Effect, Parameter, Setup
-from sonicvacuum.physics.chain import GRAVITY
+from sonicvacuum.laboratory.specimen import GRAVITY
 
 
 def recorded(setup: Setup):

@@ -1,35 +1,48 @@
-"""From a card to the chains that the stepper integrates: one lane for each impact speed."""
+"""From what stands in the laboratory to the chains that the stepper integrates: one lane for each striker."""
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
-from sonicvacuum.card import Card, CardMaterial
+from sonicvacuum.laboratory.specimen import Bead, Material, Specimen, Striker
 from sonicvacuum.physics.bodies import Body, Elastic
 from sonicvacuum.physics.chain import Chain
 
 
-def assemble(card: Card, speeds=None) -> Chain:
-    """The chains of a card, without effects; lane k is struck at `speeds[k]` in m/s, default the card's."""
-    speeds = np.array(card.striker.speeds_m_s if speeds is None else speeds, dtype=float)
-    radius = card.striker.radius_m
+def assemble(specimen: Specimen, strikers: Sequence[Striker]) -> Chain:
+    """The nominal chains, without effects; lane k is struck by `strikers[k]`.
+
+    Raises:
+        ValueError: for strikers that differ in shape, size or material: a batch has one of each.
+    """
+    alike = {(s.radius_m, s.surface) for s in strikers}
+    if len(alike) != 1:
+        raise ValueError(f"{len(alike)} kinds of strikers; chains of one batch are struck by one kind")
+    radius, surface = alike.pop()
     return Chain(
-        beads=card.beads,
-        bodies=Body(
-            surface=_elastic(card.bead.surface),
-            mass=card.bead.mass_kg,
-            radius=card.bead.diameter_m / 2.0,
-            coating=math.inf if card.bead.coating_m is None else card.bead.coating_m,
-        ),
-        striker=_elastic(card.striker.surface),
-        wall=_elastic(card.wall),
-        striker_radius=math.inf if radius is None else radius,
-        striker_mass=card.striker.mass_kg,
-        speed=speeds,
-        gravity=card.gravity_m_s2,
-        static_force=card.static_force_N,
+        beads=specimen.beads,
+        bodies=specimen.bodies.replaced(_body),
+        striker=_elastic(surface),
+        wall=_elastic(specimen.wall),
+        striker_radius=radius,
+        striker_mass=np.array([s.mass_kg for s in strikers]),
+        speed=np.array([s.speed_m_s for s in strikers]),
+        gravity=specimen.gravity_m_s2,
+        static_force=specimen.static_force_N,
     )
 
 
-def _elastic(material: CardMaterial) -> Elastic:
+def _body(bead: Bead) -> Body:
+    return Body(
+        surface=_elastic(bead.surface),
+        mass=bead.mass_kg,
+        radius=bead.diameter_m / 2.0,
+        flat=bead.flat,
+        coating=math.inf if bead.coating_m is None else bead.coating_m,
+        core=bead.core and _elastic(bead.core),
+    )
+
+
+def _elastic(material: Material) -> Elastic:
     return Elastic(material.name, material.modulus_Pa, material.poisson)

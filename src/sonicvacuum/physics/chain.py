@@ -18,8 +18,6 @@ from sonicvacuum.physics.bodies import Body, Elastic
 from sonicvacuum.physics.contact import hertz_constant, radius_of_curvature, reduced_modulus
 from sonicvacuum.physics.laws import HERTZ, LawSet, Term
 
-GRAVITY = 9.81
-
 
 @dataclass(frozen=True)
 class Departure:

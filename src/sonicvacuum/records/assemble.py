@@ -8,26 +8,13 @@ which contacts an effect on that material moves.
 import math
 from dataclasses import dataclass
 
-import numpy as np
-
-from sonicvacuum.card import CardMaterial
-from sonicvacuum.physics.bodies import Body, Elastic
+from sonicvacuum.physics.assemble import assemble as assembled
 from sonicvacuum.physics.chain import Chain
-from sonicvacuum.physics.contact import contact_time
-from sonicvacuum.records.ranges import impact_scales
+from sonicvacuum.physics.scales import COUNTING, CROSSINGS, passage_of, sampling_of
 from sonicvacuum.records.record import Record, Run
 
 # Simulated beyond the last instant asked for, in standard errors of the trigger: shifts need no new run.
 TRIGGER_ROOM = 6.0
-# Scalars without traces: time for the pulse to cross the chain, with room for softer contacts; and to come
-# back, where pulses are counted until then.
-CROSSINGS, COUNTING = 2.5, 5.0
-# A solitary wave passes one bead in about this many contact times (m²/(K² v))^{1/5} of the impact.
-_PASSAGE = 1.5
-# Sampling interval of a simulation in contact times 3.21 (m²/(K² v))^{1/5}. The rebound of one ball follows
-# from the sum of its force over samples, which is good to 1e-7 when so fine.
-SAMPLING = 1.0 / 60.0
-SAMPLING_BALL = 1.0 / 600.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,23 +42,7 @@ def assemble(record: Record) -> tuple[Batch, ...]:
 
 def chain_of(record: Record, runs: list[Run]) -> Chain:
     """The nominal chains of runs whose strikers are alike in shape, size and material, one lane each."""
-    striker = runs[0].striker
-    return Chain(
-        beads=record.beads,
-        bodies=Body(
-            surface=_elastic(record.surface),
-            mass=record.bead_mass_kg,
-            radius=record.diameter_m / 2.0,
-            coating=record.coating_m,
-        ),
-        striker=_elastic(striker.surface),
-        wall=_elastic(record.wall),
-        striker_radius=striker.radius_m,
-        striker_mass=np.array([r.striker.mass_kg for r in runs]),
-        speed=np.array([r.striker.speed_m_s for r in runs]),
-        gravity=record.gravity_m_s2,
-        static_force=record.static_force_N,
-    )
+    return assembled(record.specimen, [run.striker for run in runs])
 
 
 def duration_of(record: Record, runs: list[Run], chain: Chain) -> float:
@@ -88,24 +59,3 @@ def interval_of(record: Record, runs: list[Run], chain: Chain) -> float:
     fine = sampling_of(chain)
     own = min((r.signals.interval_s for r in runs if r.signals), default=fine)
     return own / max(1, math.ceil(own / fine))
-
-
-def sampling_of(chain: Chain) -> float:
-    """Sampling interval in s that resolves the shortest pulse of a batch."""
-    stiffness = chain.stiffness if chain.beads else chain.striker_stiffness
-    mass = chain.lightest if chain.beads else chain.striker_mass
-    fraction = SAMPLING if chain.beads else SAMPLING_BALL
-    return fraction * 3.21 * float(contact_time(mass, stiffness, chain.speed).min())
-
-
-def passage_of(chain: Chain, crossings: float = COUNTING) -> float:
-    """Time in s in which the slowest pulse crosses the chain so many times; COUNTING for one ball."""
-    contact = impact_scales(chain)[1]
-    if chain.beads == 0:
-        return COUNTING * contact
-    heavy = max(1.0, float((chain.striker_mass / chain.lightest).max()))
-    return crossings * (_PASSAGE / 3.21 * chain.beads + 2.0 * heavy) * contact
-
-
-def _elastic(material: CardMaterial) -> Elastic:
-    return Elastic(material.name, material.modulus_Pa, material.poisson)

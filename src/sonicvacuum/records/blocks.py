@@ -7,18 +7,16 @@ stand in one place and an editor can be told (`schema`).
 from typing import Annotated, Any, Literal, get_args
 
 import msgspec
-from msgspec import Meta, Struct, field
+from msgspec import Meta, field
 
-from sonicvacuum.card import BeadBlock, ChainBlock, MaterialBlock, NonNegative, Positive, WallBlock
+from sonicvacuum.laboratory.blocks import Block as _Block
+from sonicvacuum.laboratory.blocks import ChainBlock, MaterialBlock, StrikerBlock
+from sonicvacuum.laboratory.specimen import NonNegative, Positive
 
 # Names of gauges and runs: they become column headings and file names.
 Id = Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9_.+-]*$")]
 FileName = Annotated[str, Meta(pattern=r"^[^/\\.][^/\\]*$")]
 Fraction = Annotated[float, Meta(gt=0.0, lt=1.0)]
-
-
-class _Block(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
-    pass
 
 
 class SourceBlock(_Block, kw_only=True):
@@ -30,22 +28,16 @@ class SourceBlock(_Block, kw_only=True):
     note: str | None = None
 
 
-class RecordMaterialBlock(MaterialBlock, omit_defaults=True, kw_only=True):
+class RecordMaterialBlock(MaterialBlock, kw_only=True):
     """Overrides of the table of materials, and one standard error of the modulus relative to it."""
 
     modulus_rel_sigma: NonNegative = 0.0
 
 
-class RecordBeadBlock(BeadBlock, omit_defaults=True, kw_only=True):
-    """A bead: `material` is what touches; a coated bead names its core."""
-
-
-class RecordChainBlock(ChainBlock, omit_defaults=True, kw_only=True):
+class RecordChainBlock(ChainBlock, kw_only=True):
     """As in a case; `beads` 0 is one ball, the striker, on the wall."""
 
     beads: Annotated[int, Meta(ge=0)]
-    bead: RecordBeadBlock
-    wall: WallBlock
 
 
 class RecordSensorBlock(_Block, kw_only=True):
@@ -58,15 +50,11 @@ class RecordSensorBlock(_Block, kw_only=True):
     gain_rel_sigma: NonNegative = 0.0
 
 
-class RecordStrikerBlock(_Block, kw_only=True):
-    """The striker of one run; a sphere gives its diameter."""
+class RecordStrikerBlock(StrikerBlock, kw_only=True):
+    """The striker of one run."""
 
-    shape: Literal["flat", "sphere"]
-    material: str
-    mass_g: Positive
     speed_m_s: Positive
     speed_rel_sigma: NonNegative = 0.0
-    diameter_mm: Positive | None = None
 
 
 class _Observable(_Block, tag_field="quantity", kw_only=True):
@@ -170,7 +158,7 @@ class RunBlock(_Block, kw_only=True):
     id: Id
     striker: RecordStrikerBlock
     signals: FileName | None = None
-    observables: list[ObservableBlock] = []
+    observables: list[ObservableBlock] = field(default_factory=list)
 
 
 class RecordBlock(_Block, kw_only=True):
@@ -180,8 +168,8 @@ class RecordBlock(_Block, kw_only=True):
     title: str
     source: SourceBlock = SourceBlock()
     chain: RecordChainBlock
-    materials: dict[str, RecordMaterialBlock] = {}
-    sensors: list[RecordSensorBlock] = []
+    materials: dict[str, RecordMaterialBlock] = field(default_factory=dict)
+    sensors: list[RecordSensorBlock] = field(default_factory=list)
     trigger_sigma_us: NonNegative = 0.0
     runs: Annotated[list[RunBlock], Meta(min_length=1)]
 

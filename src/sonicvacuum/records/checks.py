@@ -6,8 +6,8 @@ from itertools import pairwise
 import numpy as np
 
 from sonicvacuum.observe.pulse import main_pulse
+from sonicvacuum.physics.scales import impact_scales
 from sonicvacuum.records.assemble import assemble
-from sonicvacuum.records.ranges import impact_scales
 from sonicvacuum.records.reader import read
 from sonicvacuum.records.record import Gauge, Record, Run
 
@@ -60,29 +60,30 @@ def _contact_times(record):
 
 
 def _materials(record):
-    chain = record.block.chain
-    used = {chain.bead.material, chain.bead.core, chain.wall.material}
+    used = {m.name for m in record.specimen.materials}
     used |= {r.striker.material for r in record.block.runs}
     for name in record.block.materials:
         if name not in used:
             yield f"materials.{name}: nothing in the record is made of it"
-    if not record.modulus_rel_sigma(chain.bead.material):
-        yield f"materials.{chain.bead.material}: no modulus_rel_sigma; say how well the modulus is known"
+    touching = record.specimen.first.surface.name
+    if not record.modulus_rel_sigma(touching):
+        yield f"materials.{touching}: no modulus_rel_sigma; say how well the modulus is known"
 
 
 def _strikers(record):
-    bead = record.block.chain.bead
+    bead = record.specimen.first
+    mass_g = 1e3 * bead.mass_kg
     for k, run in enumerate(record.block.runs):
         s, key = run.striker, f"runs[{k}].striker ({run.id})"
         if s.shape == "flat" and s.diameter_mm is not None:
             yield f"{key}: diameter_mm of a flat striker is not used"
         if record.beads == 0:
-            if s.material != bead.material:
-                yield f"{key}: material {s.material} is not used: {bead.material} touches (chain.bead)"
-            if (s.diameter_mm, s.mass_g) != (bead.diameter_mm, bead.mass_g):
+            if s.material != bead.surface.name:
+                yield f"{key}: material {s.material} is not used: {bead.surface.name} touches (chain.bead)"
+            if (s.diameter_mm / 1e3, s.mass_g / 1e3) != (bead.diameter_m, bead.mass_kg):
                 yield f"{key}: diameter or mass differ from chain.bead; the striker's are used"
-        elif s.mass_g > HEAVY * bead.mass_g:
-            yield f"{key}: mass_g is {s.mass_g:g}, {s.mass_g / bead.mass_g:.0f} beads' masses; is it in mg?"
+        elif s.mass_g > HEAVY * mass_g:
+            yield f"{key}: mass_g is {s.mass_g:g}, {s.mass_g / mass_g:.0f} beads' masses; is it in mg?"
         if not SLOW <= s.speed_m_s <= FAST:
             yield f"{key}: speed_m_s is {s.speed_m_s:g}; is the unit right?"
     files = Counter(r.signals for r in record.block.runs if r.signals)

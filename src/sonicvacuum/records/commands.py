@@ -49,8 +49,8 @@ def summary(record: Record) -> str:
     gauges = ", ".join(f"{g.id} ({'wall' if g.bead is None else f'bead {g.bead}'})" for g in record.gauges)
     lines = [
         f"{record.name}: {record.title}",
-        f"  {kind} of {record.surface.name}, {record.diameter_m * 1e3:g} mm, "
-        f"{record.bead_mass_kg * 1e3:g} g, {record.block.chain.orientation}; gauges: {gauges or 'none'}",
+        f"  {kind} of {_beads(record.specimen)}, {record.block.chain.orientation}; "
+        f"gauges: {gauges or 'none'}",
         *(
             line
             for run, block in zip(record.runs, record.block.runs, strict=True)
@@ -60,6 +60,18 @@ def summary(record: Record) -> str:
     found = warnings(record)
     lines += [f"  warning: {w}" for w in found] or ["  nothing suspicious"]
     return "\n".join(lines)
+
+
+def _beads(specimen):
+    """Material, diameter and mass of the beads, of each kind where they differ."""
+    bodies = specimen.bodies
+    pattern, single = [_bead(b) for b in bodies.pattern], bodies.exceptions.items()
+    return "; ".join([" / ".join(pattern), *(f"bead {k} {_bead(b)}" for k, b in sorted(single))])
+
+
+def _bead(bead):
+    faces = ", flat faces" if bead.flat else ""
+    return f"{bead.surface.name}, {bead.diameter_m * 1e3:g} mm, {bead.mass_kg * 1e3:g} g{faces}"
 
 
 def _run(record: Record, run: Run, block: RunBlock):

@@ -157,7 +157,7 @@ def _scalars(record, place, setup, history, lane, readings, refine):
     """The observables of the run that is this lane."""
     chain, force, extra = setup.chain.take([lane]), history.of(0)[:, lane], virtual(record)
     others = {s: r[:, lane] for s, r in readings_of(extra, history, record.beads).items()}
-    geometry = Geometry(record.beads, record.diameter_m, (*setup.sensors, *extra))
+    geometry = Geometry(record.beads, record.specimen.diameters, (*setup.sensors, *extra))
     passage = Passage({**readings, **others}, history.time, geometry)
 
     def value(o):

@@ -4,12 +4,12 @@ import math
 import re
 from pathlib import Path
 
-from sonicvacuum.card import CardError
 from sonicvacuum.files import InputError, convert, read_yaml
+from sonicvacuum.laboratory.ranges import FORCE, LONGEST_INTERVAL, SHORTEST_RECORD, LaboratoryError
+from sonicvacuum.physics.scales import impact_scales
 from sonicvacuum.records import signals
 from sonicvacuum.records.assemble import assemble
 from sonicvacuum.records.blocks import OBSERVABLES, UNITS, RecordBlock
-from sonicvacuum.records.ranges import FORCE, LONGEST_INTERVAL, SHORTEST_RECORD, SuspectError, impact_scales
 from sonicvacuum.records.record import Record
 from sonicvacuum.records.validate import validate
 
@@ -64,7 +64,7 @@ def parse(content: dict, path=FILE) -> RecordBlock:
         raise InputError(_hinted(str(error))) from None
     try:
         validate(block)
-    except (SuspectError, CardError) as error:
+    except LaboratoryError as error:
         raise InputError(f"{path}: {error}") from None
     return block
 

@@ -8,7 +8,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from sonicvacuum.card import GRAVITY, CardMaterial, material
+from sonicvacuum.laboratory.blocks import material_of, specimen_of, striker_of
+from sonicvacuum.laboratory.specimen import Specimen, Striker
 from sonicvacuum.observe.run import Geometry
 from sonicvacuum.observe.sensor import Sensor
 from sonicvacuum.records.blocks import UNITS, RecordBlock, RunBlock
@@ -66,17 +67,6 @@ class Observable:
         return " ".join(p for p in (self.quantity, where, str(o.get("sensor", "")), force) if p)
 
 
-@dataclass(frozen=True)
-class Striker:
-    """The striker of one run in SI units; `radius_m` is infinite for a flat one."""
-
-    surface: CardMaterial
-    mass_kg: float
-    speed_m_s: float
-    speed_rel_sigma: float
-    radius_m: float
-
-
 @dataclass(frozen=True, eq=False)
 class Run:
     """One impact.
@@ -118,56 +108,15 @@ class Record:
         """Number of beads; 0 is one ball on the wall."""
         return self.block.chain.beads
 
-    @property
-    def diameter_m(self) -> float:
-        """Outer diameter of a bead in m."""
-        return self.block.chain.bead.diameter_mm / 1e3
-
-    @property
-    def bead_mass_kg(self) -> float:
-        """Mass of a bead in kg."""
-        return self.block.chain.bead.mass_g / 1e3
-
-    @property
-    def coating_m(self) -> float:
-        """Thickness of the coating in m, infinite for solid beads."""
-        coating = self.block.chain.bead.coating_um
-        return math.inf if coating is None else coating / 1e6
-
-    @property
-    def gravity_m_s2(self) -> float:
-        """Acceleration from bead 1 towards the wall in m/s²."""
-        return GRAVITY if self.block.chain.orientation == "vertical" else 0.0
-
-    @property
-    def static_force_N(self) -> float:
-        """Axial preload in N besides gravity."""
-        return self.block.chain.static_force_N
+    @cached_property
+    def specimen(self) -> Specimen:
+        """The chain; LaboratoryError naming the key where its block does not describe one."""
+        return specimen_of(self.block.chain, self.block.materials)
 
     @property
     def trigger_sigma_s(self) -> float:
         """Standard error in s of the time zero of each run."""
         return self.block.trigger_sigma_us / 1e6
-
-    @property
-    def surface(self) -> CardMaterial:
-        """What touches of a bead (of the ball, without beads)."""
-        return self.material(self.block.chain.bead.material, "chain.bead.material")
-
-    @property
-    def core(self) -> CardMaterial | None:
-        """What lies under the coating."""
-        core = self.block.chain.bead.core
-        return None if core is None else self.material(core, "chain.bead.core")
-
-    @property
-    def wall(self) -> CardMaterial:
-        """Material of the wall."""
-        return self.material(self.block.chain.wall.material, "chain.wall.material")
-
-    def material(self, name: str, key: str = "materials") -> CardMaterial:
-        """A material with the record's overrides; CardError naming `key` where there is none."""
-        return material(name, self.block.materials, key)
 
     def modulus_rel_sigma(self, name: str) -> float:
         """Relative standard error of a material's modulus, 0 where the record gives none."""
@@ -187,7 +136,7 @@ class Record:
     @property
     def geometry(self) -> Geometry:
         """Where the gauges sit."""
-        return Geometry(self.beads, self.diameter_m, self.sensors)
+        return Geometry(self.beads, self.specimen.diameters, self.sensors)
 
     @cached_property
     def runs(self) -> tuple[Run, ...]:
@@ -198,13 +147,12 @@ class Record:
         )
 
     def _striker(self, run: RunBlock, place: int) -> Striker:
-        s = run.striker
+        s, key = run.striker, f"runs[{place}].striker"
         # One ball on a wall: what touches is what the chain's bead says.
-        name, key = (s.material, f"runs[{place}].striker.material")
-        if self.beads == 0:
-            name, key = self.block.chain.bead.material, "chain.bead.material"
-        radius = s.diameter_mm / 2e3 if s.shape == "sphere" else math.inf
-        return Striker(self.material(name, key), s.mass_g / 1e3, s.speed_m_s, s.speed_rel_sigma, radius)
+        surface = self.specimen.first.surface
+        if self.beads:
+            surface = material_of(s.material, self.block.materials, f"{key}.material")
+        return striker_of(s, surface, self.specimen, key, s.speed_m_s, s.speed_rel_sigma)
 
 
 def observable(block) -> Observable:

@@ -11,8 +11,7 @@ from sonicvacuum.observe.sweep import speed_at_amplitude as interpolated
 from sonicvacuum.observe.trace import Measured, missing
 from sonicvacuum.physics.chain import Chain
 from sonicvacuum.physics.run import simulate
-from sonicvacuum.records.assemble import CROSSINGS, passage_of, sampling_of
-from sonicvacuum.records.ranges import impact_scales
+from sonicvacuum.physics.scales import CROSSINGS, impact_scales, passage_of, sampling_of
 from sonicvacuum.records.record import Record
 
 # Striker speeds tried, over the one expected to give the amplitude.
@@ -80,7 +79,7 @@ def _sweep(record, chain, sensor, pair, speeds, refine):
     history = simulate(lanes, contacts, passage_of(lanes, CROSSINGS), interval, refine=refine)
     forces = {c: history.of(c) for c in contacts}
     readings = {s.id: reading(s, forces, interval, record.beads) for s in gauges}
-    geometry = Geometry(record.beads, record.diameter_m, gauges)
+    geometry = Geometry(record.beads, record.specimen.diameters, gauges)
     heights = measure("amplitude", readings, history.time, geometry, sensor="(gauge)")
     fast = measure("speed", readings, history.time, geometry, from_=pair[0].id, to=pair[1].id)
     return np.array([m.value for m in heights]), np.array([m.value for m in fast])

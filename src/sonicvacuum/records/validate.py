@@ -2,11 +2,12 @@
 
 from collections.abc import Iterable
 
-from sonicvacuum.card import material
-from sonicvacuum.records import ranges
+from sonicvacuum.laboratory import ranges
+from sonicvacuum.laboratory.blocks import bead_blocks, material_of, specimen_of, striker_of
+from sonicvacuum.laboratory.ranges import LaboratoryError
+from sonicvacuum.physics.scales import impact_scales
 from sonicvacuum.records.assemble import assemble
 from sonicvacuum.records.blocks import BALL_QUANTITIES, RecordBlock
-from sonicvacuum.records.ranges import SuspectError
 from sonicvacuum.records.record import Record
 from sonicvacuum.records.signals import TIME
 
@@ -24,45 +25,28 @@ def validate(block: RecordBlock) -> None:
     """Check a converted block.
 
     Raises:
-        SuspectError, CardError: both name the key, its value and the cure.
+        LaboratoryError: it names the key, its value and the cure.
     """
-    _check_chain(block)
+    specimen = _check_chain(block)
     _check_materials(block)
     _check_sensors(block)
     ranges.TRIGGER.check("trigger_sigma_us", block.trigger_sigma_us)
     _check_unique("runs", [r.id for r in block.runs])
     for k, run in enumerate(block.runs):
-        _check_run(block, run, f"runs[{k}]")
+        _check_run(block, specimen, run, f"runs[{k}]")
     _check_scalars(Record(block))
 
 
 def _check_chain(block):
-    chain, bead = block.chain, block.chain.bead
-    ranges.DIAMETER.check("chain.bead.diameter_mm", bead.diameter_mm)
-    ranges.check_mass("chain.bead", bead.mass_g, bead.diameter_mm)
-    ranges.STATIC_FORCE.check("chain.static_force_N", chain.static_force_N)
-    if (bead.coating_um is None) != (bead.core is None):
-        given, lacking = ("core", "coating_um") if bead.coating_um is None else ("coating_um", "core")
-        raise SuspectError(
-            "chain.bead", f"{given} is given without {lacking}; give both, or neither for a solid bead"
-        )
-    if bead.coating_um is not None:
-        ranges.COATING.check("chain.bead.coating_um", bead.coating_um)
-        if bead.coating_um >= 500.0 * bead.diameter_mm:
-            raise SuspectError(
-                "chain.bead.coating_um",
-                f"is {bead.coating_um:g} um on a bead of {bead.diameter_mm:g} mm; it must be below half",
-            )
+    ranges.STATIC_FORCE.check("chain.static_force_N", block.chain.static_force_N)
+    for key, bead in bead_blocks(block.chain).kinds:
+        ranges.check_bead(key, bead)
+    return specimen_of(block.chain, block.materials)
 
 
 def _check_materials(block):
-    chain = block.chain
-    used = {"chain.bead.material": chain.bead.material, "chain.wall.material": chain.wall.material}
-    if chain.bead.core is not None:
-        used["chain.bead.core"] = chain.bead.core
-    used |= {f"runs[{k}].striker.material": r.striker.material for k, r in enumerate(block.runs)}
-    for key, name in used.items():
-        material(name, block.materials, key)
+    for k, run in enumerate(block.runs):
+        material_of(run.striker.material, block.materials, f"runs[{k}].striker.material")
     for name, given in block.materials.items():
         if given.modulus_GPa is not None:
             ranges.check_modulus(f"materials.{name}", name, given.modulus_GPa)
@@ -72,18 +56,20 @@ def _check_materials(block):
 def _check_sensors(block):
     beads = block.chain.beads
     if beads == 0 and block.sensors:
-        raise SuspectError("sensors", "one ball on a wall (beads: 0) has no gauges; write sensors: []")
+        raise LaboratoryError("sensors", "one ball on a wall (beads: 0) has no gauges; write sensors: []")
     _check_unique("sensors", [s.id for s in block.sensors])
     for k, s in enumerate(block.sensors):
         key = f"sensors[{k}]"
         if s.id == TIME:
-            raise SuspectError(f"{key}.id", f"is {TIME!r}, which is the column of the times; choose another")
+            raise LaboratoryError(f"{key}.id", f"is {TIME!r}, the column of the times; choose another")
         if s.kind == "embedded" and s.bead is None:
-            raise SuspectError(f"{key}.bead", "missing; an embedded sensor needs the number of its bead")
+            raise LaboratoryError(f"{key}.bead", "missing; an embedded sensor needs the number of its bead")
         if s.kind == "wall" and s.bead is not None:
-            raise SuspectError(f"{key}.bead", f"is {s.bead}; the wall sensor sits in no bead: remove the key")
+            raise LaboratoryError(
+                f"{key}.bead", f"is {s.bead}; the wall sensor sits in no bead: drop the key"
+            )
         if s.bead is not None and s.bead > beads:
-            raise SuspectError(
+            raise LaboratoryError(
                 f"{key}.bead", f"is {s.bead}; the chain has {beads} beads, counted from the struck one"
             )
         ranges.RELATIVE.check(f"{key}.gain_rel_sigma", s.gain_rel_sigma)
@@ -93,28 +79,27 @@ def _check_unique(key, ids: Iterable[str]):
     ids = list(ids)
     for k, name in enumerate(ids):
         if name in ids[:k]:
-            raise SuspectError(
+            raise LaboratoryError(
                 f"{key}[{k}].id", f"is {name!r}, as {key}[{ids.index(name)}].id is; names must differ"
             )
 
 
-def _check_run(block, run, key):
+def _check_run(block, specimen, run, key):
     if run.signals is None and not run.observables:
-        raise SuspectError(
+        raise LaboratoryError(
             key, f"run {run.id!r} has neither signals nor observables; give one or remove the run"
         )
-    _check_striker(block, run.striker, f"{key}.striker")
+    _check_striker(specimen, run.striker, f"{key}.striker")
     if run.signals is not None:
         _check_traced(block, run, key)
     for j, observable in enumerate(run.observables):
         _check_observable(block, observable, f"{key}.observables[{j}]")
 
 
-def _check_striker(block, striker, key):
-    if striker.shape == "sphere" and striker.diameter_mm is None:
-        raise SuspectError(f"{key}.diameter_mm", "missing; a sphere needs its diameter")
-    if block.chain.beads == 0 and striker.shape != "sphere":
-        raise SuspectError(
+def _check_striker(specimen, striker, key):
+    striker_of(striker, specimen.first.surface, specimen, key, striker.speed_m_s)
+    if specimen.beads == 0 and striker.shape != "sphere":
+        raise LaboratoryError(
             f"{key}.shape", f"is {striker.shape!r}; with beads: 0 the striker is the ball: sphere"
         )
     if striker.diameter_mm is not None:
@@ -122,19 +107,19 @@ def _check_striker(block, striker, key):
     if striker.shape == "sphere":
         ranges.check_mass(key, striker.mass_g, striker.diameter_mm)
     else:
-        ranges.check_striker_mass(key, striker.mass_g, block.chain.bead.mass_g)
+        ranges.check_striker_mass(key, striker.mass_g, 1e3 * specimen.first.mass_kg)
     ranges.SPEED.check(f"{key}.speed_m_s", striker.speed_m_s)
     ranges.RELATIVE.check(f"{key}.speed_rel_sigma", striker.speed_rel_sigma)
 
 
 def _check_traced(block, run, key):
     if not block.sensors:
-        raise SuspectError(f"{key}.signals", "is given, but the record has no sensors; describe them")
+        raise LaboratoryError(f"{key}.signals", "is given, but the record has no sensors; describe them")
     if run.signals.lower() == "record.yaml":
-        raise SuspectError(f"{key}.signals", "is record.yaml itself; name the CSV file with the traces")
+        raise LaboratoryError(f"{key}.signals", "is record.yaml itself; name the CSV file with the traces")
     for k, s in enumerate(block.sensors):
         if s.sigma_N == 0.0:
-            raise SuspectError(
+            raise LaboratoryError(
                 f"sensors[{k}].sigma_N",
                 f"is 0 or missing, while run {run.id!r} has signals; give the standard deviation of one "
                 "sample's noise (of a quantised signal at least its step over √12)",
@@ -144,22 +129,22 @@ def _check_traced(block, run, key):
 def _check_observable(block, observable, key):
     quantity = observable.__struct_config__.tag
     if block.chain.beads == 0 and quantity not in BALL_QUANTITIES:
-        raise SuspectError(
+        raise LaboratoryError(
             f"{key}.quantity",
             f"is {quantity!r}; one ball on a wall (beads: 0) gives {' or '.join(BALL_QUANTITIES)}",
         )
     if quantity == "contact_duration" and block.chain.beads > 0:
-        raise SuspectError(f"{key}.quantity", "is 'contact_duration'; it is defined for beads: 0 only")
+        raise LaboratoryError(f"{key}.quantity", "is 'contact_duration'; it is defined for beads: 0 only")
     ids = [s.id for s in block.sensors]
     for name in ("from_", "to", "sensor"):
         sensor = getattr(observable, name, None)
         if sensor is not None and sensor not in ids:
-            raise SuspectError(
+            raise LaboratoryError(
                 f"{key}.{name.strip('_')}", f"is {sensor!r}; the sensors are {', '.join(ids) or 'none'}"
             )
     _check_pair(block, observable, key)
     if observable.sigma == 0.0 and quantity != "pulse_count":
-        raise SuspectError(f"{key}.sigma", "is 0; give the standard error of the value")
+        raise LaboratoryError(f"{key}.sigma", "is 0; give the standard error of the value")
 
 
 def _check_pair(block, observable, key):
@@ -167,7 +152,7 @@ def _check_pair(block, observable, key):
         return
     place = {s.id: s.bead or block.chain.beads + 1 for s in block.sensors}
     if place[observable.from_] == place[observable.to]:
-        raise SuspectError(
+        raise LaboratoryError(
             f"{key}.to", f"is {observable.to!r}, at the same place as {observable.from_!r}; name two places"
         )
 
@@ -176,7 +161,7 @@ def _check_scalars(record):
     """Values of observables: fixed ranges, and for forces and times the scales of the run's impact."""
     for batch in assemble(record):
         for lane, k in enumerate(batch.runs):
-            force, contact = ranges.impact_scales(batch.chain.take([lane]))
+            force, contact = impact_scales(batch.chain.take([lane]))
             for j, entry in enumerate(record.block.runs[k].observables):
                 _range(entry, force, contact).check(f"runs[{k}].observables[{j}].value", entry.value)
 

@@ -9,7 +9,7 @@ from sonicvacuum.records import signals
 from sonicvacuum.records.reader import FILE, parse
 from sonicvacuum.records.record import Record
 
-_FIRST_OF_CHAIN = ("beads", "orientation", "bead", "wall", "static_force_N")
+_FIRST_OF_CHAIN = ("beads", "orientation", "bead", "pattern", "bodies", "wall", "static_force_N")
 _FIRST_OF_OBSERVABLE = (
     "quantity", "amplitude_N", "from", "to", "sensor", "level", "threshold", "value", "sigma", "unit"
 )  # fmt: skip

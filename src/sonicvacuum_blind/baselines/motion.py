@@ -43,8 +43,9 @@ def read_truth(path: Path) -> dict:
 
 def nominal(record: Record, run: Run) -> Plan:
     """The plan of a run as the record states it."""
+    specimen, one = record.specimen, record.specimen.first
     bead, striker, wall = (
-        Solid(m.name, m.modulus_Pa, m.poisson) for m in (record.surface, run.striker.surface, record.wall)
+        Solid(m.name, m.modulus_Pa, m.poisson) for m in (one.surface, run.striker.surface, specimen.wall)
     )
     gauges = tuple(Gauge(g.id, g.kind, g.bead) for g in record.gauges)
     return Plan(
@@ -52,13 +53,13 @@ def nominal(record: Record, run: Run) -> Plan:
         bead=bead,
         striker=striker,
         wall=wall,
-        bead_radius=0.5 * record.diameter_m,
+        bead_radius=0.5 * one.diameter_m,
         striker_radius=run.striker.radius_m,
-        bead_mass=record.bead_mass_kg,
+        bead_mass=one.mass_kg,
         striker_mass=run.striker.mass_kg,
         speed=run.striker.speed_m_s,
-        gravity=record.gravity_m_s2,
-        static_force=record.static_force_N,
+        gravity=specimen.gravity_m_s2,
+        static_force=specimen.static_force_N,
         gauges=gauges,
     )
 

@@ -1,4 +1,4 @@
-"""Physical ranges of what a record says, and which wrong unit a number outside them suggests.
+"""Physical ranges of what a laboratory says, and which wrong unit a number outside them suggests.
 
 The limits are wide: they refuse what no laboratory has (a bead of 5 µm said to be in mm, steel of 193e9 GPa),
 so that a slip of a unit is caught and an unusual experiment is not. Forces and times are held against the
@@ -10,8 +10,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from sonicvacuum.materials import MATERIALS
-from sonicvacuum.physics.chain import Chain
-from sonicvacuum.physics.contact import contact_time
 
 # Solids from aerogel-like shells to osmium, with room for wires and glue.
 DENSITY = (50.0, 30000.0)
@@ -28,8 +26,8 @@ LONGEST_INTERVAL = 2.0
 LIGHTEST_STRIKER = 3e-3
 
 
-class SuspectError(ValueError):
-    """A number outside its range; `key` is its place in the record."""
+class LaboratoryError(ValueError):
+    """What no laboratory has; `key` is its place in the file."""
 
     def __init__(self, key: str, problem: str):
         super().__init__(f"{key}: {problem}")
@@ -52,10 +50,10 @@ class Range:
     others: Mapping[str, float]
 
     def check(self, key: str, value: float) -> None:
-        """SuspectError for a value outside the range."""
+        """LaboratoryError for a value outside the range."""
         if self.low <= value <= self.high:
             return
-        raise SuspectError(
+        raise LaboratoryError(
             key,
             f"is {value:g} {self.unit}, outside {self.low:g} to {self.high:g} {self.unit}"
             + suspicion(self.unit, value, self.low, self.high, self.others),
@@ -87,7 +85,7 @@ WIDTH = Range("diameters", 0.3, 1e3, {"m": 5e-3, "mm": 5.0})
 
 
 def check_mass(key: str, mass_g: float, diameter_mm: float) -> None:
-    """SuspectError for a ball whose mass and diameter make a density that no solid has."""
+    """LaboratoryError for a ball whose mass and diameter make a density that no solid has."""
     MASS.check(f"{key}.mass_g", mass_g)
     density = _density(mass_g, diameter_mm)
     if DENSITY[0] <= density <= DENSITY[1]:
@@ -103,18 +101,44 @@ def check_mass(key: str, mass_g: float, diameter_mm: float) -> None:
         if _likely(_density(mass_g, diameter_mm / factor))
     ]
     cure = f"; suspected: {' or '.join(guesses)}" if guesses else ""
-    raise SuspectError(
+    raise LaboratoryError(
         f"{key}.mass_g",
         f"is {mass_g:g} g, which at a diameter of {diameter_mm:g} mm is a density of {density:.3g} kg/m3, "
         f"outside {DENSITY[0]:g} to {DENSITY[1]:g}{cure}; give g and mm",
     )
 
 
+def check_bead(key: str, bead) -> None:
+    """LaboratoryError for a bead (a block in mm, g and um) of a size, density or coating that none has."""
+    DIAMETER.check(f"{key}.diameter_mm", bead.diameter_mm)
+    if bead.faces == "flat":
+        # Of what lies between its faces nothing is known.
+        MASS.check(f"{key}.mass_g", bead.mass_g)
+    else:
+        check_mass(key, bead.mass_g, bead.diameter_mm)
+    if bead.coating_um is not None:
+        COATING.check(f"{key}.coating_um", bead.coating_um)
+
+
+def check_coating(key: str, bead) -> None:
+    """LaboratoryError for a coating without core, a core without coating, or one that fills the bead."""
+    if (bead.coating_um is None) != (bead.core is None):
+        given, lacking = ("core", "coating_um") if bead.coating_um is None else ("coating_um", "core")
+        raise LaboratoryError(
+            key, f"{given} is given without {lacking}; give both, or neither for a solid bead"
+        )
+    if bead.coating_um is not None and bead.coating_um >= 500.0 * bead.diameter_mm:
+        raise LaboratoryError(
+            f"{key}.coating_um",
+            f"is {bead.coating_um:g} um on a bead of {bead.diameter_mm:g} mm; it must be below half",
+        )
+
+
 def check_striker_mass(key: str, mass_g: float, bead_g: float) -> None:
-    """SuspectError for a flat striker so light beside a bead that its mass must be in kg."""
+    """LaboratoryError for a flat striker so light beside a bead that its mass must be in kg."""
     MASS.check(f"{key}.mass_g", mass_g)
     if mass_g < LIGHTEST_STRIKER * bead_g:
-        raise SuspectError(
+        raise LaboratoryError(
             f"{key}.mass_g",
             f"is {mass_g:g} g, {mass_g / bead_g:.2g} of a bead's mass; "
             "the number looks like one in kg: convert it to g",
@@ -122,40 +146,18 @@ def check_striker_mass(key: str, mass_g: float, bead_g: float) -> None:
 
 
 def check_modulus(key: str, name: str, modulus_GPa: float) -> None:
-    """SuspectError for a modulus outside the range, or far from the table's for a material it knows."""
+    """LaboratoryError for a modulus outside the range, or far from the table's for a material it knows."""
     MODULUS.check(f"{key}.modulus_GPa", modulus_GPa)
     if name not in MATERIALS:
         return
     table = MATERIALS[name].modulus / 1e9
     if table / MODULUS_FACTOR <= modulus_GPa <= table * MODULUS_FACTOR:
         return
-    raise SuspectError(
+    raise LaboratoryError(
         f"{key}.modulus_GPa",
         f"is {modulus_GPa:g} GPa; the table has {table:g} GPa for {name}"
         + suspicion("GPa", modulus_GPa, table / 10.0, table * 10.0, MODULUS.others),
     )
-
-
-def impact_scales(chain: Chain) -> tuple[float, float]:
-    """Force in N and contact time in s of the chain's impact, the largest and longest of lanes and contacts.
-
-    Force: K (5 m v²/(4 K))^{3/5} of a Hertz impact, m the striker's mass, or v √(k m) where a static force
-    makes the contacts stiff springs; time: 3.21 (m²/(K² v))^{1/5}
-    (Johnson, Contact Mechanics, 1985, Sec. 11.4).
-    """
-    stiffness = chain.stiffness if chain.beads else chain.striker_stiffness
-    softest = chain.softest if chain.beads else stiffness
-    mass = chain.heaviest if chain.beads else chain.striker_mass
-    energy = max_of(1.25 * chain.striker_mass * chain.speed**2)
-    force = max_of(stiffness) * (energy / max_of(stiffness)) ** 0.6
-    spring = 1.5 * max_of(stiffness) ** (2.0 / 3.0) * max_of(chain.load) ** (1.0 / 3.0)
-    linear = max_of(chain.speed) * math.sqrt(spring * max_of(mass))
-    return max(force, linear), 3.21 * max_of(contact_time(mass, softest, chain.speed))
-
-
-def max_of(values) -> float:
-    """Largest of an array as a float."""
-    return float(values.max())
 
 
 def likely_ball(mass: float, radius: float) -> bool:

@@ -1,0 +1,60 @@
+"""Scales of a chain's impact: its force and contact time, how finely and for how long to look at it."""
+
+import math
+
+from sonicvacuum.physics.chain import Chain
+from sonicvacuum.physics.contact import contact_time
+
+# Time for the pulse to cross the chain, with room for softer contacts; and to come back.
+CROSSINGS, COUNTING = 2.5, 5.0
+# A solitary wave passes one bead in about this many contact times (m²/(K² v))^{1/5} of the impact.
+_PASSAGE = 1.5
+# A Hertz impact lasts so many times (m²/(K² v))^{1/5} (Johnson, Contact Mechanics, 1985, Sec. 11.4).
+_HERTZ = 3.21
+# Sampling interval of a simulation in contact times. The rebound of one ball follows from the sum of its
+# force over samples, which is good to 1e-7 when so fine.
+SAMPLING = 1.0 / 60.0
+SAMPLING_BALL = 1.0 / 600.0
+
+
+def impact_scales(chain: Chain) -> tuple[float, float]:
+    """Force in N and contact time in s of the chain's impact, the largest and longest of lanes and contacts.
+
+    Force: K (5 m v²/(4 K))^{3/5} of a Hertz impact, m the striker's mass, or v √(k m) where a static force
+    makes the contacts stiff springs; time: 3.21 (m²/(K² v))^{1/5}
+    (Johnson, Contact Mechanics, 1985, Sec. 11.4).
+    """
+    stiffness = chain.stiffness if chain.beads else chain.striker_stiffness
+    softest = chain.softest if chain.beads else stiffness
+    mass = chain.heaviest if chain.beads else chain.striker_mass
+    energy = _largest(1.25 * chain.striker_mass * chain.speed**2)
+    force = _largest(stiffness) * (energy / _largest(stiffness)) ** 0.6
+    spring = 1.5 * _largest(stiffness) ** (2.0 / 3.0) * _largest(chain.load) ** (1.0 / 3.0)
+    linear = _largest(chain.speed) * math.sqrt(spring * _largest(mass))
+    return max(force, linear), _HERTZ * _largest(contact_time(mass, softest, chain.speed))
+
+
+def sampling_of(chain: Chain) -> float:
+    """Sampling interval in s that resolves the shortest pulse of a batch."""
+    stiffness = chain.stiffness if chain.beads else chain.striker_stiffness
+    mass = chain.lightest if chain.beads else chain.striker_mass
+    fraction = SAMPLING if chain.beads else SAMPLING_BALL
+    return fraction * _HERTZ * float(contact_time(mass, stiffness, chain.speed).min())
+
+
+def passage_of(chain: Chain, crossings: float = COUNTING) -> float:
+    """Time in s in which the slowest pulse crosses the chain so many times; COUNTING for one ball.
+
+    A wall softer than the beads holds the pulse for its own contact time.
+    """
+    contact = impact_scales(chain)[1]
+    if chain.beads == 0:
+        return COUNTING * contact
+    heavy = max(1.0, float((chain.striker_mass / chain.heaviest).max()))
+    wall = _HERTZ * _largest(contact_time(chain.heaviest, chain.wall_stiffness, chain.speed))
+    crossing = crossings * (_PASSAGE / _HERTZ * chain.beads + 2.0 * heavy) * contact
+    return crossing + crossings * max(0.0, wall - contact)
+
+
+def _largest(values) -> float:
+    return float(values.max())
