@@ -4,11 +4,12 @@ import numpy as np
 import pytest
 
 from sonicvacuum import study
-from sonicvacuum.card import Card, CardBead, CardMaterial, CardSensor, CardStriker
+from sonicvacuum.card import Card, CardSensor, CardStriker
+from sonicvacuum.laboratory.specimen import Bead, Material
 from sonicvacuum_paper.metrics import card_rows
 from sonicvacuum_paper.one_run import OneRun
 
-STEEL = CardMaterial(name="steel", modulus_Pa=193e9, poisson=0.3)
+STEEL = Material(name="steel", modulus_Pa=193e9, poisson=0.3)
 WALL = CardSensor(id="end", kind="wall")
 
 
@@ -19,7 +20,7 @@ def made(*sensors, speeds=(0.4, 0.8), effects=None):
         variant="nominal",
         title="Ten steel beads",
         beads=10,
-        bead=CardBead(diameter_m=5e-3, mass_kg=0.5e-3, surface=STEEL),
+        bead=Bead(diameter_m=5e-3, mass_kg=0.5e-3, surface=STEEL),
         wall=STEEL,
         striker=CardStriker(mass_kg=0.5e-3, surface=STEEL, speeds_m_s=speeds),
         gravity_m_s2=0.0,
