@@ -11,12 +11,15 @@ import msgspec
 from msgspec import UNSET, Meta, Struct, UnsetType, field
 from msgspec.structs import replace
 
+from sonicvacuum.gauges import KINDS, Gauge
+from sonicvacuum.gauges.base import misplaced
 from sonicvacuum.laboratory import blocks
 from sonicvacuum.laboratory.blocks import ChainBlock, MaterialBlock, material_of, specimen_of, striker_of
 from sonicvacuum.laboratory.bodies import Bodies
 from sonicvacuum.laboratory.ranges import LaboratoryError
 from sonicvacuum.laboratory.specimen import Bead, Material, NonNegative, Positive, Specimen, Striker
 
+GaugeKind = Annotated[str, Meta(extra_json_schema={"enum": list(KINDS)})]
 Name = Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]*$")]
 
 
@@ -39,10 +42,10 @@ class StrikerBlock(blocks.StrikerBlock, kw_only=True):
 
 
 class SensorBlock(_Block):
-    """A gauge: embedded (mean of the two contact forces of its bead) or at the wall (last contact)."""
+    """A gauge and its electronics; the kinds are those of `gauges`."""
 
     id: Name
-    kind: Literal["embedded", "wall"]
+    kind: GaugeKind
     bead: Annotated[int, Meta(ge=1)] | None = None
     droop_us: Positive | None = None
     lowpass_us: NonNegative = 0.0
@@ -87,13 +90,18 @@ class CardStriker(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
 
 
 class CardSensor(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A gauge with the time constants of its electronics."""
+    """A gauge as a card's file holds it: `gauge` is the gauge itself."""
 
     id: str
-    kind: Literal["embedded", "wall"]
+    kind: str
     bead: int | None = None
     droop_s: float | None = None
     lowpass_s: float = 0.0
+
+    @property
+    def gauge(self) -> Gauge:
+        """The gauge with its electronics."""
+        return Gauge(self.id, self.kind, self.bead, self.droop_s, self.lowpass_s)
 
 
 class Card(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -210,14 +218,10 @@ def resolve(case: str, variant: str, block: CaseBlock) -> Card:
 
 def _sensor(block, place, beads):
     key = f"sensors[{place}]"
-    if block.kind == "embedded" and block.bead is None:
-        raise LaboratoryError(f"{key}.bead", "missing; an embedded sensor needs the number of its bead")
-    if block.kind == "wall" and block.bead is not None:
-        raise LaboratoryError(
-            f"{key}.bead", f"is {block.bead}; the wall sensor sits in no bead: drop the key"
-        )
-    if block.bead is not None and block.bead > beads:
-        raise LaboratoryError(f"{key}.bead", f"is {block.bead}; the chain has {beads} beads")
+    if block.kind not in KINDS:
+        raise LaboratoryError(f"{key}.kind", f"is {block.kind!r}; the kinds of gauges are {', '.join(KINDS)}")
+    if problem := misplaced(block.kind, block.bead, beads):
+        raise LaboratoryError(f"{key}.bead", problem)
     droop = None if block.droop_us is None else block.droop_us / 1e6
     return CardSensor(
         id=block.id, kind=block.kind, bead=block.bead, droop_s=droop, lowpass_s=block.lowpass_us / 1e6

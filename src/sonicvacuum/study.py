@@ -4,7 +4,7 @@ Every card is simulated twice, with the chosen step and with half of it: the dif
 between the two is its numerical error.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -12,7 +12,8 @@ import numpy as np
 from sonicvacuum.card import Card
 from sonicvacuum.effects import Setup, effect
 from sonicvacuum.files import InputError, replacing
-from sonicvacuum.observe.sensor import Sensor, contacts_needed, reading
+from sonicvacuum.gauges import Gauge, needed, reading
+from sonicvacuum.gauges.base import Recorded
 from sonicvacuum.physics.assemble import assemble
 from sonicvacuum.physics.chain import Chain
 from sonicvacuum.physics.run import History, simulate
@@ -33,6 +34,9 @@ class Study:
         force: (samples, contacts, runs) dynamic contact forces in N.
         refined: the same with half the step.
         energy, momentum: (entries, runs) balance, see `History`.
+        bodies: recorded bodies, none where every gauge reads a force.
+        motion: (2, 2, samples, bodies, runs) velocity in m/s and acceleration in m/s² of those bodies, with
+            the chosen step and with half of it.
     """
 
     card: Card
@@ -43,6 +47,8 @@ class Study:
     refined: np.ndarray
     energy: np.ndarray
     momentum: np.ndarray
+    bodies: tuple[int, ...] = ()
+    motion: np.ndarray | None = None
 
     @cached_property
     def _setup(self) -> Setup:
@@ -54,7 +60,7 @@ class Study:
         return self._setup.chain
 
     @property
-    def sensors(self) -> tuple[Sensor, ...]:
+    def sensors(self) -> tuple[Gauge, ...]:
         """The card's own gauges, with its effects on them."""
         return self._setup.sensors
 
@@ -67,11 +73,21 @@ class Study:
         """(samples, runs) dynamic force in N of one contact."""
         return (self.refined if refined else self.force)[:, self.contacts.index(contact)]
 
-    def read(self, sensor: Sensor, refined: bool = False) -> np.ndarray:
-        """(samples, runs) reading in N of any gauge whose contacts were recorded."""
+    def recorded(self, refined: bool = False) -> Recorded:
+        """All that was recorded with one of the two steps, (samples, runs) each."""
         force = self.refined if refined else self.force
-        forces = {c: force[:, k] for k, c in enumerate(self.contacts)}
-        return reading(sensor, forces, self.interval, self.card.beads)
+        moved = [
+            {b: part[:, k] for k, b in enumerate(self.bodies)} for part in self._motion[1 if refined else 0]
+        ]
+        return Recorded(self.time, {c: force[:, k] for k, c in enumerate(self.contacts)}, *moved)
+
+    @property
+    def _motion(self):
+        return np.zeros((2, 2, len(self.time), 0, 0)) if self.motion is None else self.motion
+
+    def read(self, sensor: Gauge, refined: bool = False) -> np.ndarray:
+        """(samples, runs) reading of any gauge for which enough was recorded."""
+        return reading(sensor, self.recorded(refined), self.card.beads)
 
     def readings(self, refined: bool = False) -> dict[str, np.ndarray]:
         """Sensor id → (samples, runs) reading of the card's own gauges, with the effects on gauges."""
@@ -93,12 +109,9 @@ def set_up(card: Card, speeds=None) -> Setup:
     return setup
 
 
-def sensors(card: Card) -> tuple[Sensor, ...]:
+def sensors(card: Card) -> tuple[Gauge, ...]:
     """The card's gauges, without effects."""
-    return tuple(
-        Sensor(id=s.id, kind=s.kind, bead=s.bead, droop_s=s.droop_s, lowpass_s=s.lowpass_s)
-        for s in card.sensors
-    )
+    return tuple(s.gauge for s in card.sensors)
 
 
 def recorded_contacts(card: Card) -> tuple[int, ...]:
@@ -128,12 +141,19 @@ def run(card: Card) -> Study:
         refined=refined.force,
         energy=plain.energy,
         momentum=plain.momentum,
+        bodies=plain.bodies,
+        motion=np.array([(h.velocity, h.acceleration) for h in (plain, refined)]) if plain.bodies else None,
     )
 
 
 def _simulate(card, speeds, contacts, refine=1.0, audit=False) -> History:
     chain = set_up(card, speeds).chain
-    return simulate(chain, contacts, card.duration_s, card.interval_s, refine=refine, audit=audit)
+    _, bodies = needed(sensors(card), card.beads)
+    history = simulate(
+        chain, contacts, card.duration_s, card.interval_s, bodies=bodies, refine=refine, audit=audit
+    )
+    kept = [history.contacts.index(c) for c in contacts]
+    return replace(history, contacts=contacts, force=history.force[:, kept]) if bodies else history
 
 
 def _aimed(card, speeds):
@@ -141,9 +161,8 @@ def _aimed(card, speeds):
     sensor = next(s for s in set_up(card, speeds).sensors if s.id == card.striker.aim.sensor)
     aim = card.striker.aim.amplitude_N
     for _ in range(20):
-        history = _simulate(card, speeds, contacts_needed((sensor,), card.beads))
-        forces = {c: history.of(c) for c in history.contacts}
-        peak = reading(sensor, forces, card.interval_s, card.beads).max(axis=0)
+        history = _simulate(card, speeds, needed((sensor,), card.beads)[0])
+        peak = reading(sensor, history, card.beads).max(axis=0)
         if np.all(np.abs(peak - aim) < AIM_TOLERANCE * aim):
             return speeds
         if np.any(peak <= 0.0):
@@ -166,6 +185,7 @@ def save(study: Study, path) -> None:
             refined=study.refined,
             energy=study.energy,
             momentum=study.momentum,
+            **({"bodies": np.array(study.bodies), "motion": study.motion} if study.bodies else {}),
         )
 
 
@@ -180,4 +200,5 @@ def load(card: Card, path) -> Study:
         ) from None
     time = np.arange(len(parts["force"])) * card.interval_s
     contacts = tuple(int(c) for c in parts.pop("contacts"))
-    return Study(card=card, time=time, contacts=contacts, **parts)
+    bodies = tuple(int(b) for b in parts.pop("bodies", ()))
+    return Study(card=card, time=time, contacts=contacts, bodies=bodies, **parts)

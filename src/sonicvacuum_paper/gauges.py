@@ -6,9 +6,10 @@ or the reason why there is none.
 
 import numpy as np
 
+from sonicvacuum.gauges import Gauge
+from sonicvacuum.gauges.electronics import high_passed
 from sonicvacuum.observe import quantities as q
 from sonicvacuum.observe.pulse import main_pulse
-from sonicvacuum.observe.sensor import Sensor, high_passed
 from sonicvacuum.observe.shape import ending
 from sonicvacuum.observe.trace import Measured, Trace, missing
 from sonicvacuum.physics.solitary import SolitaryWave
@@ -23,17 +24,17 @@ def scaled(measured: Measured, factor: float) -> Measured:
     return Measured(measured.value * factor, measured.reason)
 
 
-def amplitude(run: OneRun, gauge: Sensor) -> Measured:
+def amplitude(run: OneRun, gauge: Gauge) -> Measured:
     """Peak of the signal in N."""
     return q.amplitude(run.view, gauge.id)
 
 
-def arrival(run: OneRun, gauge: Sensor) -> Measured:
+def arrival(run: OneRun, gauge: Gauge) -> Measured:
     """Time of the peak in us from first touch."""
     return scaled(q.arrival(run.view, gauge.id), MICRO)
 
 
-def duration(run: OneRun, gauge: Sensor, level: float = 0.01) -> Measured:
+def duration(run: OneRun, gauge: Gauge, level: float = 0.01) -> Measured:
     """Time in us above a level; absent where the reflection comes before the signal has fallen to it."""
     view = run.view
     lasting = q.duration(view, gauge.id, level)
@@ -44,7 +45,7 @@ def duration(run: OneRun, gauge: Sensor, level: float = 0.01) -> Measured:
     return scaled(lasting, MICRO)
 
 
-def width(run: OneRun, gauge: Sensor, level: float = 0.01) -> Measured:
+def width(run: OneRun, gauge: Gauge, level: float = 0.01) -> Measured:
     """Duration times speed between the gauges, in diameters."""
     lasting, speed = duration(run, gauge, level), run.speed()
     if not (lasting.known and speed.known):
@@ -52,7 +53,7 @@ def width(run: OneRun, gauge: Sensor, level: float = 0.01) -> Measured:
     return Measured(lasting.value / MICRO * speed.value / run.diameter)
 
 
-def preload_over_amplitude(run: OneRun, gauge: Sensor) -> Measured:
+def preload_over_amplitude(run: OneRun, gauge: Gauge) -> Measured:
     """Static force over amplitude; an embedded gauge bears the mean of its two contacts."""
     peak = amplitude(run, gauge)
     contacts = (run.card.beads,) if gauge.kind == "wall" else (gauge.bead - 1, gauge.bead)
@@ -60,7 +61,7 @@ def preload_over_amplitude(run: OneRun, gauge: Sensor) -> Measured:
     return Measured(static / peak.value, peak.reason)
 
 
-def gauge_over_contact(run: OneRun, gauge: Sensor) -> Measured:
+def gauge_over_contact(run: OneRun, gauge: Gauge) -> Measured:
     """Amplitude over the larger dynamic peak of the gauge's two contacts."""
     peak = amplitude(run, gauge)
     found = [main_pulse(run.contact(c)) for c in (gauge.bead - 1, gauge.bead)]
@@ -69,7 +70,7 @@ def gauge_over_contact(run: OneRun, gauge: Sensor) -> Measured:
     return Measured(peak.value / max(p.force for p in found), peak.reason)
 
 
-def droop_peak(run: OneRun, gauge: Sensor) -> Measured:
+def droop_peak(run: OneRun, gauge: Gauge) -> Measured:
     """Part of the peak lost through the gauge's discharge (RC about 1000 us)."""
     peak, after = _undrooped(run, gauge), main_pulse(_discharged(run, gauge))
     if not (peak.found and after.found):
@@ -77,7 +78,7 @@ def droop_peak(run: OneRun, gauge: Sensor) -> Measured:
     return Measured(1.0 - after.force / peak.force)
 
 
-def droop_undershoot(run: OneRun, gauge: Sensor) -> Measured:
+def droop_undershoot(run: OneRun, gauge: Gauge) -> Measured:
     """Lowest reading below zero after the discharge, over the amplitude, before the reflection."""
     peak, main = _undrooped(run, gauge), run.view.main(gauge.id)
     if not (peak.found and main.found):
@@ -88,7 +89,7 @@ def droop_undershoot(run: OneRun, gauge: Sensor) -> Measured:
     return Measured(-float(lowest) / peak.force)
 
 
-def offset_amplitude(run: OneRun, gauge: Sensor) -> Measured:
+def offset_amplitude(run: OneRun, gauge: Gauge) -> Measured:
     """Largest relative change of the peak when the gauge sits 1 mm off the middle of its bead."""
     peak = _undrooped(run, gauge)
     if not peak.found:
@@ -103,7 +104,7 @@ def offset_amplitude(run: OneRun, gauge: Sensor) -> Measured:
     return Measured(max(abs(p.force / peak.force - 1.0) for p in shifted))
 
 
-def shape_deviation(run: OneRun, gauge: Sensor) -> Measured:
+def shape_deviation(run: OneRun, gauge: Gauge) -> Measured:
     """Width at half height against that of the exact travelling wave seen by the same kind of gauge."""
     around = run.bead(gauge.bead - 2), run.bead(gauge.bead + 2)
     if None in around:
@@ -115,14 +116,14 @@ def shape_deviation(run: OneRun, gauge: Sensor) -> Measured:
     return Measured(abs(half.value * speed.value / run.diameter / exact - 1.0))
 
 
-def speed(run: OneRun, upper: Sensor, lower: Sensor) -> Measured:
+def speed(run: OneRun, upper: Gauge, lower: Gauge) -> Measured:
     """Distance over the time from peak to peak, in m/s; absent of two gauges in one bead."""
     if upper.bead == lower.bead:
         return missing("absent: both gauges sit in one bead")
     return q.speed(run.view, upper.id, lower.id)
 
 
-def decay(run: OneRun, upper: Sensor, lower: Sensor) -> Measured:
+def decay(run: OneRun, upper: Gauge, lower: Gauge) -> Measured:
     """Amplitude of the second gauge over that of the first."""
     return q.decay(run.view, upper.id, lower.id)
 

@@ -9,9 +9,10 @@ from functools import cached_property
 
 import numpy as np
 
+from sonicvacuum.gauges import Gauge, contacts_of, reading
+from sonicvacuum.gauges.base import Recorded
 from sonicvacuum.observe import quantities
 from sonicvacuum.observe.run import Geometry, Run
-from sonicvacuum.observe.sensor import Sensor, contacts_of, reading
 from sonicvacuum.observe.trace import Measured, Trace
 from sonicvacuum.study import Study
 
@@ -39,14 +40,14 @@ class OneRun:
         return self.card.bead.diameter_m
 
     @cached_property
-    def gauges(self) -> tuple[Sensor, ...]:
+    def gauges(self) -> tuple[Gauge, ...]:
         """The gauges reported on, from the striker to the wall: the card's own, with its effects on gauges.
 
         Where they sit in fewer than two beads, virtual ones are put into those of g9 and g5.
         """
         found = list(self.study.sensors)
         if not any(s.kind == "wall" for s in found):
-            found.append(Sensor(id=_free("wall", found), kind="wall", bead=None))
+            found.append(Gauge(id=_free("wall", found), kind="wall", bead=None))
         taken = {s.bead for s in found if s.kind == "embedded"}
         if len(taken) < 2 and self.card.beads >= UPPER:
             places = {f"g{k}": self.card.beads + 1 - k for k in (UPPER, LOWER)}
@@ -58,17 +59,17 @@ class OneRun:
         return tuple(sorted(found, key=lambda s: (s.kind == "wall", s.bead or 0)))
 
     @cached_property
-    def embedded(self) -> tuple[Sensor, ...]:
+    def embedded(self) -> tuple[Gauge, ...]:
         """Those of the gauges that sit in beads."""
         return tuple(s for s in self.gauges if s.kind == "embedded")
 
     @cached_property
-    def wall(self) -> Sensor:
+    def wall(self) -> Gauge:
         """The gauge at the wall."""
         return next(s for s in self.gauges if s.kind == "wall")
 
     @property
-    def span(self) -> tuple[Sensor, Sensor] | None:
+    def span(self) -> tuple[Gauge, Gauge] | None:
         """First and last embedded gauge, which bound speeds and contacts; None in a short chain."""
         return (self.embedded[0], self.embedded[-1]) if len(self.embedded) >= 2 else None
 
@@ -83,9 +84,17 @@ class OneRun:
         inner = [self._virtual(b) for b in range(1, beads + 1)]
         kept = [s for s in inner if set(contacts_of(s, beads)) <= set(self.study.contacts)]
         placed = (*self.gauges, *kept)
-        forces = {c: self.contact(c).force for c in self.study.contacts}
-        readings = {s.id: reading(s, forces, self.study.interval, beads) for s in placed}
+        recorded = self._recorded
+        readings = {s.id: reading(s, recorded, beads) for s in placed}
         return Run(readings, self.study.time, Geometry(beads, self.card.specimen.diameters, placed))
+
+    @property
+    def _recorded(self):
+        """What was recorded of this lane."""
+        found = self.study.recorded(self.refined)
+        forces = {c: self.contact(c).force for c in self.study.contacts}
+        moved = [{b: m[:, self.lane] for b, m in one.items()} for one in (found.velocity, found.acceleration)]
+        return Recorded(self.study.time, forces, *moved)
 
     def speed(self) -> Measured:
         """Speed in m/s between the first and the last embedded gauge."""
@@ -125,7 +134,7 @@ class OneRun:
 
     @staticmethod
     def _virtual(bead):
-        return Sensor(id=f"bead {bead}", kind="embedded", bead=bead)
+        return Gauge(id=f"bead {bead}", kind="embedded", bead=bead)
 
 
 def _free(name, gauges):

@@ -4,9 +4,9 @@ Definitions in `workflow/resources/claims.md`, "One run: gauges". Each function 
 or a pair, and returns a number, or the reason why there is none.
 """
 
+from sonicvacuum.gauges import Gauge
 from sonicvacuum.observe import quantities as q
 from sonicvacuum.observe.pulse import Pulse, pulses
-from sonicvacuum.observe.sensor import Sensor
 from sonicvacuum.observe.trace import Measured, missing
 from sonicvacuum_paper.one_run import OneRun
 
@@ -31,18 +31,18 @@ def train(run: OneRun, gauge: str, threshold: float, prominence: float = FINE) -
     return list(pulses(view.trace(gauge), main, view.free_until(gauge), threshold, prominence))
 
 
-def pulse_count(run: OneRun, gauge: Sensor) -> Measured:
+def pulse_count(run: OneRun, gauge: Gauge) -> Measured:
     """Pulses of at least 0.15 of the main one."""
     return q.pulse_count(run.view, gauge.id)
 
 
-def pulse_count_05(run: OneRun, gauge: Sensor) -> Measured:
+def pulse_count_05(run: OneRun, gauge: Gauge) -> Measured:
     """Pulses of at least 0.05 of the main one."""
     found = train(run, gauge.id, TRAIN)
     return Measured(float(len(found))) if found else missing(run.view.main(gauge.id).reason)
 
 
-def third_pulse_fraction(run: OneRun, gauge: Sensor) -> Measured:
+def third_pulse_fraction(run: OneRun, gauge: Gauge) -> Measured:
     """Third peak over the first; 0 if there is none."""
     found = train(run, gauge.id, FINE)
     if not found:
@@ -50,17 +50,17 @@ def third_pulse_fraction(run: OneRun, gauge: Sensor) -> Measured:
     return Measured(found[2].force / found[0].force if len(found) > 2 else 0.0)
 
 
-def extra_pulse_fraction(run: OneRun, gauge: Sensor) -> Measured:
+def extra_pulse_fraction(run: OneRun, gauge: Gauge) -> Measured:
     """Largest later peak over the main one; 0 if there is none."""
     return q.extra_pulse_fraction(run.view, gauge.id)
 
 
-def valley_depth(run: OneRun, gauge: Sensor) -> Measured:
+def valley_depth(run: OneRun, gauge: Gauge) -> Measured:
     """Depth of the valley between the first two pulses; 0 if there is one only."""
     return q.valley_depth(run.view, gauge.id)
 
 
-def window_over_train(run: OneRun, gauge: Sensor) -> Measured:
+def window_over_train(run: OneRun, gauge: Gauge) -> Measured:
     """Time before the reflection over the length of the train of three at the gauge, guards included."""
     view, top = run.view, run.bead(run.card.beads + 1 - FAR)
     if top is None:
@@ -82,7 +82,7 @@ def window_over_train(run: OneRun, gauge: Sensor) -> Measured:
     return Measured((back.value - view.main(gauge.id).time - guard) / (length + guard))
 
 
-def extra_pulses_upper_stronger(run: OneRun, upper: Sensor, lower: Sensor) -> Measured:
+def extra_pulses_upper_stronger(run: OneRun, upper: Gauge, lower: Gauge) -> Measured:
     """1 if the largest later peak is stronger at the upper gauge, looked for over one common time."""
     view = run.view
     mains = [view.main(s.id) for s in (upper, lower)]

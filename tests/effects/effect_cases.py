@@ -7,7 +7,7 @@ import numpy as np
 from reference import Plain
 
 from sonicvacuum.effects import CATALOGUE, Setup, effect
-from sonicvacuum.observe.sensor import reading
+from sonicvacuum.gauges import Gauge, reading
 from sonicvacuum.physics.chain import Body, Chain, Elastic
 from sonicvacuum.physics.run import History, simulate
 
@@ -18,19 +18,6 @@ OFF, TYPICAL, WEAK, WEAKER = 0, 1, 6, 7
 PLACES = {"bead": 3, "contact": 3, "sensor": 0}
 # Every effect with each of the parameters that switch it on.
 SWITCHES = [(e.id, p.name) for e in CATALOGUE for p in e.parameters if p.switches]
-
-
-@dataclass(frozen=True)
-class Gauge:
-    """A sensor as the effects see it, whose numbers may differ from lane to lane."""
-
-    id: str
-    kind: str
-    bead: int | None
-    droop_s: object = None
-    lowpass_s: object = 0.0
-    offset_fraction: object = 0.0
-    gain: object = 1.0
 
 
 @dataclass(frozen=True)
@@ -73,8 +60,7 @@ def run(setup: Setup, **options) -> tuple[History, np.ndarray]:
     beads = setup.chain.beads
     options = {"refine": 4.0, **options}
     history = simulate(setup.chain, range(beads + 1), DURATION, INTERVAL, **options)
-    forces = {c: history.of(c) for c in history.contacts}
-    return history, np.stack([reading(s, forces, INTERVAL, beads) for s in setup.sensors], axis=1)
+    return history, np.stack([reading(s, history, beads) for s in setup.sensors], axis=1)
 
 
 def values(id: str, name: str, strengths, setup: Setup) -> dict:

@@ -11,7 +11,7 @@ from effect_cases import PLACES, SWITCHES, nominal, place_of, run, values
 from sonicvacuum.effects import CATALOGUE, IDS, effect
 from sonicvacuum.effects.base import PLACES as KINDS_OF_PLACE
 from sonicvacuum.effects.base import PRIORS
-from sonicvacuum.observe.sensor import Sensor
+from sonicvacuum.gauges import Gauge
 
 CANONICAL = [
     "dynamic-modulus",
@@ -148,7 +148,7 @@ def test_a_sensor_may_be_named_by_its_id():
 @pytest.mark.parametrize("one", [e for e in CATALOGUE if e.id.startswith("sensor")], ids=lambda e: e.id)
 def test_sensor_effects_change_the_sensors_of_observe(one):
     (p,) = one.parameters
-    real = dataclasses.replace(nominal(), sensors=(Sensor("g3", "embedded", 3), Sensor("wall", "wall", None)))
+    real = dataclasses.replace(nominal(), sensors=(Gauge("g3", "embedded", 3), Gauge("wall", "wall", None)))
     given = {p.name: p.at(1.0, real), **place_of(one.id)}
     assert one.apply(real, **given).sensors != real.sensors
     np.testing.assert_array_equal(run(one.apply(real, **given))[1], run(one.apply(nominal(), **given))[1])

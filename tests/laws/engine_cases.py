@@ -28,6 +28,20 @@ def coated(modulus=15e9, bead_mass=0.44e-3, **changes) -> Chain:
 
 def reference(chain: Chain, contacts, times, rtol=1e-12):
     """(times, contacts) dynamic forces in N of the first chain of a batch, by DOP853 of scipy."""
+    _, dynamic, solution = _solved(chain, times, rtol)
+    bodies = chain.beads + 1
+    return np.array([dynamic(u) for u in solution.y[:bodies].T])[:, list(contacts)]
+
+
+def motion_reference(chain: Chain, times, rtol=1e-12):
+    """(times, bodies) velocities in m/s and accelerations in m/s², likewise."""
+    motion, _, solution = _solved(chain, times, rtol)
+    bodies = chain.beads + 1
+    return solution.y[bodies:].T, np.array([motion(0.0, y)[bodies:] for y in solution.y.T])
+
+
+def _solved(chain, times, rtol):
+    """Equation of motion, forces as a function of displacements, and the solution."""
     bodies = chain.beads + 1
     mass, stiffness = chain.masses(bodies)[:, 0], chain.stiffnesses(bodies)[:, 0]
     load, gap = chain.static_forces(bodies)[:, 0], chain.gaps(bodies)[:, 0]
@@ -49,7 +63,7 @@ def reference(chain: Chain, contacts, times, rtol=1e-12):
     scale = np.repeat([1e-6, 1.0], bodies)
     solution = solve_ivp(motion, (0, times[-1]), start, "DOP853", times, rtol=rtol, atol=rtol * scale)
     assert solution.success
-    return np.array([dynamic(u) for u in solution.y[:bodies].T])[:, list(contacts)]
+    return motion, dynamic, solution
 
 
 def peak(time, force):

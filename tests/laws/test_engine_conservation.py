@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from engine_cases import DURATION, coated
 
-from sonicvacuum.physics import kernel
+from sonicvacuum.physics import sampling
 from sonicvacuum.physics.methods import BLANES_MOAN, VERLET
 from sonicvacuum.physics.run import _Batch, simulate
 from sonicvacuum.physics.table import U, V
@@ -41,6 +41,7 @@ def _batch(chain, step, samples=2, **changes):
     settings = {
         "bodies": chain.beads + 1,
         "contacts": (0,),
+        "watched": (),
         "interval": step * 120,
         "refine": 1.0,
         "audit": False,
@@ -56,7 +57,7 @@ def test_splitting_retraces_its_way(scheme, name):
     batch.run(scheme, 1)
     assert np.abs(batch.table[..., U, :]).max() > 1e-6
     batch.table[..., V, :] *= -1.0
-    batch.clock[:, kernel.DUE] = batch.interval - batch.clock[:, kernel.TOLERANCE]
+    batch.clock[:, sampling.DUE] = batch.interval - batch.clock[:, sampling.TOLERANCE]
     batch.cursor[:] = 1
     batch.run(scheme, 1)
     back = np.zeros(22)

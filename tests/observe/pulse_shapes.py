@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import lambertw
 
+from sonicvacuum.gauges import Gauge
 from sonicvacuum.observe.run import Geometry
-from sonicvacuum.observe.sensor import Sensor
 
 
 @dataclass(frozen=True)
@@ -80,8 +80,8 @@ def pulse_duration(level):
 
 def gauges(*beads):
     """Geometry of the paper's chain with gauges in some beads (named b13 …) and at the wall."""
-    embedded = tuple(Sensor(f"b{bead}", "embedded", bead) for bead in beads)
-    return Geometry(BEADS, DIAMETER, (*embedded, Sensor("wall", "wall", None)))
+    embedded = tuple(Gauge(f"b{bead}", "embedded", bead) for bead in beads)
+    return Geometry(BEADS, DIAMETER, (*embedded, Gauge("wall", "wall", None)))
 
 
 def chain_run(

@@ -9,9 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pulse_shapes import DIAMETER, SPEED, chain_run, gauges, pulse, pulse_duration
 
+from sonicvacuum.gauges import Gauge
 from sonicvacuum.observe.quantities import QUANTITIES, measure, measure_run
 from sonicvacuum.observe.run import Geometry, Run
-from sonicvacuum.observe.sensor import Sensor
 from sonicvacuum.observe.trace import Measured
 
 # Pulses are sampled 39 times per half-height width: peaks are found to 3e-7 of it, crossings to 2e-6.
@@ -249,8 +249,8 @@ def test_malformed_readings_are_refused_with_the_gauge_named():
     ("beads", "diameter", "sensors", "says"),
     [
         (21, 0.0, (), "diameter_m"),
-        (12, DIAMETER, (Sensor("b13", "embedded", 13),), "the chain has 12"),
-        (21, DIAMETER, (Sensor("g", "embedded", 13), Sensor("g", "wall", None)), "given 2 times"),
+        (12, DIAMETER, (Gauge("b13", "embedded", 13),), "the chain has 12"),
+        (21, DIAMETER, (Gauge("g", "embedded", 13), Gauge("g", "wall", None)), "given 2 times"),
     ],
 )
 def test_impossible_geometry_is_refused(beads, diameter, sensors, says):

@@ -8,15 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.signal import lfilter
 
-from sonicvacuum.observe.sensor import (
-    Sensor,
-    contacts_needed,
-    contacts_of,
-    filtered,
-    high_passed,
-    position,
-    reading,
-)
+from sonicvacuum.gauges import Gauge, contacts_of, needed, position, reading
+from sonicvacuum.gauges.base import Recorded
+from sonicvacuum.gauges.electronics import filtered, high_passed
 
 INTERVAL = 2e-6
 TIME = INTERVAL * np.arange(700)
@@ -24,19 +18,25 @@ LOWPASS, DROOP = 7e-6, 1e-3
 ROUNDING = 1e-12  # a few hundred roundings of 1e-16, on responses of order one
 
 
+def seen(forces):
+    """A recorded motion of which only contact forces are known."""
+    samples = len(next(iter(forces.values())))
+    return Recorded(INTERVAL * np.arange(samples), forces)
+
+
 def test_gauge_feels_the_two_contacts_of_its_bead_and_the_wall_gauge_the_last():
-    g9, wall = Sensor("g9", "embedded", 13), Sensor("wall", "wall", None)
+    g9, wall = Gauge("g9", "embedded", 13), Gauge("wall", "wall", None)
     assert contacts_of(g9, 21) == (12, 13)
     assert contacts_of(wall, 21) == (21,)
     assert contacts_of(wall, 0) == (0,)
-    assert contacts_needed([wall, Sensor("next", "embedded", 14), g9], 21) == (12, 13, 14, 21)
+    assert needed([wall, Gauge("next", "embedded", 14), g9], 21) == ((12, 13, 14, 21), ())
 
 
 def test_positions_are_bead_centres_counted_from_the_wall():
     # The ninth bead from the bottom of 21, as in Daraio & Nesterenko (2006): 8.5 diameters from the wall.
-    assert position(Sensor("g9", "embedded", 13), 21, 4.86e-3) == 8.5 * 4.86e-3
-    assert position(Sensor("first", "embedded", 1), 21, 2.0) == 41.0
-    assert position(Sensor("wall", "wall", None), 21, 4.86e-3) == 0.0
+    assert position(Gauge("g9", "embedded", 13), 21, 4.86e-3) == 8.5 * 4.86e-3
+    assert position(Gauge("first", "embedded", 1), 21, 2.0) == 41.0
+    assert position(Gauge("wall", "wall", None), 21, 4.86e-3) == 0.0
 
 
 @pytest.mark.parametrize(
@@ -56,28 +56,28 @@ def test_positions_are_bead_centres_counted_from_the_wall():
 )
 def test_impossible_gauge_is_refused_by_name(changes):
     with pytest.raises(ValueError, match="sensor g9: "):
-        Sensor(**{"id": "g9", "kind": "embedded", "bead": 13, **changes})
+        Gauge(**{"id": "g9", "kind": "embedded", "bead": 13, **changes})
 
 
 def test_gauge_outside_the_chain_and_unrecorded_contact_are_refused():
     with pytest.raises(ValueError, match="bead 22; the chain has 21"):
-        position(Sensor("g", "embedded", 22), 21, 1.0)
+        position(Gauge("g", "embedded", 22), 21, 1.0)
     with pytest.raises(ValueError, match="needs the force of contact 12"):
-        reading(Sensor("g", "embedded", 13), {13: TIME}, INTERVAL, 21)
+        reading(Gauge("g", "embedded", 13), seen({13: TIME}), 21)
 
 
 def test_embedded_gauge_reads_the_weighted_mean_times_its_gain():
     before, after = np.sin(TIME / 1e-5), np.cos(TIME / 1e-5)
     forces = {12: before, 13: after}
-    middle = reading(Sensor("g", "embedded", 13), forces, INTERVAL, 21)
+    middle = reading(Gauge("g", "embedded", 13), seen(forces), 21)
     np.testing.assert_array_equal(middle, 0.5 * before + 0.5 * after)
-    off = reading(Sensor("g", "embedded", 13, offset_fraction=0.1, gain=2.0), forces, INTERVAL, 21)
+    off = reading(Gauge("g", "embedded", 13, offset_fraction=0.1, gain=2.0), seen(forces), 21)
     np.testing.assert_allclose(off, 2.0 * (0.6 * before + 0.4 * after), rtol=0, atol=ROUNDING)
 
 
 def test_off_values_return_the_force_itself():
     force = np.random.default_rng(1).standard_normal((700, 3))
-    np.testing.assert_array_equal(reading(Sensor("w", "wall", None), {21: force}, INTERVAL, 21), force)
+    np.testing.assert_array_equal(reading(Gauge("w", "wall", None), seen({21: force}), 21), force)
     # Arrays of time constants, some of them off: those columns are exact too.
     some = filtered(force, INTERVAL, [0.0, LOWPASS, 0.0], [math.inf, math.inf, DROOP])
     np.testing.assert_array_equal(some[:, 0], force[:, 0])
@@ -155,17 +155,17 @@ def test_time_constants_may_differ_from_column_to_column():
 
 def test_discharge_sags_a_pulse_of_the_paper_by_an_eighth():
     # RC about 1 ms, pulse of 130 µs (Daraio & Nesterenko 2006): a flat force sags by 1 − exp(−0.13) = 12.2 %.
-    step = reading(Sensor("w", "wall", None, droop_s=1e-3), {0: np.ones(66)}, INTERVAL, 0)
+    step = reading(Gauge("w", "wall", None, droop_s=1e-3), seen({0: np.ones(66)}), 0)
     assert 1.0 - step[65] == pytest.approx(-math.expm1(-0.13), abs=ROUNDING)
 
 
 @given(st.floats(-5, 5), st.floats(-5, 5), st.floats(-0.5, 0.5), st.floats(1e-7, 1e-4), st.floats(2e-4, 1e-2))
 def test_gauges_are_linear(a, b, offset, lowpass, droop):
     x, y = np.random.default_rng(4).standard_normal((2, 2, 200))
-    sensor = Sensor("g", "embedded", 1, droop, lowpass, offset, 1.3)
+    sensor = Gauge("g", "embedded", 1, droop, lowpass, offset, 1.3)
 
     def read(z):
-        return reading(sensor, {0: z[0], 1: z[1]}, INTERVAL, 3)
+        return reading(sensor, seen({0: z[0], 1: z[1]}), 3)
 
     # Terms of order 5 × 4 × gain; a few roundings per sample of memory.
     np.testing.assert_allclose(read(a * x + b * y), a * read(x) + b * read(y), rtol=0, atol=1e-11)

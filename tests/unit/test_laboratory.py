@@ -12,10 +12,10 @@ from hypothesis import strategies as st
 
 from sonicvacuum.card import CaseBlock, dump, load, resolve
 from sonicvacuum.files import InputError
+from sonicvacuum.gauges import Gauge
 from sonicvacuum.laboratory.bodies import Bodies, to_wall
 from sonicvacuum.laboratory.ranges import LaboratoryError
 from sonicvacuum.observe.run import Geometry
-from sonicvacuum.observe.sensor import Sensor
 from sonicvacuum.physics.assemble import assemble
 from sonicvacuum.records.reader import parse
 from sonicvacuum.records.record import Record
@@ -147,7 +147,7 @@ def test_a_row_of_bodies_is_what_its_list_would_be(pattern, exceptions, beads, d
 
 
 def test_gauges_stand_where_the_beads_put_them():
-    sensors = (Sensor("a", "embedded", 2), Sensor("b", "embedded", 4), Sensor("w", "wall", None))
+    sensors = (Gauge("a", "embedded", 2), Gauge("b", "embedded", 4), Gauge("w", "wall", None))
     place = Geometry(4, Bodies((3.0, 1.0)), sensors)
     assert [place.position(s.id) for s in sensors] == [4.5, 0.5, 0.0]
     assert place.length == 8.0

@@ -11,28 +11,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from sonicvacuum.gauges import Gauge
 from sonicvacuum.laboratory.bodies import Bodies
 from sonicvacuum.physics.chain import Chain
 
 # Of the bead material's modulus where a record does not say: a handbook value of a metal or polymer is
 # seldom better.
 MODULUS_REL_SIGMA = 0.05
-
-
-@dataclass(frozen=True)
-class Gauge:
-    """A gauge whose properties may differ from lane to lane: floats or (lanes,) arrays, unchecked.
-
-    Attributes are those of `observe.sensor.Sensor`, but `droop_s` is infinite where there is no discharge.
-    """
-
-    id: str
-    kind: str
-    bead: int | None = None
-    droop_s: float | np.ndarray = math.inf
-    lowpass_s: float | np.ndarray = 0.0
-    offset_fraction: float | np.ndarray = 0.0
-    gain: float | np.ndarray = 1.0
 
 
 @dataclass(frozen=True)
@@ -52,9 +37,11 @@ class RunData:
     Attributes:
         id: name of the run.
         time: (T,) equidistant recorded times in s; empty without signals.
-        readings: (S, T) N, in the order of the experiment's gauges.
+        readings: (S, T) in the order and the units of the experiment's gauges; finite everywhere.
         scalars: observables.
         speed_rel_sigma: standard error of the striker's speed, relative.
+        present: (S, T) which readings count; None: all. A gauge that this run lacks, a sample that was lost
+            or must not be believed is False: it contributes to no sum and to no count.
     """
 
     id: str
@@ -62,6 +49,12 @@ class RunData:
     readings: np.ndarray
     scalars: tuple[Scalar, ...] = ()
     speed_rel_sigma: float = 0.0
+    present: np.ndarray | None = None
+
+    @property
+    def samples(self) -> int:
+        """Number of readings that count."""
+        return self.readings.size if self.present is None else int(np.count_nonzero(self.present))
 
     @property
     def has_signals(self) -> bool:
@@ -102,9 +95,9 @@ class Experiment:
         runs: the runs.
         batches: how they are simulated; every run is in one batch.
         gauges: nominal gauges.
-        sigma: (S,) standard deviation of one sample in N.
+        sigma: (S,) standard deviation of one sample in the unit of its gauge.
         correlation: (S,) correlation of the noise of neighbouring samples, 0 where white.
-        gain_rel_sigma: (S,) standard error of the gains, relative.
+        gain_rel_sigma: (S,) standard error of the logarithm of the gains.
         trigger_sigma: s, of the common time zero of a run.
         modulus_rel_sigma: of the bead material, relative.
         diameter: of a bead in m, or of each of them.
@@ -147,18 +140,50 @@ class Experiment:
         if not data.has_signals:
             return scalars / errors
         white = readings / self.sigma[:, None]
-        if np.any(self.correlation):
-            rho = self.correlation[:, None]
-            rest = (white[..., 1:] - rho * white[..., :-1]) / np.sqrt(1.0 - rho**2)
-            white = np.concatenate([white[..., :1], rest], axis=-1)
+        white = whitened_gaps(white, self.correlation, data.present)
         if self.integrated:
             white = np.cumsum(white, axis=-1) / math.sqrt(white.shape[-1])
+            white = white if data.present is None else white * data.present
         return np.concatenate([white.reshape(lanes, -1), scalars / errors], axis=1)
 
-    def size(self, run: int) -> int:
-        """Number of data of a run."""
+    def length(self, run: int) -> int:
+        """Length of a run's whitened data: a place for every sample, counting or not, and every scalar."""
         data = self.runs[run]
         return len(self.gauges) * len(data.time) + len(data.scalars)
+
+    def size(self, run: int) -> int:
+        """Number of data of a run: samples that count, and scalars."""
+        data = self.runs[run]
+        return data.samples + len(data.scalars)
+
+
+def whitened_gaps(noise: np.ndarray, correlation: np.ndarray, present: np.ndarray | None) -> np.ndarray:
+    """Independent numbers of unit variance from samples of a stationary first-order autoregression.
+
+    Args:
+        noise: (L, S, T) samples over their standard deviation.
+        correlation: (S,) of neighbouring samples.
+        present: (S, T) samples that count, or None for all.
+
+    Returns:
+        (L, S, T); 0 where a sample does not count. A sample whose last counting neighbour is k samples back
+        is predicted by ρ^k of that one, with the variance 1 − ρ^{2k}: what a Kalman filter makes of a gap
+        (Jones, Technometrics 22, 389, 1980).
+    """
+    if present is None:
+        if not np.any(correlation):
+            return noise
+        rho = correlation[:, None]
+        rest = (noise[..., 1:] - rho * noise[..., :-1]) / np.sqrt(1.0 - rho**2)
+        return np.concatenate([noise[..., :1], rest], axis=-1)
+    white = np.zeros_like(noise)
+    for s, rho in enumerate(correlation):
+        at = np.flatnonzero(present[s])
+        kept = noise[:, s, at]
+        far = rho ** np.diff(at)
+        white[:, s, at[:1]] = kept[:, :1]
+        white[:, s, at[1:]] = (kept[:, 1:] - far * kept[:, :-1]) / np.sqrt(1.0 - far**2)
+    return white
 
 
 def lag_one(noise: np.ndarray) -> float:

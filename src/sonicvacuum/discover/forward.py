@@ -16,7 +16,8 @@ from sonicvacuum.discover import gauges, scalars
 from sonicvacuum.discover.experiment import Experiment
 from sonicvacuum.discover.hypothesis import Hypothesis
 from sonicvacuum.effects import Setup
-from sonicvacuum.physics.run import simulate
+from sonicvacuum.gauges import needed
+from sonicvacuum.physics.run import History, simulate
 
 # Largest steps of speed and modulus for finite differences, relative; smaller where the data are precise, so
 # that all data together change by about this many standard errors, and collinear columns come out collinear.
@@ -102,7 +103,7 @@ class Forward:
     def counts(self, run: int) -> np.ndarray:
         """Places of the data of a run that are whole numbers: they jump, and have no slopes."""
         scalars_ = self.experiment.runs[run].scalars
-        first = self.experiment.size(run) - len(scalars_)
+        first = self.experiment.length(run) - len(scalars_)
         return np.array([first + k for k, s in enumerate(scalars_) if s.quantity == "pulse_count"], dtype=int)
 
     @cached_property
@@ -267,13 +268,12 @@ class Forward:
     def simulate(self, batch, setup: Setup):
         """Readings (lanes, S, T') on the simulated grid, with what the scalars need besides."""
         beads = setup.chain.beads
-        wanted = {*gauges.contacts_needed(setup.sensors, beads), *scalars.contacts_wanted(self.experiment)}
-        wanted = sorted(wanted)
-        history = _simulated(setup.chain, wanted, batch, self.threads)
+        contacts, bodies = needed(setup.sensors, beads)
+        contacts = sorted({*contacts, *scalars.contacts_wanted(self.experiment)})
+        history = _simulated(setup.chain, (contacts, bodies), batch, self.threads)
         self.simulations += setup.chain.lanes
-        forces = {c: history.of(c) for c in wanted}
         if setup.sensors:
-            read = gauges.readings(setup.sensors, forces, batch.interval, beads)
+            read = gauges.readings(setup.sensors, history, beads)
         else:
             read = np.zeros((setup.chain.lanes, 0, len(history.time)))
         return Seen(read, history, setup)
@@ -282,24 +282,27 @@ class Forward:
 def _simulated(chain, wanted, batch, threads):
     """The history of a batch; chains whose motion does not stay finite have forces that are no numbers."""
     try:
-        return simulate(chain, wanted, batch.duration, batch.interval, threads=threads)
+        return _recorded(chain, wanted, batch, threads)
     except FloatingPointError:
         if chain.lanes == 1:
             rest = replace(chain, speed=chain.speed * 1e-3, actions=())
-            calm = simulate(rest, wanted, batch.duration, batch.interval)
-            return replace(calm, force=np.full_like(calm.force, np.nan))
+            return _recorded(rest, wanted, batch, threads).without_numbers()
     half = chain.lanes // 2
     parts = [
         _simulated(chain.take(np.arange(*share)), wanted, batch, threads)
         for share in ((0, half), (half, chain.lanes))
     ]
-    force = np.concatenate([p.force for p in parts], axis=2)
-    return replace(parts[0], force=force, striker_speed=np.concatenate([p.striker_speed for p in parts]))
+    return History.side_by_side(parts)
+
+
+def _recorded(chain, wanted, batch, threads):
+    contacts, bodies = wanted
+    return simulate(chain, contacts, batch.duration, batch.interval, bodies=bodies, threads=threads)
 
 
 @dataclass(frozen=True)
 class Seen:
-    """What a simulation of one batch shows: readings (lanes, S, T') in N, the history, the setup."""
+    """What a simulation of one batch shows: readings (lanes, S, T'), the history, the setup."""
 
     readings: np.ndarray
     history: object

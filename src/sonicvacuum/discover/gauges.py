@@ -1,44 +1,18 @@
-"""What gauges read, lane by lane, and readings between their samples.
-
-The order is that of `observe.sensor`: contacts, bandwidth and droop, gain; here every property of a gauge may
-differ from lane to lane.
-"""
-
-from collections.abc import Mapping
+"""What all gauges read, lane by lane, and readings between their samples."""
 
 import numpy as np
 
-from sonicvacuum.discover.experiment import Gauge
-from sonicvacuum.observe.sensor import filtered
+from sonicvacuum.gauges import Gauge, Motion, reading
 
 # Interpolation between samples: polynomials through six neighbours.
 POINTS = 6
 _OFFSETS = np.arange(POINTS) - (POINTS // 2 - 1)
 
 
-def contacts_of(gauge: Gauge, beads: int) -> tuple[int, ...]:
-    """The contacts that a gauge feels."""
-    return (beads,) if gauge.kind == "wall" else (gauge.bead - 1, gauge.bead)
-
-
-def contacts_needed(gauges: tuple[Gauge, ...], beads: int) -> tuple[int, ...]:
-    """All contacts that the gauges feel, sorted."""
-    return tuple(sorted({c for g in gauges for c in contacts_of(g, beads)}))
-
-
-def readings(gauges: tuple[Gauge, ...], force_of: Mapping[int, np.ndarray], interval: float, beads: int):
-    """(L, S, T) readings in N of contact forces (T, L), with L lanes."""
-    signals = [_reading(g, [force_of[c] for c in contacts_of(g, beads)], interval) for g in gauges]
+def readings(gauges: tuple[Gauge, ...], motion: Motion, beads: int) -> np.ndarray:
+    """(L, S, T) readings of a motion (T, L) with L lanes, each gauge in its own unit."""
+    signals = [reading(g, motion, beads) for g in gauges]
     return np.ascontiguousarray(np.stack(signals).transpose(2, 0, 1))
-
-
-def _reading(gauge, forces, interval):
-    if len(forces) == 1:
-        force = forces[0]
-    else:
-        before = 0.5 + gauge.offset_fraction
-        force = before * forces[0] + (1.0 - before) * forces[1]
-    return gauge.gain * filtered(force, interval, gauge.lowpass_s, gauge.droop_s)
 
 
 def lagrange(fraction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -75,7 +49,7 @@ def shifted(simulated: np.ndarray, interval: float, time: np.ndarray, shift: np.
         rate_of: the derivative of every so many lanes, from the first on.
 
     Returns:
-        Arrays (L, S, T) in N and (L / rate_of, S, T) in N/s.
+        Arrays (L, S, T) in the gauges' units and (L / rate_of, S, T) in the same per second.
     """
     stride = round((time[-1] - time[0]) / (len(time) - 1) / interval)
     place = (time[0] - shift) / interval

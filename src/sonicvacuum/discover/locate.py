@@ -93,10 +93,12 @@ def _features(forward, fit):
         if not data.has_signals:
             continue
         for s, trace in enumerate(readings[run]):
+            if data.present is not None and not data.present[s].any():
+                continue
             for feature, shape in shapes(trace, data.interval).items():
                 directions.append(Direction(feature, data.id, place=s, two_sided=True))
                 blocks.append((run, s, shape))
-    slopes = [np.zeros((len(blocks), e.size(run))) for run in range(len(e.runs))]
+    slopes = [np.zeros((len(blocks), e.length(run))) for run in range(len(e.runs))]
     for k, (run, s, shape) in enumerate(blocks):
         alone = np.zeros((1, len(e.gauges), len(shape)))
         alone[0, s] = shape

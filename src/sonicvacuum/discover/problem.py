@@ -15,11 +15,11 @@ from sonicvacuum.discover.experiment import (
     MODULUS_REL_SIGMA,
     Batch,
     Experiment,
-    Gauge,
     RunData,
     Scalar,
     lag_one,
 )
+from sonicvacuum.discover.gains import with_gains
 from sonicvacuum.files import InputError
 from sonicvacuum.records.assemble import assemble, chain_of, duration_of, interval_of
 from sonicvacuum.records.record import Record
@@ -34,7 +34,11 @@ _SURE = 4.0
 
 
 def experiment(record: Record) -> Experiment:
-    """The data set of a record."""
+    """The data set of a record; gauges of unknown gain start at that which the data ask for."""
+    return with_gains(_experiment(record))
+
+
+def _experiment(record):
     runs = tuple(_run(record, run) for run in record.runs)
     sigma, correlation = noise((record,))
     named = record.modulus_rel_sigma(record.specimen.first.surface.name)
@@ -42,11 +46,11 @@ def experiment(record: Record) -> Experiment:
         name=record.name or record.title,
         runs=runs,
         batches=batches(record),
-        gauges=tuple(Gauge(g.id, g.kind, g.bead) for g in record.gauges),
+        gauges=record.gauges,
         sigma=sigma,
         correlation=correlation,
-        gain_rel_sigma=np.array([g.gain_rel_sigma for g in record.gauges]),
-        trigger_sigma=record.trigger_sigma_s,
+        gain_rel_sigma=np.array([g.log_gain_sigma for g in record.gauges]),
+        trigger_sigma=record.trigger_width_s,
         modulus_rel_sigma=named or MODULUS_REL_SIGMA,
         diameter=record.specimen.diameters,
         record=record,
@@ -62,16 +66,15 @@ def together(records: Sequence[Record]) -> Experiment:
     Raises:
         InputError: where records have different beads or gauges, or scalars beside the first record's.
     """
-    first, *others = [experiment(r) for r in records]
+    first, *others = [_experiment(r) for r in records]
     for record, other in zip(records[1:], others, strict=True):
         _check_alike(records[0], record, other)
     for record, other in zip(records[1:], others, strict=True):
         first = _joined(first, record, other)
     turned = len({r.specimen.gravity_m_s2 for r in records}) > 1
     sigma, correlation = noise(records)
-    return replace(
-        first, sigma=sigma, correlation=correlation, excluded=("gravity",) if turned else first.excluded
-    )
+    excluded = ("gravity",) if turned else first.excluded
+    return with_gains(replace(first, sigma=sigma, correlation=correlation, excluded=excluded))
 
 
 def _check_alike(record, other, seen: Experiment):
@@ -108,10 +111,13 @@ def _joined(first: Experiment, record, other: Experiment) -> Experiment:
 def _run(record, run):
     signals = run.signals
     time = signals.time_s if signals else np.zeros(0)
-    gauges = [signals.readings[g.id] if signals else np.zeros(0) for g in record.gauges]
+    found = [signals and signals.readings.get(g.id) for g in record.gauges]
+    gauges = [np.zeros(len(time)) if r is None else r for r in found]
     readings = np.array(gauges).reshape(len(record.gauges), len(time))
+    there = np.array([r is not None for r in found])
+    present = None if signals is None or there.all() else np.repeat(there[:, None], len(time), axis=1)
     scalars = tuple(Scalar(o.quantity, o.value, _error(o), o.options) for o in run.observables)
-    return RunData(run.id, time, readings, scalars, run.striker.speed_rel_sigma)
+    return RunData(run.id, time, readings, scalars, run.striker.speed_rel_sigma, present)
 
 
 def _error(observable):
@@ -137,30 +143,59 @@ def batches(record: Record) -> tuple[Batch, ...]:
 
 
 def noise(records: Sequence[Record]) -> tuple[np.ndarray, np.ndarray]:
-    """(S,) standard deviation of one sample in N and correlation of neighbours, stated or seen."""
+    """(S,) standard deviation of one sample and correlation of its neighbours, stated or seen."""
     quiet = [_quiet_of(records, g) for g in records[0].gauges]
     sigma = [_sigma(records, g, q) for g, q in zip(records[0].gauges, quiet, strict=True)]
     return np.array(sigma), _correlations(quiet)
 
 
 def _traces(records, gauge):
-    return [r.signals.readings[gauge.id] for record in records for r in record.runs if r.signals]
+    runs = [r for record in records for r in record.runs if r.signals and gauge.id in r.signals.readings]
+    return [r.signals.readings[gauge.id] for r in runs]
 
 
 def _quiet_of(records, gauge):
     """The quiet stretches of a gauge that are long enough."""
-    return [q for t in _traces(records, gauge) if len(q := _quiet(t, gauge.sigma)) >= _FEWEST]
+    traces = _traces(records, gauge)
+    sigma = gauge.sigma or max(map(flicker, traces), default=0.0)
+    return [q for t in traces if len(q := _quiet(t, sigma)) >= _FEWEST]
 
 
 def _sigma(records, gauge, quiet):
     """What the record states, or more where the quiet stretches are surely louder."""
-    peak = max((float(np.abs(t).max()) for t in _traces(records, gauge)), default=0.0)
-    floor = max(math.hypot(gauge.sigma, MODEL_FLOOR * peak), 1e-12)
+    traces = _traces(records, gauge)
+    peak = max((float(np.abs(t).max()) for t in traces), default=0.0)
+    floor = max(math.hypot(gauge.sigma or _estimated(traces, quiet), MODEL_FLOOR * peak), 1e-12)
     if not quiet:
         return floor
     count = sum(len(q) for q in quiet)
     seen = math.sqrt(sum(q @ q for q in quiet) / count)
     return seen if seen > floor * (1.0 + _SURE / math.sqrt(count)) else floor
+
+
+def _estimated(traces, quiet):
+    """Noise that nobody stated: of the quiet stretches, or, without any, what makes the samples flicker."""
+    if not quiet:
+        return max(map(flicker, traces), default=0.0)
+    level = math.sqrt(sum(float(q @ q) for q in quiet) / sum(len(q) for q in quiet))
+    return max(level, max(map(rounding, traces)))
+
+
+def flicker(trace: np.ndarray) -> float:
+    """Noise of one sample from third differences, which a smooth pulse hardly moves; white noise assumed.
+
+    The median of their absolute values over 0.6745 √20: third differences of white noise have the variance
+    1 + 9 + 9 + 1 = 20.
+    """
+    return float(np.median(np.abs(np.diff(trace, 3)))) / (0.6745 * math.sqrt(20.0)) if len(trace) > 3 else 0.0
+
+
+def rounding(trace: np.ndarray) -> float:
+    """Standard deviation of the rounding of a trace whose values repeat: its smallest step over √12."""
+    values = np.unique(trace)
+    if len(values) < 2 or len(values) > len(trace) / 2:
+        return 0.0
+    return float(np.diff(values).min()) / math.sqrt(12.0)
 
 
 def _correlations(quiet):

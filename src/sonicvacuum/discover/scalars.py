@@ -5,10 +5,10 @@ them.
 import numpy as np
 
 from sonicvacuum.discover import gauges
+from sonicvacuum.gauges import needed
 from sonicvacuum.observe.contacts import contact_duration
 from sonicvacuum.observe.quantities import measure_run
 from sonicvacuum.observe.run import Geometry, Run
-from sonicvacuum.observe.sensor import Sensor
 from sonicvacuum.records.predict import virtual
 from sonicvacuum.records.solitary import speed_at_amplitude
 
@@ -35,7 +35,7 @@ def contacts_wanted(experiment) -> tuple[int, ...]:
     if not any(r.scalars for r in experiment.runs):
         return ()
     extra = virtual(experiment.record)
-    return (0, *gauges.contacts_needed(extra, experiment.beads)) if extra else (0,)
+    return (0, *needed(extra, experiment.beads)[0]) if extra else (0,)
 
 
 def predict(experiment, run: int, lanes: slice, seen, signals: np.ndarray) -> np.ndarray:
@@ -78,8 +78,9 @@ def _measured(experiment, scalar, seen, lane, passage):
     if scalar.quantity == "speed_at_amplitude":
         gauge = next(g for g in seen.setup.sensors if g.id == scalar.options["sensor"])
         chain = seen.setup.chain.take([lane])
-        sensor = _sensor(gauge, lane)
-        return speed_at_amplitude(experiment.record, chain, sensor, scalar.options["amplitude"]).value
+        return speed_at_amplitude(
+            experiment.record, chain, gauge.lane(lane), scalar.options["amplitude"]
+        ).value
     return measure_run(scalar.quantity, passage, **scalar.options).value
 
 
@@ -95,31 +96,13 @@ def _restitution(chain, time, force, lane):
     return (impulse - chain.gravity[lane] * time[borne[-1] + 1] - speed) / speed
 
 
-def _sensor(gauge, lane):
-    """The gauge of one lane as `observe` takes it."""
-    numbers = [np.ravel(v) for v in (gauge.droop_s, gauge.lowpass_s, gauge.offset_fraction, gauge.gain)]
-    droop, lowpass, offset, gain = (float(v[lane] if len(v) > 1 else v[0]) for v in numbers)
-    return Sensor(gauge.id, gauge.kind, gauge.bead, None if np.isinf(droop) else droop, lowpass, offset, gain)
-
-
 def _passages(experiment, lanes, seen, signals):
     """One run as `observe` measures it for each lane, with the virtual gauges of `records.predict`."""
     extra = virtual(experiment.record)
     history = seen.history
-    sensors = tuple(Sensor(g.id, g.kind, g.bead) for g in experiment.gauges)
-    geometry = Geometry(experiment.beads, experiment.diameter, (*sensors, *extra))
+    geometry = Geometry(experiment.beads, experiment.diameter, (*experiment.gauges, *extra))
     ids = [s.id for s in geometry.sensors]
-    ideal = tuple(_ideal(s) for s in extra)
-    forces = {c: history.of(c)[:, lanes] for c in history.contacts}
-    if ideal:
-        interval = float(history.time[1] - history.time[0])
-        signals = np.concatenate(
-            [signals, gauges.readings(ideal, forces, interval, experiment.beads)], axis=1
-        )
+    if extra:
+        others = gauges.readings(extra, history.take(lanes), experiment.beads)
+        signals = np.concatenate([signals, others], axis=1)
     return [Run(dict(zip(ids, lane, strict=True)), history.time, geometry) for lane in signals]
-
-
-def _ideal(sensor):
-    from sonicvacuum.discover.experiment import Gauge
-
-    return Gauge(sensor.id, sensor.kind, sensor.bead)

@@ -191,12 +191,23 @@ def rounds_of(found: Investigation) -> list[tuple[str, float]]:
 
 
 def trace_rows(result: Result):
-    """Header and rows: measured trace and both models for each run and gauge (empty without signals)."""
+    """Header and rows: measured trace and both models for each run and gauge (empty without signals).
+
+    Columns are in N; where a gauge reads something else, they have no unit in their names and each row has
+    its own.
+    """
     from sonicvacuum.discover.unknown import raw
 
     found = result.found
     e = found.forward.experiment
     header = ["run", "sensor", "time_us", "measured_N", "nominal_N", "extended_N", "sigma_N"]
+    mixed = any(g.unit != "N" for g in e.gauges)
+    if mixed:
+        header = [name.removesuffix("_N") for name in header] + ["unit"]
+
+    def unit(gauge):
+        return (gauge.unit,) if mixed else ()
+
     if not any(r.has_signals for r in e.runs):
         return header, []
     before = raw(found.forward, found.null)
@@ -205,7 +216,8 @@ def trace_rows(result: Result):
     for k, run in enumerate(e.runs):
         step = max(1, len(run.time) // 1000)
         for s, gauge in enumerate(e.gauges):
+            counts = slice(None) if run.present is None else run.present[s]
             columns = (run.time * 1e6, run.readings[s], before[k][s], after[k][s])
-            table = np.column_stack([c[::step] for c in columns])
-            rows.extend((run.id, gauge.id, *row, e.sigma[s]) for row in table)
+            table = np.column_stack([c[counts][::step] for c in columns])
+            rows.extend((run.id, gauge.id, *row, e.sigma[s], *unit(gauge)) for row in table)
     return header, rows

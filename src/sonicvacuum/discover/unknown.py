@@ -265,9 +265,9 @@ def scalar_directions(forward: Forward):
         return None
     columns, first = [], 0
     for run, data in enumerate(e.runs):
-        part = np.zeros((total, e.size(run)))
+        part = np.zeros((total, e.length(run)))
         for k in range(len(data.scalars)):
-            part[first + k, e.size(run) - len(data.scalars) + k] = 1.0
+            part[first + k, e.length(run) - len(data.scalars) + k] = 1.0
         first += len(data.scalars)
         columns.append(part)
     names = [(run, k) for run, data in enumerate(e.runs) for k in range(len(data.scalars))]
@@ -275,9 +275,10 @@ def scalar_directions(forward: Forward):
 
 
 def raw(forward: Forward, fit: Fit) -> list[np.ndarray]:
-    """For each run the predicted readings (S, T) in N at the recorded times."""
+    """For each run the predicted readings (S, T) at the recorded times."""
     e = forward.experiment
-    white = Forward(replace(e, correlation=np.zeros(len(e.gauges))), forward.threads)
+    whole = tuple(replace(run, present=None) for run in e.runs)
+    white = Forward(replace(e, runs=whole, correlation=np.zeros(len(e.gauges))), forward.threads)
     found = white.sampled(fit.hypothesis, fit.u[None], fit.nu[None])
     forward.simulations += white.simulations
     return [

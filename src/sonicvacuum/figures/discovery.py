@@ -81,8 +81,15 @@ def traces(table: list[dict[str, str]], named: list[str]):
 
 
 def _columns(part):
-    names = ("time_us", "measured_N", "nominal_N", "extended_N", "sigma_N")
+    end = "" if "unit" in part[0] else "_N"
+    names = ("time_us", *(f"{name}{end}" for name in ("measured", "nominal", "extended", "sigma")))
     return [np.array([float(r[name]) for r in part]) for name in names]
+
+
+def label_of(unit: str) -> str:
+    """What stands at an axis of readings in this unit."""
+    name = {"N": "force", "m/s": "velocity", "m/s2": "acceleration"}.get(unit, "reading")
+    return f"{name} ({unit.replace('s2', 's²')})"
 
 
 def _signal(axes, part, text):
@@ -90,7 +97,7 @@ def _signal(axes, part, text):
     axes.plot(time, measured, ".", color=GREY, ms=1.0, label="measured", rasterized=True)
     axes.plot(time, nominal, color=ORANGE, lw=0.9, ls=(0, (3.5, 1.2)), label="nominal")
     axes.plot(time, extended, color=BLUE, lw=0.9, label="extended")
-    axes.set_ylabel("force (N)")
+    axes.set_ylabel(label_of(part[0].get("unit", "N")))
     axes.set_xlim(time[0], time[-1])
     axes.set_xticklabels([])
     axes.text(0.02, 0.9, text, transform=axes.transAxes, ha="left", va="top", fontsize=7)

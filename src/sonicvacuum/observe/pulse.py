@@ -99,6 +99,21 @@ def pulses(
     return tuple(p for p in found if p.force >= threshold * main.force and (p.time < until or p is main))
 
 
+def highest(trace: Trace, main: Pulse, start: float, end: float) -> Pulse:
+    """The highest peak between two times in s; absent where it is below `PROMINENCE` × the main one."""
+    first = max(0, int((start - trace.start) / trace.interval) + 1)
+    window = trace.force[first : int((end - trace.start) / trace.interval) + 1]
+    if len(window) < 3:
+        return _no_pulse("truncated: the record ends before it")
+    peak = int(window.argmax())
+    height = float(window[peak])
+    if peak == 0 or not height > drop_of(trace, main, PROMINENCE):
+        return _no_pulse("absent: no peak stands out there")
+    if first + peak >= len(trace.force) - 2:
+        return _no_pulse("truncated: the record ends before the force falls from its peak")
+    return _fitted(trace, first + peak, first + peak, height)
+
+
 def _no_pulse(reason):
     return Pulse(math.nan, math.nan, reason=reason)
 

@@ -48,7 +48,7 @@ def measure(
 
     Args:
         quantity: a key of `QUANTITIES` whose `over` is "run".
-        readings: for each gauge its reading in N, change from rest, (S,), or (S, L) for L runs.
+        readings: for each gauge its reading in its unit, change from rest, (S,), or (S, L) for L runs.
         time: (S,) equidistant times in s.
         geometry: where the gauges sit.
         options: what the quantity needs and allows (`from_` or **{"from": …}); `noise`, `floor`,
@@ -106,7 +106,7 @@ def speed(run: Run, from_: str, to: str) -> Measured:
 
 
 def amplitude(run: Run, sensor: str) -> Measured:
-    """Peak of the main pulse above rest, in N."""
+    """Peak of the main pulse above rest, in the unit of the gauge."""
     main = run.main(sensor)
     return Measured(main.force, main.reason)
 
@@ -178,6 +178,18 @@ def reflection_time(run: Run, sensor: str) -> Measured:
     return run.reflection_time(sensor)
 
 
+def echo_delay(run: Run, sensor: str) -> Measured:
+    """Time from the peak of the incident pulse to that of the pulse which the wall sends back, in s."""
+    echo = run.echo(sensor)
+    return Measured(echo.time - run.main(sensor).time, echo.reason)
+
+
+def echo_ratio(run: Run, sensor: str) -> Measured:
+    """Amplitude of the pulse which the wall sends back over that of the incident one."""
+    echo = run.echo(sensor)
+    return Measured(echo.force / run.main(sensor).force, echo.reason)
+
+
 def _before_reflection(run, sensor, function, **options):
     main = run.main(sensor)
     if not main.found:
@@ -206,6 +218,8 @@ QUANTITIES = {
     "extra_pulse_fraction": Quantity(extra_pulse_fraction, "1", ("sensor",)),
     "asymmetry": Quantity(asymmetry, "1", ("sensor",)),
     "reflection_time": Quantity(reflection_time, "s", ("sensor",)),
+    "echo_delay": Quantity(echo_delay, "s", ("sensor",)),
+    "echo_ratio": Quantity(echo_ratio, "1", ("sensor",)),
     "speed_at_amplitude": Quantity(sweep.speed_at_amplitude, "m/s", ("amplitude", "sensor"), "sweep"),
     "loglog_slope": Quantity(sweep.loglog_slope, "1", ("from", "to", "sensor"), "sweep"),
     "max_compression": Quantity(contacts.max_compression, "m", ("contact",), "contact"),

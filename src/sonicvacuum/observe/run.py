@@ -11,13 +11,13 @@ A gauge near the wall sees the incident pulse and its reflection. Two rules keep
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from sonicvacuum.gauges import Gauge, position
 from sonicvacuum.laboratory.bodies import Bodies
-from sonicvacuum.observe.pulse import Pulse, main_pulse
-from sonicvacuum.observe.sensor import Sensor, position
+from sonicvacuum.observe.pulse import Pulse, highest, main_pulse
 from sonicvacuum.observe.shape import onset
 from sonicvacuum.observe.trace import Measured, Trace, grid, missing
 
@@ -40,7 +40,7 @@ class Geometry:
 
     beads: int
     diameter_m: Bodies | float
-    sensors: tuple[Sensor, ...]
+    sensors: tuple[Gauge, ...]
 
     def __post_init__(self):
         for diameter in self._diameters.kinds:
@@ -58,7 +58,7 @@ class Geometry:
     def _diameters(self):
         return self.diameter_m if isinstance(self.diameter_m, Bodies) else Bodies((self.diameter_m,))
 
-    def sensor(self, id: str) -> Sensor:
+    def sensor(self, id: str) -> Gauge:
         """The gauge of this name; ValueError when there is none."""
         for sensor in self.sensors:
             if sensor.id == id:
@@ -147,11 +147,34 @@ class Run:
         """
         return self._once("reflection", sensor, self._reflection)
 
+    def echo(self, sensor: str) -> Pulse:
+        """The pulse that the wall sends back, as a gauge inside the chain sees it after the incident one.
+
+        It is the highest peak from `SAFETY` of the way to the time at which it is expected until as much of
+        the way to the top and back. Forces come back as they went, motions with the other sign
+        (`gauges.Kind.echo`); the pulse has the height of the incident one's sign.
+        """
+        return self._once("echo", sensor, self._echo)
+
     def free_until(self, sensor: str) -> float:
         """Time in s until which pulses count: `safety` of the way to the reflection, or no end if unknown."""
         back = self.reflection_time(sensor)
         start = self.main(sensor).time
         return start + self.safety * (back.value - start) if back.known else math.inf
+
+    def _echo(self, sensor):
+        main, back = self.main(sensor), self.reflection_time(sensor)
+        here = self.geometry.position(sensor)
+        if here == 0.0:
+            return Pulse(math.nan, math.nan, reason="overlapped: at the wall the two are one pulse")
+        if not back.known:
+            return Pulse(math.nan, math.nan, reason=back.reason)
+        above = self.geometry.length - here
+        way = back.value - main.time
+        end = back.value + self.safety * max(way * above / here, 0.5 * way)
+        trace = self.trace(sensor)
+        seen = replace(trace, force=self.geometry.sensor(sensor).what.echo * trace.force)
+        return highest(seen, main, self.free_until(sensor), end)
 
     def _once(self, what, sensor, find):
         key = (what, sensor)
@@ -176,7 +199,7 @@ class Run:
 
     def _main(self, sensor):
         first = self.first(sensor)
-        if self.accept_overlap or not first.found or self.geometry.sensor(sensor).kind == "wall":
+        if self.accept_overlap or not first.found or self.geometry.position(sensor) == 0.0:
             return first
         if self._overlapped(sensor, first):
             return Pulse(math.nan, math.nan, reason="overlapped: the wall's reflection lies on the pulse")
@@ -208,9 +231,9 @@ class Run:
     def _way_to_the_wall(self, sensor, main):
         """Travel time in s from a gauge to the wall, from the wall to the top for a gauge at the wall."""
         geometry, wall = self.geometry, self._wall_arrival()
-        if geometry.sensor(sensor).kind == "embedded" and wall is not None:
-            return wall - main.time
         here = geometry.position(sensor)
+        if here > 0.0 and wall is not None:
+            return wall - main.time
         apart = {s.id: geometry.position(s.id) - here for s in geometry.sensors if s.id in self.readings}
         apart = {s: x for s, x in apart.items() if x != 0.0 and self.main(s).found}
         if not apart:

@@ -52,8 +52,8 @@ class Trace:
     Attributes:
         start: time of the first sample in s.
         interval: time between samples in s.
-        force: (S,) reading in N, change from rest.
-        noise: standard deviation of one sample in N, 0 for a simulated signal.
+        force: (S,) reading, change from rest: N, or the unit of the gauge that it comes from.
+        noise: standard deviation of one sample in the same unit, 0 for a simulated signal.
     """
 
     start: float

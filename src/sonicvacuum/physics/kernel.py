@@ -11,20 +11,15 @@ Two explicit steppers share the force laws (`compose`), which decide between the
 * Runge–Kutta in low storage, for laws with rates or memory.
 
 Every chain has its own step: a result does not depend on the chains that are computed along with it.
-Samples fall between steps: the compression of each recorded contact is interpolated by the cubic
-Hermite polynomial of its values and rates at both ends of the step, and the law gives the force.
+Samples fall between steps: see `sampling`.
 """
 
-from typing import NamedTuple
-
-import numpy as np
 from numba import njit
 from numba.extending import overload
 
 from sonicvacuum.physics.compose import (
     COMPILED_ONLY,
     advance_memory,
-    blend_memory,
     body_acceleration,
     follow_path,
     keep_memory,
@@ -33,13 +28,25 @@ from sonicvacuum.physics.compose import (
     stored_energy,
 )
 from sonicvacuum.physics.lanes import absolute, select
+from sonicvacuum.physics.sampling import (
+    DUE,
+    FINE_STEP,
+    FINE_UNTIL,
+    LAST,
+    STEP,
+    THRESHOLD,
+    WEIGHT,
+    Recorder,
+    emit,
+    note,
+    note_motion,
+)
 from sonicvacuum.physics.table import (
     INLINED,
     INVERSE_MASS,
     OPTIONS,
     U,
     V,
-    first_blend,
     first_increment,
     first_memory,
     get,
@@ -52,9 +59,6 @@ from sonicvacuum.physics.table import (
 
 # Bodies that are switched on together, ahead of the wave.
 MARGIN = 4
-# Rows of a group's clock: what each chain needs besides its bodies.
-FINE_STEP, STEP, FINE_UNTIL, LAST, WEIGHT, THRESHOLD, TOLERANCE, DUE = range(8)
-CLOCK_ROWS = 8
 # Entries of a group's status: bodies stepped, entries of the balance, whether the wave ran out of the table.
 STEPPED, BALANCED, RAN_OUT = range(3)
 
@@ -143,64 +147,6 @@ def _choose_step(c, table, first, beyond, weight, factors, gains, step, pending)
     return stepper.py_func
 
 
-class Recorder(NamedTuple):
-    """What it takes to write the samples of one group; see `advance` for the arrays."""
-
-    interval: float
-    contacts: np.ndarray
-    clock: np.ndarray
-    cursor: np.ndarray
-    chains: np.ndarray
-    scratch: np.ndarray
-    out: np.ndarray
-
-
-@_inlined
-def _note(c, table, first, contacts, pending, ends):
-    """Keep approach and rate of the recorded contacts, positions being `pending` seconds of drift behind."""
-    for r in range(len(contacts)):
-        body = first + contacts[r]
-        speed = get(c, table, body, V)
-        ahead = get(c, table, body + 1, V)
-        rate = speed - ahead
-        store(c, ends, 2 * r, get(c, table, body, U) - get(c, table, body + 1, U) + pending * rate)
-        store(c, ends, 2 * r + 1, rate)
-
-
-@_inlined
-def _sample(c, table, body, start, end, r, step, fraction):
-    """Force of a recorded contact at a fraction of the step; its approach by cubic Hermite interpolation."""
-    x = load(c, start, 2 * r)
-    v = step * load(c, start, 2 * r + 1)
-    w = step * load(c, end, 2 * r + 1)
-    gap = load(c, end, 2 * r) - x
-    square = 3.0 * gap - 2.0 * v - w
-    cube = v + w - 2.0 * gap
-    approach = x + fraction * (v + fraction * (square + fraction * cube))
-    rate = (v + fraction * (2.0 * square + 3.0 * fraction * cube)) / step
-    blend_memory(c, table, body, fraction, approach, rate)
-    return push(c, table, body, approach, rate, first_blend(c))
-
-
-@_inlined
-def _emit(c, table, first, recorder, start, end, before, time, step):
-    """Write the samples that fall between `before` and `time`, chain by chain at its own moments."""
-    interval, contacts, clock, cursor, chains, scratch, out = recorder
-    store(c, scratch, 0, time)
-    while is_any_positive(time - load(c, clock, DUE)):
-        fraction = (load(c, clock, DUE) + load(c, clock, TOLERANCE) - before) / step
-        for r in range(len(contacts)):
-            store(c, scratch, 1, _sample(c, table, first + contacts[r], start, end, r, step, fraction))
-            for k in range(len(cursor)):
-                if clock[DUE, k] < scratch[0, k]:
-                    out[chains[k], r, cursor[k]] = scratch[1, k]
-        for k in range(len(cursor)):
-            if clock[DUE, k] < scratch[0, k]:
-                cursor[k] += 1
-                due = cursor[k] * interval - clock[TOLERANCE, k]
-                clock[DUE, k] = due if cursor[k] < out.shape[2] else np.inf
-
-
 def _audit(c, table, first, beyond, weight, impulse, pending, time, balance, status):
     """Keep total energy, and total momentum less all impulses received: both must stay constant."""
     raise TypeError(COMPILED_ONLY)
@@ -267,12 +213,14 @@ def _advance_group(
             for r in range(len(contacts)):
                 keep_memory(c, table, first + contacts[r])
         if sampled and not noted:
-            _note(c, table, first, contacts, pending, start)
+            note(c, table, first, contacts, pending, start)
+            note_motion(c, table, first, recorder, start)
         impulse = impulse + _step(c, table, first, beyond, weight, factors, gains, step, pending)
         pending = pending_part * step
         if sampled:
-            _note(c, table, first, contacts, pending, end)
-            _emit(c, table, first, recorder, start, end, before, time, step)
+            note(c, table, first, contacts, pending, end)
+            note_motion(c, table, first, recorder, end)
+            emit(c, table, first, recorder, start, end, before, time, step)
             start, end = end, start
         noted = sampled
         count += 1
@@ -290,6 +238,7 @@ def advance(
     second,
     interval,
     contacts,
+    watched,
     table,
     extendable,
     clock,
@@ -310,6 +259,7 @@ def advance(
         first, second: coefficients of the `Method`.
         interval: time between samples in s.
         contacts: (R,) contacts whose force is recorded.
+        watched: (B, 3) bodies whose motion is recorded: BODY, BEFORE and BEHIND of each.
         table: (groups, bodies + 1, columns, L) bodies, see `compose`; final state on return.
         extendable: whether further bodies exist beyond the table; then a group stops as the wave gets there.
         clock: (groups, CLOCK_ROWS, L) steps in s before and after the time FINE_UNTIL, moment of the last
@@ -317,8 +267,9 @@ def advance(
             TOLERANCE of a sample's moment, moment of the next sample less TOLERANCE.
         cursor: (groups, L) next sample.
         chains: (groups, L) position of each chain in `out`.
-        work: (3, 2 R + 2, L) work space.
-        out: (chains, R, samples) forces in N beyond the static ones.
+        work: (3, 2 R + 2 B + 3, L) work space.
+        out: (chains, R + 2 B, samples) forces in N beyond the static ones, then of each body the velocity in
+            m/s and the acceleration in m/s².
         every: steps between entries of the balance.
         balance: (groups, entries, 2, L) total energy in J and momentum less received impulses in N s.
         status: (groups, 3) see STEPPED, BALANCED and RAN_OUT.
@@ -326,7 +277,7 @@ def advance(
     """
     bodies = table.shape[1] - 1
     for g in range(begin, end):
-        recorder = Recorder(interval, contacts, clock[g], cursor[g], chains[g], work[0], out)
+        recorder = Recorder(interval, contacts, watched, clock[g], cursor[g], chains[g], work[0], out)
         first_row = g * (bodies + 1)
         _advance_group(
             c,

@@ -1,4 +1,4 @@
-"""From a batch of chains to contact forces in time: the one way into the compiled stepper.
+"""From a batch of chains to contact forces and motions in time: the one way into the compiled stepper.
 
 Chooses each chain's step, deals chains into groups of lanes, steps only as many beads as the wave
 reaches, and keeps the audit (energy and momentum balance).
@@ -7,11 +7,11 @@ reaches, and keeps the audit (energy and momentum balance).
 import math
 import os
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from sonicvacuum.physics import kernel
+from sonicvacuum.physics import kernel, sampling
 from sonicvacuum.physics.chain import Chain
 from sonicvacuum.physics.compiled import cached, prepare
 from sonicvacuum.physics.lanes import LANES
@@ -37,13 +37,16 @@ class History:
 
     Attributes:
         time: (samples,) s, from the moment of impact.
-        contacts: recorded contacts.
+        contacts: recorded contacts: those asked for, and both contacts of each recorded body.
         force: (samples, contacts, lanes) N, without the static part.
         energy: (entries, lanes) total energy in J every so many steps, empty without audit or where the
             law stores no simple energy.
         momentum: (entries, lanes) total momentum less all impulses received (wall, weight), N s.
         striker_speed: (lanes,) speed of the striker at the end in m/s.
         step: (lanes,) step in s after the impact phase.
+        bodies: bodies whose motion was recorded, the striker being 0.
+        velocity: (samples, bodies, lanes) m/s, positive towards the wall.
+        acceleration: (samples, bodies, lanes) m/s²: all forces on the body at that moment over its mass.
     """
 
     time: np.ndarray
@@ -53,10 +56,49 @@ class History:
     momentum: np.ndarray
     striker_speed: np.ndarray
     step: np.ndarray
+    bodies: tuple[int, ...] = ()
+    velocity: np.ndarray = field(default_factory=lambda: np.zeros((0, 0, 0)))
+    acceleration: np.ndarray = field(default_factory=lambda: np.zeros((0, 0, 0)))
 
     def of(self, contact: int) -> np.ndarray:
         """(samples, lanes) force of one contact in N."""
         return self.force[:, self.contacts.index(contact)]
+
+    def velocity_of(self, body: int) -> np.ndarray:
+        """(samples, lanes) velocity of one body in m/s."""
+        return self.velocity[:, self.bodies.index(body)]
+
+    def acceleration_of(self, body: int) -> np.ndarray:
+        """(samples, lanes) acceleration of one body in m/s²."""
+        return self.acceleration[:, self.bodies.index(body)]
+
+    def take(self, lanes) -> "History":
+        """The history of some of the chains, by their places or a slice; without the balance."""
+        parts = (self.force, self.velocity, self.acceleration)
+        force, velocity, acceleration = (p[..., lanes] if p.size else p for p in parts)
+        return replace(
+            self,
+            force=force,
+            velocity=velocity,
+            acceleration=acceleration,
+            energy=self.energy[:0],
+            momentum=self.momentum[:0],
+            striker_speed=self.striker_speed[lanes],
+            step=self.step[lanes],
+        )
+
+    def without_numbers(self) -> "History":
+        """The same with NaN for all forces and motions: what a motion that does not stay finite leaves."""
+        lost = {n: np.full_like(getattr(self, n), np.nan) for n in ("force", "velocity", "acceleration")}
+        return replace(self, **lost)
+
+    @staticmethod
+    def side_by_side(parts) -> "History":
+        """Histories of the same times, contacts and bodies as one, their lanes one after the other."""
+        joined = ("force", "velocity", "acceleration", "striker_speed", "step")
+        return replace(
+            parts[0], **{n: np.concatenate([getattr(p, n) for p in parts], axis=-1) for n in joined}
+        )
 
 
 def simulate(
@@ -65,6 +107,7 @@ def simulate(
     duration: float,
     interval: float,
     *,
+    bodies=(),
     step: float | None = None,
     refine: float = 1.0,
     method: str = "blanes-moan",
@@ -82,6 +125,7 @@ def simulate(
         contacts: those whose force is recorded; contact c joins body c and c + 1, the striker being body 0.
         duration: s.
         interval: time between samples in s; independent of the step.
+        bodies: those whose velocity and acceleration are recorded, the striker being 0.
         step: step in s for all chains and times; None: chosen for each chain, see `steps`.
         refine: divides the chosen step; 2 gives the halved step of an error estimate.
         method: "blanes-moan" (order 4) or "verlet" (order 2), for laws that depend on positions alone.
@@ -90,26 +134,38 @@ def simulate(
         threads: groups run on so many threads.
 
     Raises:
-        ValueError: for a contact or method that does not exist, a duration, interval, step or refinement
-            that is not positive, or no thread.
+        ValueError: for a contact, body or method that does not exist, a duration, interval, step or
+            refinement that is not positive, or no thread.
         FloatingPointError: when the motion ceases to be finite.
     """
-    contacts = tuple(int(c) for c in contacts)
-    _check_request(chain, contacts, duration, interval, step, refine, method, threads)
+    bodies = tuple(int(b) for b in bodies)
+    contacts = _with_neighbours(tuple(int(c) for c in contacts), bodies)
+    _check_request(chain, contacts, bodies, duration, interval, step, refine, method, threads)
     laws = chain.laws(symplectic)
     scheme = METHODS[method] if laws.splits else CARPENTER_KENNEDY
     samples = int(np.floor(duration / interval * (1.0 + 1e-12))) + 1
-    bodies = chain.beads + 1
-    reachable = min(bodies, reachable_bodies(chain, duration))
+    every = chain.beads + 1
+    reachable = min(every, reachable_bodies(chain, duration))
     while True:
-        batch = _Batch(chain, laws, reachable, contacts, samples, interval, step, refine, audit)
+        batch = _Batch(chain, laws, reachable, contacts, bodies, samples, interval, step, refine, audit)
         batch.run(scheme, threads)
         if not batch.status[:, kernel.RAN_OUT].any():
             return batch.history()
-        reachable = min(bodies, 2 * reachable)
+        reachable = min(every, 2 * reachable)
 
 
-def _check_request(chain, contacts, duration, interval, step, refine, method, threads):
+def _with_neighbours(contacts, bodies):
+    """The contacts asked for, then those of the bodies that are not among them."""
+    needed = {c for b in bodies for c in (b - 1, b) if c >= 0}
+    return (*contacts, *sorted(needed - set(contacts)))
+
+
+def _check_request(chain, contacts, bodies, duration, interval, step, refine, method, threads):
+    for b in bodies:
+        if not 0 <= b <= chain.beads:
+            raise ValueError(
+                f"body {b} does not exist; a chain of {chain.beads} beads has 0 to {chain.beads}"
+            )
     for c in contacts:
         if not 0 <= c <= chain.beads:
             raise ValueError(
@@ -147,14 +203,15 @@ def _deal(cost):
 class _Batch:
     """The arrays of one call of the stepper: group first, lane last."""
 
-    def __init__(self, chain, laws, bodies, contacts, samples, interval, step, refine, audit):
+    def __init__(self, chain, laws, bodies, contacts, watched, samples, interval, step, refine, audit):
         self.chain, self.laws, self.bodies = chain, laws, bodies
         self.wanted, self.samples, self.interval = contacts, samples, interval
         self.recorded = [c for c in contacts if c < bodies]
+        self.watched, self.moving = watched, [b for b in watched if b < bodies]
         coefficients, mass = chain.coefficients(laws, bodies), chain.masses(bodies)
         self._choose_steps(coefficients, mass, step, refine)
         self.dealt = _deal(self.steps)
-        self.composition = Composition(laws, self.dealt.shape[1], audit)
+        self.composition = Composition(laws, self.dealt.shape[1], audit, bool(watched))
         self._fill_table(coefficients, mass)
         self._set_clock()
         self._make_room(audit)
@@ -192,24 +249,29 @@ class _Batch:
 
     def _set_clock(self):
         tolerance = COINCIDENCE * self.late
-        clock = self.clock = _zeros(len(self.dealt), kernel.CLOCK_ROWS, self.dealt.shape[1])
+        clock = self.clock = _zeros(len(self.dealt), sampling.CLOCK_ROWS, self.dealt.shape[1])
         for row, values in (
-            (kernel.FINE_STEP, self.fine),
-            (kernel.STEP, self.late),
-            (kernel.FINE_UNTIL, self.until),
-            (kernel.LAST, (self.samples - 1) * self.interval - tolerance),
-            (kernel.WEIGHT, self.chain.striker_mass * self.chain.gravity),
-            (kernel.THRESHOLD, FRONT * self.chain.speed),
-            (kernel.TOLERANCE, tolerance),
-            (kernel.DUE, self.interval - tolerance),
+            (sampling.FINE_STEP, self.fine),
+            (sampling.STEP, self.late),
+            (sampling.FINE_UNTIL, self.until),
+            (sampling.LAST, (self.samples - 1) * self.interval - tolerance),
+            (sampling.WEIGHT, self.chain.striker_mass * self.chain.gravity),
+            (sampling.THRESHOLD, FRONT * self.chain.speed),
+            (sampling.TOLERANCE, tolerance),
+            (sampling.DUE, self.interval - tolerance),
         ):
             clock[:, row] = values[self.dealt]
 
     def _make_room(self, audit):
         groups, width = self.dealt.shape
         self.cursor = np.ones((groups, width), dtype=np.int64)
-        self.out = np.empty((self.chain.lanes, len(self.recorded), self.samples))
+        rows = len(self.recorded) + 2 * len(self.moving)
+        self.out = np.empty((self.chain.lanes, rows, self.samples))
         self.out[:, :, 0] = 0.0
+        for b, body in enumerate(self.moving):
+            if body == 0:
+                self.out[:, len(self.recorded) + 2 * b, 0] = self.chain.speed
+                self.out[:, len(self.recorded) + 2 * b + 1, 0] = self.chain.gravity
         self.status = np.zeros((groups, 3), dtype=np.int64)
         count = int(self.steps.max()) + 2
         self.every = max(1, count // AUDIT_ENTRIES) if audit else 0
@@ -220,16 +282,20 @@ class _Batch:
         """Integrate all groups, each thread a share at a time."""
         groups, width = self.dealt.shape
         contacts = np.array(self.recorded, dtype=np.int64)
+        row = {c: r for r, c in enumerate(self.recorded)}
+        places = [(b, row.get(b - 1, -1), row[b]) for b in self.moving]
+        watched = np.array(places, dtype=np.int64).reshape(-1, 3)
         extendable = self.bodies <= self.chain.beads
 
         def share(begin, end):
-            work = _zeros(3, 2 * len(contacts) + 2, width)
+            work = _zeros(3, 2 * len(contacts) + 2 * len(watched) + 3, width)
             return (
                 self.composition,
                 scheme.first,
                 scheme.second,
                 self.interval,
                 contacts,
+                watched,
                 self.table,
                 extendable,
                 self.clock,
@@ -270,11 +336,11 @@ class _Batch:
         return collected
 
     def history(self):
-        """The results in the chains' own order, contacts that the wave never reached at zero."""
-        force = self.out
-        if len(self.recorded) < len(self.wanted):
-            force = np.zeros((self.chain.lanes, len(self.wanted), self.samples))
-            force[:, [c < self.bodies for c in self.wanted]] = self.out
+        """The results in the chains' own order, what the wave never reached at zero."""
+        count = len(self.recorded)
+        force = self._complete(self.out[:, :count], self.wanted)
+        velocity = self._complete(self.out[:, count::2], self.watched)
+        acceleration = self._complete(self.out[:, count + 1 :: 2], self.watched)
         entries = int(self.status[:, kernel.BALANCED].min())
         balance = self._collect(self.balance[:, :entries]) if entries else np.empty((0, 2, self.chain.lanes))
         return History(
@@ -285,7 +351,18 @@ class _Batch:
             momentum=balance[:, 1],
             striker_speed=self._collect(self.table[:, 0, V]),
             step=self.late,
+            bodies=self.watched,
+            velocity=velocity.transpose(2, 1, 0),
+            acceleration=acceleration.transpose(2, 1, 0),
         )
+
+    def _complete(self, found, wanted):
+        """(lanes, wanted, samples) of contacts or bodies from those that were stepped, the others at zero."""
+        if found.shape[1] == len(wanted):
+            return found
+        whole = np.zeros((self.chain.lanes, len(wanted), self.samples))
+        whole[:, [w < self.bodies for w in wanted]] = found
+        return whole
 
 
 def available_threads() -> int:

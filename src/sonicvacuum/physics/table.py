@@ -8,7 +8,7 @@ an array (groups, bodies + 1, columns, lanes) whose last body is the wall, alway
     coefficients, memory        of the law set
     increments, old, blend, turn  work space of the Runge–Kutta stepper and of its samples between steps
 
-A `Composition` (law set, lanes, audit) is part of the type that Numba compiles for. It knows the
+A `Composition` (law set, lanes, audit, motion) is part of the type that Numba compiles for. It knows the
 columns, so that all addresses are constants of the compiled code.
 """
 
@@ -38,16 +38,19 @@ class Composition:
         laws: all terms that act.
         width: chains stepped together, 1 or `LANES`.
         audited: whether the energy and momentum balance is kept.
+        watched: whether the motion of bodies is recorded.
     """
 
     laws: LawSet
     width: int
     audited: bool = False
+    watched: bool = False
 
     @cached_property
     def name(self) -> str:
         """Key of the compiled code."""
-        return f"{self.laws.name}x{self.width}{'+audit' if self.audited else ''}"
+        extras = f"{'+audit' if self.audited else ''}{'+motion' if self.watched else ''}"
+        return f"{self.laws.name}x{self.width}{extras}"
 
     @property
     def first_coefficient(self) -> int:

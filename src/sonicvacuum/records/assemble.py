@@ -15,6 +15,8 @@ from sonicvacuum.records.record import Record, Run
 
 # Simulated beyond the last instant asked for, in standard errors of the trigger: shifts need no new run.
 TRIGGER_ROOM = 6.0
+# Quantities that need the reflection.
+REFLECTED = ("pulse_count", "echo_delay", "echo_ratio")
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,9 +49,9 @@ def chain_of(record: Record, runs: list[Run]) -> Chain:
 
 def duration_of(record: Record, runs: list[Run], chain: Chain) -> float:
     """Time in s to simulate: the runs' traces and room for the trigger, or what their scalars need."""
-    ends = [r.signals.time_s[-1] + TRIGGER_ROOM * record.trigger_sigma_s for r in runs if r.signals]
+    ends = [r.signals.time_s[-1] + TRIGGER_ROOM * record.trigger_width_s for r in runs if r.signals]
     if any(r.observables for r in runs):
-        counted = any(o.quantity == "pulse_count" for r in runs for o in r.observables)
+        counted = any(o.quantity in REFLECTED for r in runs for o in r.observables)
         ends.append(passage_of(chain, COUNTING if counted else CROSSINGS))
     return max(ends)
 

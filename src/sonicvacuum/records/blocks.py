@@ -9,6 +9,8 @@ from typing import Annotated, Any, Literal, get_args
 import msgspec
 from msgspec import Meta, field
 
+from sonicvacuum.card import GaugeKind
+from sonicvacuum.gauges import KINDS
 from sonicvacuum.laboratory.blocks import Block as _Block
 from sonicvacuum.laboratory.blocks import ChainBlock, MaterialBlock, StrikerBlock
 from sonicvacuum.laboratory.specimen import NonNegative, Positive
@@ -16,6 +18,8 @@ from sonicvacuum.laboratory.specimen import NonNegative, Positive
 # Names of gauges and runs: they become column headings and file names.
 Id = Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9_.+-]*$")]
 FileName = Annotated[str, Meta(pattern=r"^[^/\\.][^/\\]*$")]
+# An error that is not known at all: the gain of an uncalibrated gauge, the time zero of a free-running clock.
+Unknown = Literal["unknown"]
 Fraction = Annotated[float, Meta(gt=0.0, lt=1.0)]
 
 
@@ -40,14 +44,39 @@ class RecordChainBlock(ChainBlock, kw_only=True):
     beads: Annotated[int, Meta(ge=0)]
 
 
-class RecordSensorBlock(_Block, kw_only=True):
-    """A gauge: white noise of one sample in N, relative standard error of its gain."""
-
+class _SensorBlock(_Block, kw_only=True):
     id: Id
-    kind: Literal["embedded", "wall"]
+    kind: GaugeKind
     bead: Annotated[int, Meta(ge=1)] | None = None
-    sigma_N: NonNegative = 0.0
-    gain_rel_sigma: NonNegative = 0.0
+    gain_rel_sigma: NonNegative | Unknown = 0.0
+    delay_sigma_us: NonNegative = 0.0
+
+
+# Keys whose unit is that of the gauge's kind: white noise of one sample (left out: estimated from the quiet
+# stretch), standard errors of a constant offset and of a slow drift.
+SCALED = ("sigma", "baseline_sigma", "drift_sigma")
+SUFFIXES = tuple(dict.fromkeys(kind.suffix for kind in KINDS.values()))
+RecordSensorBlock = msgspec.defstruct(
+    "RecordSensorBlock",
+    [(f"{key}_{suffix}", NonNegative | None, None) for suffix in SUFFIXES for key in SCALED],
+    bases=(_SensorBlock,),
+    module=__name__,
+    namespace={"__doc__": "A gauge: its kind and place, its noise, and how well its channel is known."},
+    frozen=True,
+    kw_only=True,
+    forbid_unknown_fields=True,
+    omit_defaults=True,
+)
+
+
+class TolerancesBlock(_Block, kw_only=True):
+    """One standard error each, relative, of what all bodies, all runs or all gauges share; 0: exact."""
+
+    bead_mass_rel: NonNegative | None = None
+    bead_diameter_rel: NonNegative | None = None
+    striker_mass_rel: NonNegative | None = None
+    speed_common_rel: NonNegative | None = None
+    gain_common_rel: NonNegative | None = None
 
 
 class RecordStrikerBlock(StrikerBlock, kw_only=True):
@@ -73,10 +102,10 @@ class SpeedBlock(_Observable, tag="speed", kw_only=True):
 
 
 class AmplitudeBlock(_Observable, tag="amplitude", kw_only=True):
-    """Peak of the main pulse above rest."""
+    """Peak of the main pulse above rest, in the unit of the gauge."""
 
     sensor: Id
-    unit: Literal["N"]
+    unit: Literal[tuple(dict.fromkeys(kind.unit for kind in KINDS.values()))]
 
 
 class DurationBlock(_Observable, tag="duration", kw_only=True):
@@ -113,6 +142,20 @@ class DecayBlock(_Observable, tag="decay", kw_only=True):
     unit: Literal["1", 1]
 
 
+class EchoDelayBlock(_Observable, tag="echo_delay", kw_only=True):
+    """Time from the incident pulse's peak to that of the pulse reflected by the wall."""
+
+    sensor: Id
+    unit: Literal["us"]
+
+
+class EchoRatioBlock(_Observable, tag="echo_ratio", kw_only=True):
+    """Amplitude of the pulse reflected by the wall over that of the incident one."""
+
+    sensor: Id
+    unit: Literal["1", 1]
+
+
 class SpeedAtAmplitudeBlock(_Observable, tag="speed_at_amplitude", kw_only=True):
     """Speed of a solitary wave whose peak at the sensor is amplitude_N, whatever the striker."""
 
@@ -140,6 +183,8 @@ ObservableBlock = (
     | WidthBlock
     | PulseCountBlock
     | DecayBlock
+    | EchoDelayBlock
+    | EchoRatioBlock
     | SpeedAtAmplitudeBlock
     | RestitutionBlock
     | ContactDurationBlock
@@ -148,6 +193,8 @@ ObservableBlock = (
 # quantity → its class, and the unit in which a record gives it
 OBSERVABLES = {kind.__struct_config__.tag: kind for kind in get_args(ObservableBlock)}
 UNITS = {q: get_args(kind.__annotations__["unit"])[0] for q, kind in OBSERVABLES.items()}
+# An amplitude is given in the unit of its gauge.
+AMPLITUDES = tuple(dict.fromkeys(kind.unit for kind in KINDS.values()))
 # What one ball on a wall can tell.
 BALL_QUANTITIES = ("restitution", "contact_duration")
 
@@ -170,7 +217,11 @@ class RecordBlock(_Block, kw_only=True):
     chain: RecordChainBlock
     materials: dict[str, RecordMaterialBlock] = field(default_factory=dict)
     sensors: list[RecordSensorBlock] = field(default_factory=list)
-    trigger_sigma_us: NonNegative = 0.0
+    trigger_sigma_us: NonNegative | Unknown = 0.0
+    clock_rel_sigma: NonNegative = 0.0
+    tolerances: TolerancesBlock = TolerancesBlock()
+    model_floor_rel: NonNegative | None = None
+    priors: dict[str, NonNegative] = field(default_factory=dict)
     runs: Annotated[list[RunBlock], Meta(min_length=1)]
 
 

@@ -5,11 +5,12 @@ from itertools import pairwise
 
 import numpy as np
 
+from sonicvacuum.gauges import Gauge, position
 from sonicvacuum.observe.pulse import main_pulse
 from sonicvacuum.physics.scales import impact_scales
 from sonicvacuum.records.assemble import assemble
 from sonicvacuum.records.reader import read
-from sonicvacuum.records.record import Gauge, Record, Run
+from sonicvacuum.records.record import Record, Run
 
 # Samples per contact time below which pulses are poorly resolved.
 FEW_SAMPLES = 8
@@ -42,7 +43,7 @@ def warnings(record: Record) -> list[str]:
 
 
 def noise_at_rest(run: Run, gauge: Gauge) -> tuple[float, float, int]:
-    """Mean and standard deviation in N of a trace before the pulse arrives, and the number of samples."""
+    """Mean and standard deviation of a trace before the pulse arrives, and the number of samples."""
     force = run.signals.readings[gauge.id]
     above = np.abs(force) > max(ONSET * gauge.sigma, 0.05 * float(np.abs(force).max()))
     quiet = force[: int(QUIET * (above.argmax() if above.any() else len(force)))]
@@ -101,6 +102,8 @@ def _traces(record, run, contact):
         yield f"{name}: starts {signals.start_s * 1e6:.3g} us after the impact"
     peaks = {}
     for gauge in record.gauges:
+        if gauge.id not in signals.readings:
+            continue
         yield from _trace(run, gauge, f"{name}, {gauge.id}")
         pulse = main_pulse(signals.trace(gauge.id, gauge.sigma))
         if pulse.found:
@@ -114,22 +117,23 @@ def _trace(run, gauge, name):
     force = run.signals.readings[gauge.id]
     top, bottom = float(force.max()), float(force.min())
     if top < WEAK * gauge.sigma:
-        yield f"{name}: the peak, {top:.3g} N, is only {top / gauge.sigma:.2g} times the noise"
-    if -bottom > max(top, ONSET * gauge.sigma):
+        yield f"{name}: the peak, {top:.3g} {gauge.unit}, is only {top / gauge.sigma:.2g} times the noise"
+    if gauge.unit == "N" and -bottom > max(top, ONSET * gauge.sigma):
         yield (
             f"{name}: swings further down ({bottom:.3g} N) than up; positive force means compression: is the "
             "sign right?"
         )
     flat = _row(force == top)
     if top > WEAK * gauge.sigma and flat >= CLIPPED:
-        yield f"{name}: {flat} equal samples at the top, {top:.3g} N: the recorder seems to clip"
+        yield f"{name}: {flat} equal samples at the top, {top:.3g} {gauge.unit}: the recorder seems to clip"
     steps = np.unique(np.abs(np.diff(np.unique(force))))
     if (
         len(steps)
-        and gauge.sigma < 0.9 * float(steps[0]) / np.sqrt(12.0)
+        and 0.0 < gauge.sigma < 0.9 * float(steps[0]) / np.sqrt(12.0)
         and len(np.unique(force)) < len(force) / 2
     ):
-        yield f"{name}: values lie {steps[0]:.3g} N apart; sigma_N must be at least that over √12"
+        key = gauge.what.noise_key
+        yield f"{name}: values lie {steps[0]:.3g} {gauge.unit} apart; {key} must be at least that over √12"
     yield from _rest(run, gauge, name)
 
 
@@ -137,15 +141,16 @@ def _rest(run, gauge, name):
     mean, spread, samples = noise_at_rest(run, gauge)
     if samples < REST_SAMPLES:
         return
-    if not NOISE[0] * gauge.sigma <= spread <= NOISE[1] * gauge.sigma:
-        yield f"{name}: noise before the pulse is {spread:.2g} N, sigma_N says {gauge.sigma:g}"
-    if abs(mean) > max(gauge.sigma, 5.0 * spread / np.sqrt(samples)):
-        yield f"{name}: the trace rests at {mean:.2g} N before the pulse, not at 0"
+    if gauge.sigma and not NOISE[0] * gauge.sigma <= spread <= NOISE[1] * gauge.sigma:
+        stated = f"{gauge.what.noise_key} says {gauge.sigma:g}"
+        yield f"{name}: noise before the pulse is {spread:.2g} {gauge.unit}, {stated}"
+    if abs(mean) > max(gauge.sigma or spread, 5.0 * spread / np.sqrt(samples)):
+        yield f"{name}: the trace rests at {mean:.2g} {gauge.unit} before the pulse, not at 0"
 
 
 def _order(record, peaks, name):
     """Gauges must see the pulse in the order in which they stand behind the striker."""
-    place = {g.id: g.bead or record.beads + 1 for g in record.gauges}
+    place = {g.id: -position(g, record.beads, 1.0) for g in record.gauges}
     ids = sorted(peaks, key=lambda s: place[s])
     for near, far in pairwise(ids):
         if place[near] < place[far] and peaks[near] > peaks[far]:

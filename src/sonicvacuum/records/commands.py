@@ -86,8 +86,12 @@ def _run(record: Record, run: Run, block: RunBlock):
             f"{run.signals.start_s * 1e6:g} us"
         )
         for g in record.gauges:
+            if g.id not in run.signals.readings:
+                yield f"    {g.id}: not recorded in this run"
+                continue
             peak = float(run.signals.readings[g.id].max())
-            yield f"    {g.id}: peak {peak:.4g} N, {peak / g.sigma:.3g} times the noise"
+            noise = f"{peak / g.sigma:.3g} times the noise" if g.sigma else "noise not stated"
+            yield f"    {g.id}: peak {peak:.4g} {g.unit}, {noise}"
     for o, given in zip(run.observables, block.observables, strict=True):
         unit = "" if str(given.unit) == "1" else f" {given.unit}"
         yield f"    {o.label} = {given.value:g} ± {given.sigma:g}{unit}"

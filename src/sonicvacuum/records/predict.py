@@ -12,11 +12,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonicvacuum.effects.base import Setup
+from sonicvacuum.gauges import Gauge, Motion, needed, reading
 from sonicvacuum.observe.contacts import contact_duration, restitution
 from sonicvacuum.observe.quantities import measure_run
 from sonicvacuum.observe.run import Geometry
 from sonicvacuum.observe.run import Run as Passage
-from sonicvacuum.observe.sensor import Sensor, contacts_needed, reading
 from sonicvacuum.observe.trace import Measured
 from sonicvacuum.physics.chain import Chain
 from sonicvacuum.physics.run import History, simulate
@@ -52,7 +52,7 @@ class Conditions:
         """What is simulated and what reads it."""
         ratio = np.broadcast_to(np.asarray(self.speed_ratio, dtype=float), (len(record.runs),))
         chain = replace(batch.chain, speed=batch.chain.speed * ratio[list(batch.runs)])
-        made = self.model(Setup(chain, record.sensors))
+        made = self.model(Setup(chain, record.gauges))
         gauges = tuple(replace(s, gain=s.gain * self.gain.get(s.id, 1.0)) for s in made.sensors)
         return replace(made, sensors=gauges)
 
@@ -62,7 +62,7 @@ class Prediction:
     """One run as predicted.
 
     Attributes:
-        readings: sensor id → (S,) N at the record's times; empty for a run without traces.
+        readings: sensor id → (S,) in the gauge's unit at the record's times; empty for a run without traces.
         observables: one for each observable of the run, SI; NaN with a reason where the model shows none.
     """
 
@@ -90,28 +90,27 @@ def predict(record: Record, conditions: Conditions | None = None) -> tuple[Predi
 def simulated(record: Record, batch: Batch, chain: Chain, refine: float = 1.0) -> History:
     """The batch's chains, integrated for as long and sampled as finely as its runs ask."""
     runs = [record.runs[k] for k in batch.runs]
-    contacts = contacts_needed((*record.sensors, *virtual(record)), record.beads) if record.beads else (0,)
+    contacts, bodies = needed((*record.gauges, *virtual(record)), record.beads)
     return simulate(
         chain,
         sorted({0, *contacts}),
         duration_of(record, runs, chain),
         interval_of(record, runs, chain),
+        bodies=bodies,
         refine=refine,
     )
 
 
-def readings_of(sensors: tuple[Sensor, ...], history: History, beads: int) -> dict[str, np.ndarray]:
-    """Sensor id → (S, lanes) reading in N at the simulation's times."""
-    forces = {c: history.of(c) for c in history.contacts}
-    interval = float(history.time[1] - history.time[0])
-    return {s.id: reading(s, forces, interval, beads) for s in sensors}
+def readings_of(sensors: tuple[Gauge, ...], motion: Motion, beads: int) -> dict[str, np.ndarray]:
+    """Sensor id → (S, lanes) reading at the simulation's times."""
+    return {s.id: reading(s, motion, beads) for s in sensors}
 
 
-def virtual(record: Record) -> tuple[Sensor, ...]:
+def virtual(record: Record) -> tuple[Gauge, ...]:
     """Gauges that only the simulation has, so that it is known when the reflection returns."""
-    kinds = {s.kind for s in record.sensors}
-    middle = Sensor(id="(middle)", kind="embedded", bead=max(1, record.beads // 2))
-    end = Sensor(id="(end)", kind="wall", bead=None)
+    kinds = {s.kind for s in record.gauges}
+    middle = Gauge(id="(middle)", kind="embedded", bead=max(1, record.beads // 2))
+    end = Gauge(id="(end)", kind="wall", bead=None)
     if record.beads == 0:
         return ()
     return ((middle,) if "embedded" not in kinds else ()) + ((end,) if "wall" not in kinds else ())

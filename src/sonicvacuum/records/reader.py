@@ -5,18 +5,19 @@ import re
 from pathlib import Path
 
 from sonicvacuum.files import InputError, convert, read_yaml
+from sonicvacuum.gauges import KINDS
 from sonicvacuum.laboratory.ranges import FORCE, LONGEST_INTERVAL, SHORTEST_RECORD, LaboratoryError
 from sonicvacuum.physics.scales import impact_scales
 from sonicvacuum.records import signals
 from sonicvacuum.records.assemble import assemble
-from sonicvacuum.records.blocks import OBSERVABLES, UNITS, RecordBlock
+from sonicvacuum.records.blocks import AMPLITUDES, OBSERVABLES, UNITS, RecordBlock
 from sonicvacuum.records.record import Record
 from sonicvacuum.records.validate import validate
 
 FILE = "record.yaml"
 _HINTS = {
     "orientation": "write vertical or horizontal",
-    "kind": "write embedded or wall",
+    "kind": f"write {' or '.join(KINDS)}",
     "shape": "write flat or sphere",
     "format": "this program reads format: 1",
     "id": "quote it; letters, digits and _ . + - only",
@@ -91,9 +92,10 @@ def _check_observables(content, path):
         quantity, unit = entry["quantity"], entry.get("unit")
         if not isinstance(quantity, str) or quantity not in OBSERVABLES:
             raise InputError(f"{path}: {place}.quantity: is {quantity!r}; known: {', '.join(OBSERVABLES)}")
-        if unit is not None and str(unit) != UNITS[quantity]:
+        allowed = AMPLITUDES if quantity == "amplitude" else (UNITS[quantity],)
+        if unit is not None and str(unit) not in allowed:
             raise InputError(
-                f"{path}: {place}.unit: is {unit!r}; {quantity} is given in {UNITS[quantity]}: "
+                f"{path}: {place}.unit: is {unit!r}; {quantity} is given in {' or '.join(allowed)}: "
                 "convert value and sigma"
             )
 
@@ -127,7 +129,10 @@ def check_scales(record: Record, run: str, path) -> None:
     force, contact = impact_scales(batch.chain.take([batch.runs.index(place)]))
     traces = record.signals[run]
     _check_times(traces, contact, path)
-    peak = max(float(abs(r).max()) for r in traces.readings.values())
+    stated = [traces.readings[g.id] for g in record.gauges if g.unit == "N" and g.id in traces.readings]
+    if not stated or not all(g.calibrated for g in record.gauges if g.unit == "N"):
+        return
+    peak = max(float(abs(r).max()) for r in stated)
     expected = f"the impact makes about {force:.2g} N"
     if peak > FORCE[1] * force:
         unit = "mN" if peak / 1e3 <= FORCE[1] * force else "another unit"
@@ -143,7 +148,7 @@ def check_scales(record: Record, run: str, path) -> None:
 
 
 def _noise(record):
-    return max((g.sigma for g in record.gauges), default=0.0)
+    return max((g.sigma for g in record.gauges if g.unit == "N"), default=0.0)
 
 
 def _check_times(traces, contact, path):

@@ -8,39 +8,35 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
+import msgspec
+
+from sonicvacuum.gauges import KINDS, Gauge
 from sonicvacuum.laboratory.blocks import material_of, specimen_of, striker_of
 from sonicvacuum.laboratory.specimen import Specimen, Striker
 from sonicvacuum.observe.run import Geometry
-from sonicvacuum.observe.sensor import Sensor
-from sonicvacuum.records.blocks import UNITS, RecordBlock, RunBlock
+from sonicvacuum.records.blocks import SCALED, UNITS, RecordBlock, RunBlock
 from sonicvacuum.records.signals import Signals
 
 # SI value of one unit of an observable; units not listed are SI.
 _SI = {"us": 1e-6}
+# Stand-in for an unknown time zero, as a share of the trace.
+UNKNOWN_TRIGGER = 0.1
 # A count without an error is still rounded to a whole number.
 COUNT_SIGMA = 1.0 / math.sqrt(12.0)
 
 
 @dataclass(frozen=True)
-class Gauge:
-    """A gauge of the record.
+class Tolerances:
+    """Relative standard errors of what all bodies, runs or gauges of a laboratory share.
 
-    Attributes:
-        id, kind, bead: as in `observe.Sensor`.
-        sigma: white noise of one sample in N.
-        gain_rel_sigma: relative standard error of its gain, one gain for all runs.
+    None where the record does not say: then what reads it has its own, stated default. 0: exact.
     """
 
-    id: str
-    kind: str
-    bead: int | None
-    sigma: float
-    gain_rel_sigma: float
-
-    @property
-    def sensor(self) -> Sensor:
-        """The gauge with ideal electronics and unit gain."""
-        return Sensor(id=self.id, kind=self.kind, bead=self.bead)
+    bead_mass_rel: float | None = None
+    bead_diameter_rel: float | None = None
+    striker_mass_rel: float | None = None
+    speed_common_rel: float | None = None
+    gain_common_rel: float | None = None
 
 
 @dataclass(frozen=True)
@@ -49,7 +45,7 @@ class Observable:
 
     Attributes:
         quantity: key of `observe.quantities.QUANTITIES`.
-        value, sigma: with its standard error.
+        value, sigma: with its standard error; an amplitude in the unit of its gauge.
         options: what the quantity needs or takes: from, to, sensor, level, threshold, amplitude (N).
     """
 
@@ -115,8 +111,37 @@ class Record:
 
     @property
     def trigger_sigma_s(self) -> float:
-        """Standard error in s of the time zero of each run."""
-        return self.block.trigger_sigma_us / 1e6
+        """Standard error in s of the time zero of each run; infinite where it is not known at all."""
+        given = self.block.trigger_sigma_us
+        return math.inf if given == "unknown" else given / 1e6
+
+    @property
+    def trigger_width_s(self) -> float:
+        """The same, but finite: an unknown time zero lies within a tenth of the longest traces or so."""
+        if math.isfinite(self.trigger_sigma_s):
+            return self.trigger_sigma_s
+        spans = [s.interval_s * s.samples for s in self.signals.values()]
+        return UNKNOWN_TRIGGER * max(spans, default=0.0)
+
+    @property
+    def clock_rel_sigma(self) -> float:
+        """Relative standard error of the recorder's clock, one for all runs."""
+        return self.block.clock_rel_sigma
+
+    @property
+    def tolerances(self) -> Tolerances:
+        """Relative standard errors of what is shared."""
+        return Tolerances(**msgspec.structs.asdict(self.block.tolerances))
+
+    @property
+    def model_floor_rel(self) -> float | None:
+        """Smooth systematic misfit expected, as a share of the peak; None: to be inferred."""
+        return self.block.model_floor_rel
+
+    @property
+    def priors(self) -> Mapping[str, float]:
+        """Effect → odds against its usual prior; 0 excludes it."""
+        return self.block.priors
 
     def modulus_rel_sigma(self, name: str) -> float:
         """Relative standard error of a material's modulus, 0 where the record gives none."""
@@ -126,17 +151,12 @@ class Record:
     @cached_property
     def gauges(self) -> tuple[Gauge, ...]:
         """The gauges with their errors."""
-        return tuple(Gauge(s.id, s.kind, s.bead, s.sigma_N, s.gain_rel_sigma) for s in self.block.sensors)
-
-    @property
-    def sensors(self) -> tuple[Sensor, ...]:
-        """The gauges with ideal electronics."""
-        return tuple(g.sensor for g in self.gauges)
+        return tuple(_gauge(s) for s in self.block.sensors)
 
     @property
     def geometry(self) -> Geometry:
         """Where the gauges sit."""
-        return Geometry(self.beads, self.specimen.diameters, self.sensors)
+        return Geometry(self.beads, self.specimen.diameters, self.gauges)
 
     @cached_property
     def runs(self) -> tuple[Run, ...]:
@@ -153,6 +173,15 @@ class Record:
         if self.beads:
             surface = material_of(s.material, self.block.materials, f"{key}.material")
         return striker_of(s, surface, self.specimen, key, s.speed_m_s, s.speed_rel_sigma)
+
+
+def _gauge(block) -> Gauge:
+    """A sensor's block in SI units; what it does not say is 0."""
+    suffix = KINDS[block.kind].suffix
+    scaled = {key: getattr(block, f"{key}_{suffix}") or 0.0 for key in SCALED}
+    gain = math.inf if block.gain_rel_sigma == "unknown" else block.gain_rel_sigma
+    delay = block.delay_sigma_us / 1e6
+    return Gauge(block.id, block.kind, block.bead, gain_rel_sigma=gain, delay_sigma_s=delay, **scaled)
 
 
 def observable(block) -> Observable:

@@ -1,4 +1,6 @@
-"""The traces of one run: a CSV file, header `time_us,<sensor ids>`, forces in N at equidistant times.
+"""The traces of one run: a CSV file, header `time_us,<sensor ids>`, readings at equidistant times.
+
+Each sensor's column is in the unit of its kind: N, m/s, m/s². A run may lack a sensor and have its own times.
 
 A file is read whole by a fast parser; only where that fails is it gone through again row by row, to name the
 line and the column at fault.
@@ -30,7 +32,8 @@ class Signals:
 
     Attributes:
         time_us: (S,) recorded time in microseconds: true time plus the run's trigger shift.
-        readings: sensor id → (S,) force in N, positive in compression, change from rest.
+        readings: sensor id → (S,) change from rest in the sensor's unit, forces positive in compression,
+            motions towards the wall. A sensor that this run lacks is not among them.
     """
 
     time_us: np.ndarray
@@ -61,7 +64,7 @@ class Signals:
         return self.start_s + self.interval_s * np.arange(self.samples)
 
     def trace(self, sensor: str, noise: float = 0.0) -> Trace:
-        """One gauge's signal, as the search for pulses takes it; `noise` in N."""
+        """One gauge's signal, as the search for pulses takes it; `noise` in its unit."""
         return Trace(self.start_s, self.interval_s, self.readings[sensor], noise)
 
     def equals(self, other: "Signals") -> bool:
@@ -85,7 +88,7 @@ def read(path, sensors: list[str]) -> Signals:
 
     Args:
         path: of the CSV file.
-        sensors: ids of the record's gauges; the header must name each once, in any order.
+        sensors: ids of the record's gauges; the header names those of this run, at least one, in any order.
 
     Raises:
         InputError: naming the file, the line, the column and the cure.
@@ -144,11 +147,8 @@ def _check_names(path, columns, sensors):
             raise InputError(
                 f"{path}, line 1: column {c!r} is no sensor of this record; expected {_header(sensors)}"
             )
-    for s in sensors:
-        if s not in columns:
-            raise InputError(
-                f"{path}, line 1: column {s!r} is missing; add it, or remove the sensor from record.yaml"
-            )
+    if len(columns) == 1:
+        raise InputError(f"{path}, line 1: no sensor has a column; expected {_header(sensors)}")
 
 
 def _header(sensors):

@@ -1,12 +1,13 @@
 """The speed of a wave of given amplitude at a gauge, whatever struck the chain: striker speeds are swept."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
 
+from sonicvacuum.gauges import Gauge, needed, position, reading
 from sonicvacuum.observe.quantities import measure
 from sonicvacuum.observe.run import Geometry
-from sonicvacuum.observe.sensor import Sensor, contacts_needed, reading
 from sonicvacuum.observe.sweep import speed_at_amplitude as interpolated
 from sonicvacuum.observe.trace import Measured, missing
 from sonicvacuum.physics.chain import Chain
@@ -28,7 +29,7 @@ _SHARE = 0.45
 
 
 def speed_at_amplitude(
-    record: Record, chain: Chain, sensor: Sensor, amplitude: float, refine: float = 1.0
+    record: Record, chain: Chain, sensor: Gauge, amplitude: float, refine: float = 1.0
 ) -> Measured:
     """Speed in m/s of the wave that peaks at `amplitude` N at a gauge.
 
@@ -62,23 +63,22 @@ def speed_at_amplitude(
 
 def _pair(sensor, beads):
     """The virtual gauges between which the speed is taken, clear of the wall's reflection."""
-    place = beads if sensor.kind == "wall" else sensor.bead
+    place = math.ceil(beads - position(sensor, beads, 1.0))
     last = min(place + REACH, beads - CLEAR)
     first = max(1, min(place - REACH, last - 2 * REACH))
     if first >= last:
         return None
-    return Sensor("(before)", "embedded", first), Sensor("(behind)", "embedded", last)
+    return Gauge("(before)", "embedded", first), Gauge("(behind)", "embedded", last)
 
 
 def _sweep(record, chain, sensor, pair, speeds, refine):
     """(n,) amplitudes at the gauge and speeds across the pair, for n striker speeds."""
     lanes = replace(chain.take(np.zeros(len(speeds), dtype=int)), speed=speeds)
-    gauges = (replace(sensor, id="(gauge)"), *pair, Sensor("(end)", "wall", None))
-    contacts = contacts_needed(gauges, record.beads)
+    gauges = (replace(sensor, id="(gauge)"), *pair, Gauge("(end)", "wall", None))
+    contacts, bodies = needed(gauges, record.beads)
     interval = sampling_of(lanes)
-    history = simulate(lanes, contacts, passage_of(lanes, CROSSINGS), interval, refine=refine)
-    forces = {c: history.of(c) for c in contacts}
-    readings = {s.id: reading(s, forces, interval, record.beads) for s in gauges}
+    history = simulate(lanes, contacts, passage_of(lanes, CROSSINGS), interval, bodies=bodies, refine=refine)
+    readings = {s.id: reading(s, history, record.beads) for s in gauges}
     geometry = Geometry(record.beads, record.specimen.diameters, gauges)
     heights = measure("amplitude", readings, history.time, geometry, sensor="(gauge)")
     fast = measure("speed", readings, history.time, geometry, from_=pair[0].id, to=pair[1].id)

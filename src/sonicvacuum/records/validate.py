@@ -2,12 +2,23 @@
 
 from collections.abc import Iterable
 
+from sonicvacuum.effects import IDS
+from sonicvacuum.gauges import KINDS
+from sonicvacuum.gauges.base import misplaced
 from sonicvacuum.laboratory import ranges
 from sonicvacuum.laboratory.blocks import bead_blocks, material_of, specimen_of, striker_of
 from sonicvacuum.laboratory.ranges import LaboratoryError
 from sonicvacuum.physics.scales import impact_scales
 from sonicvacuum.records.assemble import assemble
-from sonicvacuum.records.blocks import BALL_QUANTITIES, RecordBlock
+from sonicvacuum.records.blocks import (
+    BALL_QUANTITIES,
+    SCALED,
+    SUFFIXES,
+    AmplitudeBlock,
+    DecayBlock,
+    RecordBlock,
+    SpeedAtAmplitudeBlock,
+)
 from sonicvacuum.records.record import Record
 from sonicvacuum.records.signals import TIME
 
@@ -17,6 +28,7 @@ _RANGE_OF = {
     "width": ranges.WIDTH,
     "pulse_count": ranges.COUNT,
     "decay": ranges.RATIO,
+    "echo_ratio": ranges.RATIO,
     "restitution": ranges.RESTITUTION,
 }
 
@@ -30,7 +42,7 @@ def validate(block: RecordBlock) -> None:
     specimen = _check_chain(block)
     _check_materials(block)
     _check_sensors(block)
-    ranges.TRIGGER.check("trigger_sigma_us", block.trigger_sigma_us)
+    _check_shared(block)
     _check_unique("runs", [r.id for r in block.runs])
     for k, run in enumerate(block.runs):
         _check_run(block, specimen, run, f"runs[{k}]")
@@ -62,17 +74,43 @@ def _check_sensors(block):
         key = f"sensors[{k}]"
         if s.id == TIME:
             raise LaboratoryError(f"{key}.id", f"is {TIME!r}, the column of the times; choose another")
-        if s.kind == "embedded" and s.bead is None:
-            raise LaboratoryError(f"{key}.bead", "missing; an embedded sensor needs the number of its bead")
-        if s.kind == "wall" and s.bead is not None:
-            raise LaboratoryError(
-                f"{key}.bead", f"is {s.bead}; the wall sensor sits in no bead: drop the key"
-            )
-        if s.bead is not None and s.bead > beads:
-            raise LaboratoryError(
-                f"{key}.bead", f"is {s.bead}; the chain has {beads} beads, counted from the struck one"
-            )
-        ranges.RELATIVE.check(f"{key}.gain_rel_sigma", s.gain_rel_sigma)
+        if s.kind not in KINDS:
+            raise LaboratoryError(f"{key}.kind", f"is {s.kind!r}; write {' or '.join(KINDS)}")
+        if problem := misplaced(s.kind, s.bead, beads):
+            counted = ", counted from the struck one" if "the chain has" in problem else ""
+            raise LaboratoryError(f"{key}.bead", problem + counted)
+        if s.gain_rel_sigma != "unknown":
+            ranges.RELATIVE.check(f"{key}.gain_rel_sigma", s.gain_rel_sigma)
+        ranges.TRIGGER.check(f"{key}.delay_sigma_us", s.delay_sigma_us)
+        _check_units(s, key)
+
+
+def _check_units(sensor, key):
+    """Noise, baseline and drift are given in the unit of the sensor's kind."""
+    own = KINDS[sensor.kind].suffix
+    for suffix in SUFFIXES:
+        for name in SCALED:
+            if suffix != own and getattr(sensor, f"{name}_{suffix}") is not None:
+                raise LaboratoryError(
+                    f"{key}.{name}_{suffix}",
+                    f"a sensor of kind {sensor.kind} reads {KINDS[sensor.kind].unit}: give {name}_{own}",
+                )
+
+
+def _check_shared(block):
+    """What concerns the laboratory as a whole."""
+    if block.trigger_sigma_us != "unknown":
+        ranges.TRIGGER.check("trigger_sigma_us", block.trigger_sigma_us)
+    ranges.CLOCK.check("clock_rel_sigma", block.clock_rel_sigma)
+    for name in block.tolerances.__struct_fields__:
+        if (value := getattr(block.tolerances, name)) is not None:
+            ranges.TOLERANCE.check(f"tolerances.{name}", value)
+    if block.model_floor_rel is not None:
+        ranges.TOLERANCE.check("model_floor_rel", block.model_floor_rel)
+    for name, odds in block.priors.items():
+        if name not in IDS:
+            raise LaboratoryError(f"priors.{name}", f"no such effect; the catalogue holds {', '.join(IDS)}")
+        ranges.ODDS.check(f"priors.{name}", odds)
 
 
 def _check_unique(key, ids: Iterable[str]):
@@ -118,11 +156,13 @@ def _check_traced(block, run, key):
     if run.signals.lower() == "record.yaml":
         raise LaboratoryError(f"{key}.signals", "is record.yaml itself; name the CSV file with the traces")
     for k, s in enumerate(block.sensors):
-        if s.sigma_N == 0.0:
+        noise = KINDS[s.kind].noise_key
+        if getattr(s, noise) == 0.0:
             raise LaboratoryError(
-                f"sensors[{k}].sigma_N",
-                f"is 0 or missing, while run {run.id!r} has signals; give the standard deviation of one "
-                "sample's noise (of a quantised signal at least its step over √12)",
+                f"sensors[{k}].{noise}",
+                f"is 0, while run {run.id!r} has signals; give the standard deviation of one sample's noise "
+                "(of a quantised signal at least its step over √12), or leave the key out: it is then "
+                "estimated from the samples before the pulse",
             )
 
 
@@ -143,6 +183,7 @@ def _check_observable(block, observable, key):
                 f"{key}.{name.strip('_')}", f"is {sensor!r}; the sensors are {', '.join(ids) or 'none'}"
             )
     _check_pair(block, observable, key)
+    _check_unit_of(block, observable, key)
     if observable.sigma == 0.0 and quantity != "pulse_count":
         raise LaboratoryError(f"{key}.sigma", "is 0; give the standard error of the value")
 
@@ -151,9 +192,30 @@ def _check_pair(block, observable, key):
     if not hasattr(observable, "to"):
         return
     place = {s.id: s.bead or block.chain.beads + 1 for s in block.sensors}
+    units = {s.id: KINDS[s.kind].unit for s in block.sensors}
+    if isinstance(observable, DecayBlock) and units[observable.from_] != units[observable.to]:
+        raise LaboratoryError(
+            f"{key}.to",
+            f"is {observable.to!r}, which reads {units[observable.to]}, while {observable.from_!r} reads "
+            f"{units[observable.from_]}; name two sensors of one unit",
+        )
     if place[observable.from_] == place[observable.to]:
         raise LaboratoryError(
             f"{key}.to", f"is {observable.to!r}, at the same place as {observable.from_!r}; name two places"
+        )
+
+
+def _check_unit_of(block, observable, key):
+    """Amplitudes are given in the unit of their gauge; amplitude_N asks for a force gauge."""
+    if not isinstance(observable, AmplitudeBlock | SpeedAtAmplitudeBlock):
+        return
+    unit = next(KINDS[s.kind].unit for s in block.sensors if s.id == observable.sensor)
+    if isinstance(observable, SpeedAtAmplitudeBlock):
+        if unit != "N":
+            raise LaboratoryError(f"{key}.sensor", f"is {observable.sensor!r}, which reads {unit}, not N")
+    elif observable.unit != unit:
+        raise LaboratoryError(
+            f"{key}.unit", f"is {observable.unit!r}; sensor {observable.sensor!r} reads {unit}"
         )
 
 
@@ -168,10 +230,12 @@ def _check_scalars(record):
 
 def _range(entry, force, contact):
     quantity = entry.__struct_config__.tag
+    if quantity == "amplitude" and entry.unit != "N":
+        return ranges.Range(entry.unit, 0.0, 1e9, {})
     if quantity == "amplitude":
         low, high = ranges.FORCE
         return ranges.Range("N", low * force, high * force, {"mN": 1e3, "kN": 1e-3})
-    if quantity in ("duration", "contact_duration"):
+    if quantity in ("duration", "contact_duration", "echo_delay"):
         low, high = (f * contact * 1e6 for f in ranges.DURATION)
         return ranges.Range("us", low, high, {"s": 1e-6, "ms": 1e-3, "ns": 1e3})
     return _RANGE_OF[quantity]

@@ -16,8 +16,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from sonicvacuum.figures import style
+from sonicvacuum.gauges import Gauge
 from sonicvacuum.observe.pulse import pulses
-from sonicvacuum.observe.sensor import Sensor
 from sonicvacuum.observe.shape import onset
 from sonicvacuum.study import Study
 from sonicvacuum_paper.figures import printed
@@ -86,7 +86,7 @@ def frame(found: list[dict]) -> pandas.DataFrame:
     return table.assign(force_N=table.force_N.round(9) + 0.0, time_us=table.time_us.round(6) + 0.0)
 
 
-def _trace(run: OneRun, sensor: Sensor, until_us: float):
+def _trace(run: OneRun, sensor: Gauge, until_us: float):
     trace, end = run.view.trace(sensor.id), _free_until(run, sensor) * 1e6
     time = trace.interval * 1e6 * np.arange(len(trace.force))
     step = int(np.ceil(np.count_nonzero(time <= until_us) / POINTS))
@@ -101,7 +101,7 @@ def _trace(run: OneRun, sensor: Sensor, until_us: float):
         before = t
 
 
-def _free_until(run: OneRun, sensor: Sensor) -> float:
+def _free_until(run: OneRun, sensor: Gauge) -> float:
     """Foot of the reflection (at the wall: of the wave back from the top) in s; infinite where not known.
 
     The main pulse's return, less 2.5 times its rise from half height.
@@ -113,7 +113,7 @@ def _free_until(run: OneRun, sensor: Sensor) -> float:
     return back.value - 2.5 * rise
 
 
-def _peaks(run: OneRun, sensor: Sensor, until_us: float):
+def _peaks(run: OneRun, sensor: Gauge, until_us: float):
     trace, main = run.view.trace(sensor.id), run.view.main(sensor.id)
     end = min(_free_until(run, sensor), until_us * 1e-6)
     for number, pulse in enumerate(pulses(trace, main, end, TRAIN), start=1):

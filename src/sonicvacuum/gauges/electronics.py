@@ -1,0 +1,59 @@
+"""How the electronics of a gauge shape its reading: bandwidth and droop, the same for every kind.
+
+Daraio & Nesterenko, PRE 73, 026612 (2006) read piezoelectric gauges, which show the change from rest (the
+static force has leaked away), limited by their bandwidth (a first-order low pass) and by the discharge
+through their resistance (a first-order high pass, "droop"; RC about 1 ms in the paper). Both filters are
+exact for a signal that is linear between samples, and so is their sequence.
+"""
+
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+# Equal time constants are parted by this fraction either way: errors of its square, and of rounding over it.
+_EQUAL = 1e-5
+
+
+def filtered(
+    signal: ArrayLike, interval_s: float, lowpass_s: ArrayLike = 0.0, droop_s: ArrayLike = math.inf
+) -> np.ndarray:
+    """Low pass 1/(1 + s b), then high pass s d/(1 + s d), of a signal at rest before its first sample.
+
+    The sequence equals d/(d − b) (H_d − H_b) with H the high pass, by partial fractions: no error from
+    treating the low-passed signal as linear between samples. Two equal constants are parted a little about
+    their mean. Off values (b = 0, d = ∞) return the signal itself, exactly.
+
+    Args:
+        signal: shape (S, ...), linear between samples; a first sample other than 0 is a jump.
+        interval_s: time between samples in s.
+        lowpass_s: b in s, a number or an array that broadcasts to the trailing shape of `signal`.
+        droop_s: d in s, likewise; `inf`: none.
+    """
+    b, d = np.asarray(lowpass_s, dtype=float), np.asarray(droop_s, dtype=float)
+    if np.all(b == 0.0) and np.all(np.isinf(d)):
+        return np.array(signal, dtype=float)
+    equal, mean = np.abs(d - b) < _EQUAL * b, 0.5 * (b + d)
+    short, long = np.where(equal, mean * (1.0 - _EQUAL), b), np.where(equal, mean * (1.0 + _EQUAL), d)
+    weight = np.where(equal, d, 1.0) / np.where(equal, long, 1.0) / (1.0 - short / long)
+    return weight * (high_passed(signal, interval_s, long) - high_passed(signal, interval_s, short))
+
+
+def high_passed(signal: ArrayLike, interval_s: float, time_constant_s: ArrayLike) -> np.ndarray:
+    """First-order high pass: the exact solution of y' = x' − y/τ for x linear between samples.
+
+    y[n + 1] = E y[n] + (1 − E)/h (x[n + 1] − x[n]), h = interval/τ, E = exp(−h), y[0] = x[0]. The recursion
+    is summed by doubling its reach, log2(S) passes over whole arrays. τ = ∞ returns the signal, τ = 0 returns
+    zeros. Shapes as in `filtered`.
+    """
+    signal = np.asarray(signal, dtype=float)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        h = interval_s / np.asarray(time_constant_s, dtype=float)
+        weight = -np.expm1(-h) / h
+    response = signal.copy()
+    response[1:] = weight * np.diff(signal, axis=0)
+    reach, decay = 1, np.exp(-h)
+    while reach < len(signal) and np.any(decay > 0.0):
+        response[reach:] += decay * response[:-reach]
+        reach, decay = 2 * reach, decay * decay
+    return np.where(h == 0.0, signal, np.where(np.isinf(h), 0.0, response))
