@@ -17,8 +17,8 @@ SIGMA = 0.02
 BEADS = 10
 
 
-def block(speeds, orientation="horizontal"):
-    """A chain of ten coated beads with two gauges and the wall."""
+def block(speeds, orientation="horizontal", sensors=None):
+    """A chain of ten coated beads with two gauges and the wall, or with these sensors."""
     gauges = [
         {"id": f"g{b}", "kind": "embedded", "bead": b, "sigma_N": SIGMA, "gain_rel_sigma": 0.02}
         for b in (4, 7)
@@ -35,7 +35,7 @@ def block(speeds, orientation="horizontal"):
             "wall": {"material": "stainless-steel"},
         },
         "materials": {"parylene-c": {"modulus_rel_sigma": 0.05}},
-        "sensors": [*gauges, wall],
+        "sensors": sensors or [*gauges, wall],
         "trigger_sigma_us": 1.0,
         "runs": [
             {"id": f"v{k}", "striker": {**striker, "speed_m_s": v}, "signals": f"v{k}.csv"}
@@ -44,13 +44,13 @@ def block(speeds, orientation="horizontal"):
     }
 
 
-def made(effects=(), seed=0, speeds=(0.3, 0.9), noise=1.0, departures=()):
+def made(effects=(), seed=0, speeds=(0.3, 0.9), noise=1.0, departures=(), sensors=None):
     """A record with hidden effects ((id, parameters), ...), nuisances and white noise drawn; the
     nuisances.
 
     `departures` (what, place, ratio) change stiffness or mass at places, whatever the catalogue says of it.
     """
-    content = parse(block(speeds))
+    content = parse(block(speeds, sensors=sensors))
     rng = np.random.default_rng(np.random.SeedSequence(seed))
     time = np.arange(0.0, 700.0, 1.0)
     ids = [s.id for s in content.sensors]
@@ -67,7 +67,7 @@ def made(effects=(), seed=0, speeds=(0.3, 0.9), noise=1.0, departures=()):
         return replace(setup, chain=chain)
 
     found = forward.sampled(Hypothesis(), np.zeros((1, 0)), nu, change=change)
-    sigma = np.array([s.sigma_N for s in content.sensors])[:, None]
+    sigma = np.array([g.sigma for g in Record(content).gauges])[:, None]
     signals = {}
     for run, (value, _) in zip(content.runs, found, strict=True):
         clean = value[0].reshape(len(ids), -1) * forward.experiment.sigma[:, None]

@@ -10,7 +10,7 @@ from sonicvacuum.effects import Setup, effect
 from sonicvacuum.physics.run import simulate
 
 # Accuracy of accelerations in units of their largest: the engine's of forces (see test_engine_exact). Of
-# velocities in units of the striker's speed: measured 1.7e-5, after the contacts of a short chain have opened.
+# velocities in units of the striker's speed: measured 1.7e-5, once contacts of a short chain have opened.
 ACCURACY, SPEED_ACCURACY = 1e-5, 3e-5
 
 CASES = {

@@ -186,6 +186,8 @@ def test_every_entry_of_the_list_is_complete(name):
         ("width", ("from", "to", "sensor"), "diameters"),
         ("pulse_count", ("sensor",), "1"),
         ("decay", ("from", "to"), "1"),
+        ("echo_delay", ("sensor",), "s"),
+        ("echo_ratio", ("sensor",), "1"),
         ("speed_at_amplitude", ("amplitude", "sensor"), "m/s"),
         ("restitution", (), "1"),
         ("contact_duration", (), "s"),

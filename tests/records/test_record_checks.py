@@ -141,6 +141,7 @@ def test_the_schema_knows_the_same_keys_as_the_contract():
     parts = json.loads(schema_text())["$defs"]
     assert set(parts["RecordBlock"]["properties"]) == {
         "format", "title", "source", "chain", "materials", "sensors", "trigger_sigma_us", "runs",
+        "clock_rel_sigma", "tolerances", "model_floor_rel", "priors",
     }  # fmt: skip
     assert all(p["additionalProperties"] is False for p in parts.values())
 

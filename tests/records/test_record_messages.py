@@ -207,9 +207,9 @@ WRONG_TRACES = {
     "few samples": (changed_rows(lambda lines: lines[:10]), ["9 samples", "at least 16"]),
     "no header": (changed_rows(lambda lines: lines[1:]), ["line 1", "header is missing"]),
     "unknown column": (header("time_us,near,far,wall2"), ["line 1", "'wall2'", "no sensor"]),
-    "column missing": (
-        changed_rows(lambda lines: [line.rpartition(",")[0] for line in lines]),
-        ["line 1", "'wall' is missing"],
+    "no sensor at all": (
+        changed_rows(lambda lines: [line.partition(",")[0] for line in lines]),
+        ["line 1", "no sensor has a column", "time_us,near,far,wall"],
     ),
     "column twice": (header("time_us,near,near,wall"), ["line 1", "'near'", "twice"]),
     "time in s": (header("time_s,near,far,wall"), ["line 1", "time_us is missing", "'time_s'"]),

@@ -260,5 +260,5 @@ class Recorded:
 
 def _found(recorded, place, what):
     if place not in recorded:
-        raise ValueError(f"a sensor needs the {what} {place}; it was not recorded")
+        raise ValueError(f"the {what} {place} was not recorded")
     return np.asarray(recorded[place])

@@ -7,13 +7,13 @@ reaches, and keeps the audit (energy and momentum balance).
 import math
 import os
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from sonicvacuum.physics import kernel, sampling
 from sonicvacuum.physics.chain import Chain
 from sonicvacuum.physics.compiled import cached, prepare
+from sonicvacuum.physics.history import History
 from sonicvacuum.physics.lanes import LANES
 from sonicvacuum.physics.laws import memory_at_rest, rest_compression
 from sonicvacuum.physics.methods import CARPENTER_KENNEDY, METHODS
@@ -29,76 +29,6 @@ AUDIT_ENTRIES = 400
 SHARES = 8
 
 advance = cached(kernel.advance)
-
-
-@dataclass(frozen=True)
-class History:
-    """Forces of one batch.
-
-    Attributes:
-        time: (samples,) s, from the moment of impact.
-        contacts: recorded contacts: those asked for, and both contacts of each recorded body.
-        force: (samples, contacts, lanes) N, without the static part.
-        energy: (entries, lanes) total energy in J every so many steps, empty without audit or where the
-            law stores no simple energy.
-        momentum: (entries, lanes) total momentum less all impulses received (wall, weight), N s.
-        striker_speed: (lanes,) speed of the striker at the end in m/s.
-        step: (lanes,) step in s after the impact phase.
-        bodies: bodies whose motion was recorded, the striker being 0.
-        velocity: (samples, bodies, lanes) m/s, positive towards the wall.
-        acceleration: (samples, bodies, lanes) m/s²: all forces on the body at that moment over its mass.
-    """
-
-    time: np.ndarray
-    contacts: tuple[int, ...]
-    force: np.ndarray
-    energy: np.ndarray
-    momentum: np.ndarray
-    striker_speed: np.ndarray
-    step: np.ndarray
-    bodies: tuple[int, ...] = ()
-    velocity: np.ndarray = field(default_factory=lambda: np.zeros((0, 0, 0)))
-    acceleration: np.ndarray = field(default_factory=lambda: np.zeros((0, 0, 0)))
-
-    def of(self, contact: int) -> np.ndarray:
-        """(samples, lanes) force of one contact in N."""
-        return self.force[:, self.contacts.index(contact)]
-
-    def velocity_of(self, body: int) -> np.ndarray:
-        """(samples, lanes) velocity of one body in m/s."""
-        return self.velocity[:, self.bodies.index(body)]
-
-    def acceleration_of(self, body: int) -> np.ndarray:
-        """(samples, lanes) acceleration of one body in m/s²."""
-        return self.acceleration[:, self.bodies.index(body)]
-
-    def take(self, lanes) -> "History":
-        """The history of some of the chains, by their places or a slice; without the balance."""
-        parts = (self.force, self.velocity, self.acceleration)
-        force, velocity, acceleration = (p[..., lanes] if p.size else p for p in parts)
-        return replace(
-            self,
-            force=force,
-            velocity=velocity,
-            acceleration=acceleration,
-            energy=self.energy[:0],
-            momentum=self.momentum[:0],
-            striker_speed=self.striker_speed[lanes],
-            step=self.step[lanes],
-        )
-
-    def without_numbers(self) -> "History":
-        """The same with NaN for all forces and motions: what a motion that does not stay finite leaves."""
-        lost = {n: np.full_like(getattr(self, n), np.nan) for n in ("force", "velocity", "acceleration")}
-        return replace(self, **lost)
-
-    @staticmethod
-    def side_by_side(parts) -> "History":
-        """Histories of the same times, contacts and bodies as one, their lanes one after the other."""
-        joined = ("force", "velocity", "acceleration", "striker_speed", "step")
-        return replace(
-            parts[0], **{n: np.concatenate([getattr(p, n) for p in parts], axis=-1) for n in joined}
-        )
 
 
 def simulate(

@@ -62,7 +62,7 @@ def test_impossible_gauge_is_refused_by_name(changes):
 def test_gauge_outside_the_chain_and_unrecorded_contact_are_refused():
     with pytest.raises(ValueError, match="bead 22; the chain has 21"):
         position(Gauge("g", "embedded", 22), 21, 1.0)
-    with pytest.raises(ValueError, match="needs the force of contact 12"):
+    with pytest.raises(ValueError, match="force of contact 12 was not recorded"):
         reading(Gauge("g", "embedded", 13), seen({13: TIME}), 21)
 
 
