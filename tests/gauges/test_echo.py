@@ -37,9 +37,9 @@ def seen(modulus, quantity, sensor):
 
 @pytest.mark.parametrize("sensor", ["force", "speed", "acceleration"])
 def test_a_hard_wall_sends_the_pulse_back_and_a_soft_one_part_of_it(sensor):
-    # A rigid wall is a mirror: two equal solitary waves that meet part again as they were but for a small loss
-    # (Manciu, Sen & Hurd, PRE 63, 016614, 2001). A soft one bears the pulse for longer and sends it back late,
-    # and broken into several.
+    # A rigid wall is a mirror: two equal solitary waves that meet part again as they were but for a small
+    # loss (Manciu, Sen & Hurd, PRE 63, 016614, 2001). A soft one bears the pulse for longer and sends it back
+    # late, broken into several.
     walls = (1e15, 5e9, 0.2e9)
     ratios = [seen(m, "echo_ratio", sensor).value for m in walls]
     assert ratios[0] == pytest.approx(

@@ -1,4 +1,4 @@
-"""Records of real laboratories: gauges of every kind, unknown errors, runs that lack a gauge, own sampling."""
+"""Records of real laboratories: gauges of every kind, unknown errors, runs that lack a gauge."""
 
 import math
 import tempfile
@@ -50,7 +50,7 @@ def test_gauges_of_every_kind_and_their_errors_in_si_units():
     assert laser.gain_rel_sigma == math.inf
     assert laser.log_gain_sigma == math.log(1e3)
     assert (ball.sigma, ball.drift_sigma, ball.unit) == (40.0, 2.0, "m/s2")
-    assert (wall.sigma, wall.delay_sigma_s, wall.baseline_sigma) == (0.1, 0.4e-6, 0.01)
+    assert (wall.sigma, wall.delay_sigma_s, wall.baseline_sigma) == (0.1, 0.4 / 1e6, 0.01)
     assert wall.log_gain_sigma == wall.gain_rel_sigma == 0.02
 
 
