@@ -24,8 +24,7 @@ class Setup:
 
     Attributes:
         chain: (lanes) chains.
-        sensors: frozen dataclasses with the fields id, kind, bead, droop_s, lowpass_s, offset_fraction, gain;
-            the last four are floats or (lanes,) arrays (droop_s None: no discharge).
+        sensors: the gauges (`gauges.Gauge`); their electronics are floats or (lanes,) arrays.
     """
 
     chain: Chain
