@@ -8,14 +8,16 @@ import pytest
 from sonicvacuum.gauges import Gauge, needed, reading
 from sonicvacuum.observe.quantities import measure
 from sonicvacuum.observe.run import Geometry
-from sonicvacuum.physics.chain import Chain, Elastic
+from sonicvacuum.physics.bodies import Body, Elastic
+from sonicvacuum.physics.chain import Chain
 from sonicvacuum.physics.run import simulate
 
 BEADS, DIAMETER = 20, 4.76e-3
 STEEL = Elastic("steel", 193e9, 0.3)
+BEAD = Body(STEEL, 0.45e-3, 2.38e-3)
 CHAIN = Chain(
-    beads=BEADS, bead=STEEL, striker=STEEL, wall=Elastic("hard", 1e15, 0.3), bead_radius=DIAMETER / 2,
-    striker_radius=DIAMETER / 2, bead_mass=0.45e-3, striker_mass=0.45e-3, speed=0.4,
+    beads=BEADS, bodies=BEAD, striker=STEEL, wall=Elastic("hard", 1e15, 0.3),
+    striker_radius=DIAMETER / 2, striker_mass=0.45e-3, speed=0.4,
 )  # fmt: skip
 GAUGES = (
     Gauge("force", "embedded", 10),

@@ -5,10 +5,13 @@ import pytest
 
 from sonicvacuum.gauges import KINDS, Gauge, Kind, needed, position, reading
 from sonicvacuum.gauges.electronics import filtered
-from sonicvacuum.physics.chain import Chain, Elastic
+from sonicvacuum.laboratory.bodies import to_wall
+from sonicvacuum.physics.bodies import Body, Elastic
+from sonicvacuum.physics.chain import Chain
 from sonicvacuum.physics.run import simulate
 
 STEEL = Elastic("steel", 193e9, 0.3)
+BEAD = Body(STEEL, 0.45e-3, 2.38e-3)
 BEADS, MASS = 12, 0.45e-3
 
 
@@ -16,8 +19,8 @@ BEADS, MASS = 12, 0.45e-3
 def history():
     """A steel chain of twelve beads and all that its gauges may need."""
     chain = Chain(
-        beads=BEADS, bead=STEEL, striker=STEEL, wall=STEEL, bead_radius=2.38e-3, striker_radius=2.38e-3,
-        bead_mass=MASS, striker_mass=MASS, speed=0.4,
+        beads=BEADS, bodies=BEAD, striker=STEEL, wall=STEEL, striker_radius=2.38e-3, striker_mass=MASS,
+        speed=0.4,
     )  # fmt: skip
     return simulate(chain, (12,), 3e-4, 0.5e-6, bodies=(0, 5))
 
@@ -83,8 +86,7 @@ def test_only_an_embedded_gauge_can_sit_off_the_middle(kind):
 
 def test_what_was_not_recorded_is_named():
     chain = Chain(
-        beads=2, bead=STEEL, striker=STEEL, wall=STEEL, bead_radius=2e-3, striker_radius=2e-3,
-        bead_mass=MASS, striker_mass=MASS, speed=0.4,
+        beads=2, bodies=BEAD, striker=STEEL, wall=STEEL, striker_radius=2e-3, striker_mass=MASS, speed=0.4,
     )  # fmt: skip
     seen = simulate(chain, (0,), 2e-5, 1e-6)
     with pytest.raises(ValueError, match="velocity of body 1 was not recorded"):
@@ -104,7 +106,7 @@ STRIKER_VELOCITY = Kind(
     suffix="m_s",
     in_bead=False,
     feel=_feel,
-    distance=lambda gauge, beads: beads + 0.5,
+    distance=lambda gauge, beads, diameter: to_wall(diameter, 1, beads),
     bodies=lambda gauge, beads: (0,),
 )
 
