@@ -20,6 +20,7 @@ flat, and a rigid flat on a coated sphere and a rigid sphere on a flat layer hav
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from scipy.special import roots_legendre
@@ -121,27 +122,32 @@ class Solution:
 def solve(layer: Layer, radius, refine: float = 1.0) -> Solution:
     """The contacts of radii `radius` (float or array, in layer thicknesses, positive).
 
-    `refine` multiplies the number of points, to measure the error.
+    `refine` multiplies the number of points, to measure the error or to trade it for time.
     """
     radius = np.asarray(radius, dtype=float)
     if not np.all(radius > 0.0):
         raise ValueError(f"radius is {radius.min()}; it must be positive")
-    found = np.array([_contact(layer, a, refine) for a in radius.ravel()])
+    found = np.array([_contact(layer, float(a), refine) for a in radius.ravel()])
     return Solution(radius, *(column.reshape(radius.shape) for column in found.T))
 
 
 def _contact(layer, radius, refine):
     """Depth, force and flat-punch factor of one contact."""
-    points = int(refine * (FEWEST_POINTS + POINTS_PER_RADIUS * radius))
-    s, weight = _gauss(points, 1.0)
-    # Products of cosines turn by 2 a/t HIGHEST radians: a point for each, and for the shape of L itself.
-    x, step = _panels(int(refine * (100 + 1.2 * HIGHEST * radius)) // PANEL + 1, HIGHEST)
-    waves = np.cos(radius * np.outer(np.append(s, 1.0), x))
+    s, weight, x, step, waves = _rules(radius, refine)
     kernel = (waves * (radius * step * (1.0 - layer.compliance(x)))) @ waves[:-1].T * weight
-    matrix = 0.5 * np.pi * np.eye(points) - kernel[:-1]
-    flat, bowl = np.linalg.solve(matrix, np.stack([np.ones(points), s * s], axis=1)).T
+    matrix = 0.5 * np.pi * np.eye(len(s)) - kernel[:-1]
+    flat, bowl = np.linalg.solve(matrix, np.stack([np.ones(len(s)), s * s], axis=1)).T
     depth = (1.0 + kernel[-1] @ bowl) / (1.0 + kernel[-1] @ flat)
     return depth, np.pi * (weight @ (depth * flat - bowl)), 0.5 * np.pi * (weight @ flat)
+
+
+@lru_cache(maxsize=64)
+def _rules(radius, refine):
+    """Points and weights on the radius and in wavenumbers, and the cosines of both: the same for all layers."""
+    s, weight = _gauss(int(refine * (FEWEST_POINTS + POINTS_PER_RADIUS * radius)), 1.0)
+    # Products of cosines turn by 2 a/t HIGHEST radians: a point for two of them, and for the shape of L itself.
+    x, step = _panels(int(max(refine, 1.0) * (100 + 1.2 * HIGHEST * radius)) // PANEL + 1, HIGHEST)
+    return s, weight, x, step, np.cos(radius * np.outer(np.append(s, 1.0), x))
 
 
 def _gauss(points, end):
