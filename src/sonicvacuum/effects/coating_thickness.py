@@ -1,68 +1,84 @@
-"""The contact is wide against a soft layer bonded to a hard core, so that it stiffens with load.
+"""The coating acts as the layer it is: contacts wider than it is thick feel the core and stiffen with load.
 
 Where the pair of contacts comes from. Two equal coated spheres of radius R pressed together by delta mirror
 each other in the contact plane: each is a sphere of radius R whose layer is indented by delta/2 by a rigid
-flat. A rigid flat on a coated sphere and a rigid sphere on a flat layer have the same gap r²/2R, so that
-Dimitriadis' solution holds with chi = sqrt(R delta/2)/h. A bead on a much stiffer flat wall or striker has
-one layer indented by delta, chi = sqrt(R delta)/h. In terms of the contact's own effective radius R* (R/2
-for two beads, R on a flat) both read chi = sqrt(R* delta)/h, and the Hertz factor is that of the contact.
-(The few per cent of the compliance that a steel wall or an alumina striker contributes are stiffened along.)
-
-Range. The quartic of Dimitriadis is an expansion in small chi, used up to chi about 1; for nu < 1/2 its last
-coefficient is negative and it turns over (nu = 0.388: at chi = 2.0). It is therefore used up to its
-inflection (chi = 1.13 at nu = 0.388) and continued along its tangent there, as the bonded Winkler layer
-(Johnson, Contact Mechanics, Sec. 5.8) is linear in chi too: F/F_Hertz = (3 pi/4) (1−nu)²/(1−2nu) chi. Twice
-continuously differentiable, and rising for all loads. Against the exact solution for the layer (in the
-tests) the factor at nu = 0.388 is 1.5 % low at chi = 0.3, 10 % at 0.8, 20 % at 2; with a layer thinner by
-15 % it follows the exact curve to 5 % up to there. At nu = 1/2 the general formula gives the last
-coefficient −0.097 where the paper's special case prints +0.0975.
+flat. A rigid flat on a coated sphere and a rigid sphere on a flat layer have the same gap r²/2R, so that the
+solution for a flat layer holds with chi = sqrt(R delta/2)/t. A bead on a flat wall or striker has one layer,
+indented by all of delta but for the other body's share, chi = sqrt(R delta)/t. In terms of the contact's own
+effective radius R* (R/2 for two beads, R on a flat) both read chi = sqrt(R* delta)/t, and the Hertz factor is
+that of the contact. The elasticity of wall or striker is in series with the layer's, see `physics.layer_law`,
+which also says how exact the formula is. A sphere's layer is taken as flat: the contact is much narrower than
+the bead. A core that nobody stated is rigid.
 """
 
 import numpy as np
 
 from sonicvacuum.effects.base import MICRO, Effect, Parameter, Setup, add_term
-from sonicvacuum.physics.lanes import positive, root
+from sonicvacuum.physics import layer_law
+from sonicvacuum.physics.lanes import root
 from sonicvacuum.physics.laws import Term
 
 
-def layer_series(poisson: float) -> tuple[float, float, float, float]:
-    """Coefficients of chi, chi², chi³, chi⁴ for a bonded layer (Dimitriadis et al. 2002, Eqs. 12 and 13)."""
-    a = -(1.2876 - 1.4678 * poisson + 1.3442 * poisson**2) / (1.0 - poisson)
-    b = (0.6387 - 1.0277 * poisson + 1.5164 * poisson**2) / (1.0 - poisson)
-    return (
-        -2.0 * a / np.pi,
-        4.0 * a**2 / np.pi**2,
-        -8.0 / np.pi**3 * (a**3 + 4.0 * np.pi**2 / 15.0 * b),
-        16.0 * a / np.pi**4 * (a**3 + 3.0 * np.pi**2 / 5.0 * b),
-    )
+def layer_factor(delta, width, deep, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10):
+    """Force over Hertz force: y^10/(deep y^10 + a1 y^9 + … + a10), y = 1 + width sqrt(delta)."""
+    y = 1.0 + width * root(delta)
+    square = y * y
+    eighth = square * square * square * square
+    below = ((((deep * y + a1) * y + a2) * y + a3) * y + a4) * y + a5
+    below = ((((below * y + a6) * y + a7) * y + a8) * y + a9) * y + a10
+    return eighth * square / below
 
 
-def tangent_point(series) -> tuple[float, float]:
-    """chi of the inflection of the quartic, and the slope there."""
-    c1, c2, c3, c4 = series
-    chi = (-3.0 * c3 - np.sqrt(9.0 * c3**2 - 24.0 * c2 * c4)) / (12.0 * c4)
-    return chi, c1 + chi * (2.0 * c2 + chi * (3.0 * c3 + chi * 4.0 * c4))
-
-
-def layer_factor(delta, c1, c2, c3, c4, slope, limit):
-    """Force over Hertz force: a quartic in sqrt(delta) up to `limit`, then a straight line."""
-    r = root(delta)
-    beyond = positive(r - limit)
-    x = r - beyond
-    return 1.0 + x * (c1 + x * (c2 + x * (c3 + x * c4))) + slope * beyond
-
-
-TERM = Term("bonded-layer", "factor", layer_factor, 6)
+TERM = Term("bonded-layer", "factor", layer_factor, 2 + layer_law.POWERS)
 
 
 def coefficients(chain, stiffness, mass, thickness):
-    """The series in powers of sqrt(delta): chi = width × sqrt(delta), width = sqrt(R*)/h."""
-    width = np.sqrt(chain.reduced_radii(len(stiffness))) / thickness
-    series = layer_series(chain.first.surface.poisson)
-    chi, slope = tangent_point(series)
-    with np.errstate(divide="ignore"):
-        limit = chi / width
-    return [*(c * width ** (k + 1) for k, c in enumerate(series)), slope * width, limit]
+    """Columns of `layer_factor`: the width per root of compression, the limit and the powers.
+
+    Bodies that touch share the approach as their compliances: 1/g is the mean of both, weighted by these.
+    """
+    bodies = len(stiffness)
+    one, other = chain.touching(bodies)
+    yields = np.array([1.0 / _plane(solid.surface) for solid in chain.solids])
+    limit, powers = _layers(chain)
+    share = yields[one] / (yields[one] + yields[other])
+    limit = share * limit[one] + (1.0 - share) * limit[other]
+    powers = share[..., None] * powers[one] + (1.0 - share[..., None]) * powers[other]
+    acts = np.isfinite(thickness)
+    width = np.sqrt(chain.reduced_radii(bodies)) / (thickness * layer_law.SCALE)
+    # Where there is none the factor is 1/1, to the bit.
+    powers = np.where(acts[:, None], powers, np.eye(layer_law.POWERS)[-1])
+    return [width, np.where(acts, limit, 0.0), *np.moveaxis(powers, -1, 0)]
+
+
+def _layers(chain):
+    """Limit (solids, lanes) and powers (solids, lanes, POWERS) of 1/g of what touches; 1 and 0 if not coated."""
+    solids = len(chain.solids)
+    limit, powers = np.ones((solids, chain.lanes)), np.zeros((solids, chain.lanes, layer_law.POWERS))
+    for place, core in _coated(chain).items():
+        surface = chain.solids[place].surface
+        ratio = _plane(surface) / _plane(core) if core else np.zeros(chain.lanes)
+        poisson = core.poisson if core else surface.poisson
+        limit[place], powers[place] = layer_law.coefficients(surface.poisson, ratio, poisson)
+    return limit, powers
+
+
+def _coated(chain):
+    """Place in `chain.solids` → elastic constants of the core of each coated body.
+
+    Beads without a core are solid where others have one; where none has, all are coated on rigid cores. A
+    ball on the wall is the bead.
+    """
+    if chain.beads == 0:
+        return {0: chain.first.core}
+    cores = {place + 1: body.core for place, body in enumerate(chain.bodies.kinds)}
+    named = {place: core for place, core in cores.items() if core is not None}
+    return named or cores
+
+
+def _plane(elastic):
+    """(lanes,) plane-strain modulus E/(1 − nu²) in Pa."""
+    return elastic.modulus / (1.0 - elastic.poisson**2)
 
 
 def change(setup: Setup, layer_thickness_um) -> Setup:
@@ -72,15 +88,16 @@ def change(setup: Setup, layer_thickness_um) -> Setup:
 
 EFFECT = Effect(
     id="coating-thickness",
-    title="Thin bonded coating",
+    title="Bonded coating on its core",
     missing="the contact radius is not small against a soft bonded layer on a hard core; the contact "
     "stiffens with load",
-    equation="F = F_Hertz g(chi), chi = sqrt(R* delta)/h, g = 1 + c1 chi + c2 chi^2 + c3 chi^3 + c4 "
-    "chi^4 up to its inflection, then its tangent; c1..c4 from the layer's nu",
+    equation="F = F_Hertz g(chi), chi = sqrt(R* delta)/t, 1/g = c + a1 u + ... + a10 u^10, u = 1/(1 + chi), "
+    "c = E1'/E0': exact axisymmetric frictionless contact of a bonded layer on its core, solved for the "
+    "layer's and the core's constants; wall or striker in series, 1/g -> (1/g + e)/(1 + e), e = E1'/E'",
     energy="stores the integral of F over delta per contact",
-    reference="Dimitriadis et al., Biophys. J. 82, 2798 (2002), Eqs. 12-13; limits: Johnson, Contact "
-    "Mechanics (1985), Sec. 5.8; Perriot & Barthel, J. Mater. Res. 19, 600 (2004). Chosen "
-    "here: the tangent beyond the inflection",
+    reference="integral equation: Lebedev & Ufliand, J. Appl. Math. Mech. 22, 442 (1958); Perriot & Barthel, "
+    "J. Mater. Res. 19, 600 (2004); limits: Johnson, Contact Mechanics (1985), Sec. 5.8; Dimitriadis et al., "
+    "Biophys. J. 82, 2798 (2002). Chosen here: the rational form, least squares to contact radii of 12 t",
     parameters=(
         Parameter(
             "layer_thickness_um",
@@ -90,7 +107,7 @@ EFFECT = Effect(
             3000.0,
             "log-uniform",
             100.0,
-            "layer on a rigid core",
+            "thickness of the layer on its core",
             1e-3,
         ),
     ),

@@ -40,25 +40,28 @@ def factor(chi, deep, a):
     return 1.0 / (deep + u * np.polynomial.polynomial.polyval(u, a))
 
 
-def coefficients(poisson: float, core, core_poisson: float, facing=0.0) -> tuple[np.ndarray, np.ndarray]:
-    """Limit (n,) and coefficients (n, POWERS) of 1/g for n contacts.
+def coefficients(poisson: float, core, core_poisson: float) -> tuple[np.ndarray, np.ndarray]:
+    """Limit (n,) and coefficients (n, POWERS) of 1/g for n layers under rigid bodies.
 
     Args:
         poisson, core_poisson: Poisson's ratios of layer and core.
         core: (n,) E1'/E0', taken into the range from RIGID to SOFTEST.
-        facing: (n,) E1'/E' of the other body, 0 for two equal layers or a rigid body.
     """
-    core = np.clip(np.atleast_1d(np.asarray(core, dtype=float)), RIGID, SOFTEST)
-    place = np.log(core) / STEP
-    below = np.floor(place).astype(int)
-    shares = _lagrange(place - below)
-    used = {k: _at_node(poisson, k, core_poisson) for k in np.unique(below[:, None] + NEIGHBOURS).tolist()}
-    nearby = np.array([[used[k] for k in row] for row in (below[:, None] + NEIGHBOURS).tolist()])
-    a = np.einsum("ni,nik->nk", shares, nearby)
+    core = np.clip(np.asarray(core, dtype=float), RIGID, SOFTEST)
+    some, where = np.unique(core, return_inverse=True)
+    place = np.log(some) / STEP
+    nodes = np.floor(place).astype(int)[:, None] + NEIGHBOURS
+    nearby = np.array([[_at_node(poisson, k, core_poisson) for k in row] for row in nodes.tolist()])
+    a = np.einsum("ni,nik->nk", _lagrange(place - np.floor(place)), nearby)
     # What interpolation leaves of the sum goes to the highest power, so that narrow contacts are Hertz.
-    a[:, -1] += 1.0 - core - a.sum(axis=1)
-    own = 1.0 / (1.0 + np.asarray(facing, dtype=float) * np.ones_like(core))
-    return own * core + (1.0 - own), own[:, None] * a
+    a[:, -1] += 1.0 - some - a.sum(axis=1)
+    return core, a[where]
+
+
+def faced(deep, a, facing):
+    """Limit and coefficients with a body of finite stiffness in series: (…), (…, POWERS), `facing` (…) E1'/E'."""
+    own = 1.0 / (1.0 + np.asarray(facing, dtype=float))
+    return own * deep + (1.0 - own), own[..., None] * a
 
 
 def fitted(layer: Layer, refine: float = COARSE) -> np.ndarray:
