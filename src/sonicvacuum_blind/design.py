@@ -26,6 +26,7 @@ BEADS = {
     "aluminium": (None, None),
     "glass": (None, None),
 }
+CORE = "stainless-steel"  # under any coating
 STRIKERS = ("alumina", "stainless-steel", "bearing-steel")
 
 
@@ -115,7 +116,7 @@ def _bodies(random):
     volume = math.pi / 6.0 * diameter**3
     if coating:
         core = math.pi / 6.0 * (diameter - 2e-6 * coating) ** 3
-        mass = core * MATERIALS["stainless-steel"].density + (volume - core) * MATERIALS[name].density
+        mass = core * MATERIALS[CORE].density + (volume - core) * MATERIALS[name].density
     else:
         mass = volume * MATERIALS[name].density
     return bead, diameter, _rounded(mass, 4), coating and coating * 1e-6
@@ -144,6 +145,7 @@ def _chain(kind, random):
         striker_mass=_rounded(mass * math.exp(random.uniform(*np.log([0.7, 1.6]))), 3),
         speed=_rounded(math.exp(random.uniform(*np.log([0.15, 0.6])))),
         gravity=G if vertical else 0.0,
+        core=None if coating is None else _table(CORE),
         gauges=_gauges(beads, random),
     )
     plan = _as_others_do(plan, random) if varied else plan

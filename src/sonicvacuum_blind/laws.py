@@ -14,16 +14,14 @@ from collections import namedtuple
 import numpy as np
 from numba import njit
 
+from sonicvacuum_blind.layer import DEGREE
+
 CONTACT = (
     "hertz",  # K in N/m^{3/2}
     "power",  # constant of F = power × delta^exponent, used where exponent is not 3/2
     "exponent",
-    "layer_1",  # coefficients of √delta … delta² of the layer correction
-    "layer_2",
-    "layer_3",
-    "layer_4",
-    "layer_slope",  # of the correction beyond √delta = layer_limit
-    "layer_limit",
+    "layer_width",  # χ/√δ = √R over thickness of the layer, in m^{-1/2}; 0 for none
+    *(f"layer_{k}" for k in range(DEGREE + 1)),  # Hertz force over force in powers of u = 1/(1 + χ)
     "residual",  # residual over largest compression
     "dashpot",  # kg/s
     "viscoelastic",  # (3/2) A K
@@ -49,8 +47,7 @@ FORCE, DELTA, ROOT, SPRING, RISE, LARGEST, TOP = range(7)
 SLOW = 1e-3  # m/s; dry friction grows in proportion to velocity below it
 
 _HERTZ, _POWER, _EXPONENT = C["hertz"], C["power"], C["exponent"]
-_L1, _L2, _L3, _L4 = C["layer_1"], C["layer_2"], C["layer_3"], C["layer_4"]
-_SLOPE, _LIMIT, _RESIDUAL = C["layer_slope"], C["layer_limit"], C["residual"]
+_WIDTH, _LAYER, _RESIDUAL = C["layer_width"], C["layer_0"], C["residual"]
 _DASHPOT, _VISCO, _TSUJI, _HUNT = C["dashpot"], C["viscoelastic"], C["tsuji"], C["hunt_crossley"]
 _GAMMA, _ALPHA = C["power_damping"], C["power_of_rate"]
 _RELAXING, _RELAXATION = C["relaxing"], C["relaxation_rate"]
@@ -67,6 +64,7 @@ def hertz_rows(stiffness: np.ndarray) -> np.ndarray:
     rows[:, _EXPONENT] = 1.5
     rows[:, _ALPHA] = 1.0
     rows[:, _LOG_SPEED] = 1.0
+    rows[:, _LAYER] = 1.0
     return rows
 
 
@@ -90,7 +88,7 @@ def acting(table: np.ndarray) -> Acting:
     some = (table != 0.0).any(axis=1)
     power, viscous = bool((table[_EXPONENT] != 1.5).any()), bool(some[_DASHPOT : _HUNT + 1].any())
     rate = bool(some[_GAMMA] or some[_LOG])
-    others = [power, bool(some[_SLOPE]), bool(some[_RESIDUAL]), viscous, rate]
+    others = [power, bool(some[_WIDTH]), bool(some[_RESIDUAL]), viscous, rate]
     others += [bool(some[_RELAXING]), bool(some[_ADHESION])]
     return Acting(not any(others), *others, bool(some[DRAG:].any()))
 
@@ -115,14 +113,18 @@ def load(n, table, uses, room, depth, spring):
 
 @njit(nogil=True, error_model="numpy")
 def _layer(n, table, room, spring):
-    """Correction of a thin layer, a polynomial of √δ up to its limit and a straight line beyond."""
+    """Layer on a core: Hertz force over a polynomial of u = 1/(1 + χ), and its slope in u, by Horner's rule."""
     for c in range(n):
-        r, x = room[ROOT, c], min(room[ROOT, c], table[_LIMIT, c])
-        l1, l2, l3, l4 = table[_L1, c], table[_L2, c], table[_L3, c], table[_L4, c]
-        g = 1.0 + x * (l1 + x * (l2 + x * (l3 + x * l4))) + table[_SLOPE, c] * (r - x)
-        dg = table[_SLOPE, c] if r > x else l1 + x * (2.0 * l2 + x * (3.0 * l3 + x * 4.0 * l4))
-        room[RISE, c] = room[RISE, c] * g + (0.5 * room[spring, c] * dg / r if r > 0.0 else 0.0)
-        room[spring, c] *= g
+        u = 1.0 / (1.0 + table[_WIDTH, c] * room[ROOT, c])
+        inverse, slope = table[_LAYER + DEGREE, c], 0.0
+        for k in range(DEGREE - 1, -1, -1):
+            slope = slope * u + inverse
+            inverse = inverse * u + table[_LAYER + k, c]
+        # d(1/inverse)/dδ, where √δ changes by 1/(2 √δ) and u by −width u².
+        rise = 0.5 * slope * table[_WIDTH, c] * u * u / (inverse * inverse)
+        if room[ROOT, c] > 0.0:
+            room[RISE, c] = room[RISE, c] / inverse + room[spring, c] * rise / room[ROOT, c]
+        room[spring, c] /= inverse
 
 
 @njit(nogil=True, error_model="numpy")

@@ -14,6 +14,7 @@ import numpy as np
 
 from sonicvacuum_blind.integrate import Problem
 from sonicvacuum_blind.laws import B, C, compression_at_rest, hertz_rows
+from sonicvacuum_blind.layer import DEGREE, polynomial
 
 G = 9.81
 REFERENCE = 1e-6  # m; compression at which all powers of the contact law give the Hertz force
@@ -51,6 +52,7 @@ class Plan:
         speed: m/s of the striker.
         gravity: m/s² towards the wall.
         static_force: preload on bead 1 in N.
+        core: what lies under the beads' coating; None for solid beads, or a rigid one.
         gauges: what reads it.
         modulus_ratio: on the modulus of every body made of the beads' material.
         mass_ratios, stiffness_ratios: (body, factor) and (contact, factor).
@@ -71,6 +73,7 @@ class Plan:
     speed: float
     gravity: float = 0.0
     static_force: float = 0.0
+    core: Solid | None = None
     gauges: tuple[Gauge, ...] = ()
     modulus_ratio: float = 1.0
     mass_ratios: tuple[tuple[int, float], ...] = ()
@@ -174,34 +177,26 @@ def contact_rows(plan: Plan) -> np.ndarray:
     inverse = np.append(1.0 / mass, 0.0)
     rows[:, C["tsuji"]] = law.get("tsuji", 0.0) * np.sqrt(stiffness / (inverse[:-1] + inverse[1:]))
     if law.get("inverse_layer", 0.0) > 0.0:
-        rows[:, C["layer_1"] : C["layer_limit"] + 1] = layer_columns(plan)
+        rows[:, C["layer_width"] : C["layer_0"] + DEGREE + 1] = layer_columns(plan)
     return rows
 
 
 def layer_columns(plan: Plan) -> np.ndarray:
-    """(contacts, 6) numbers of the bonded layer of thickness 1/`inverse_layer` on a rigid core.
+    """(contacts, DEGREE + 2) numbers of the layer of thickness 1/`inverse_layer` on the beads' core.
 
-    F/F_Hertz = 1 − (2α/π)χ + (4α²/π²)χ² − (8/π³)(α³ + (4π²/15)β)χ³ + (16α/π⁴)(α³ + (3π²/5)β)χ⁴, χ = √(R δ)/h
-    (Dimitriadis et al., Biophys. J. 82, 2798, 2002, Eq. 12, α and β for a bonded layer), up to where its
-    slope is largest, along the tangent beyond.
+    χ = √(R δ)/h between two beads as well, each layer taking half of δ on the radius 2R. The elasticity of
+    striker and wall is in series at equal χ: Hertz force over force becomes (… + e)/(1 + e), e the plane-strain
+    modulus of the layer over that of the other body.
     """
-    nu = plan.bead.poisson
-    alpha = -(1.2876 - 1.4678 * nu + 1.3442 * nu**2) / (1.0 - nu)
-    beta = (0.6387 - 1.0277 * nu + 1.5164 * nu**2) / (1.0 - nu)
-    p = np.polynomial.Polynomial(
-        [
-            1.0,
-            -2.0 * alpha / math.pi,
-            4.0 * alpha**2 / math.pi**2,
-            -8.0 / math.pi**3 * (alpha**3 + 4.0 * math.pi**2 / 15.0 * beta),
-            16.0 * alpha / math.pi**4 * (alpha**3 + 3.0 * math.pi**2 / 5.0 * beta),
-        ]
-    )
-    turning = [float(r.real) for r in p.deriv(2).roots() if abs(r.imag) < 1e-12 and r.real > 0.0]
-    limit = min(turning)
-    per_root = np.sqrt(plan.radii()) * plan.law["inverse_layer"]
-    columns = [p.coef[k] * per_root**k for k in range(1, 5)]
-    return np.stack([*columns, p.deriv()(limit) * per_root, limit / per_root], axis=1)
+    soft, core = plan.modulus(plan.bead), plan.core
+    share = soft / (core.modulus / (1.0 - core.poisson**2)) if core else 0.0
+    inverse = polynomial(plan.bead.poisson, share, core.poisson if core else plan.bead.poisson)
+    facing = np.zeros(plan.beads + 1)
+    facing[0] = soft / plan.modulus(plan.striker if plan.beads else plan.wall)
+    facing[-1] = soft / plan.modulus(plan.wall)
+    columns = np.tile(inverse, (len(facing), 1)) + facing[:, None] * np.eye(len(inverse))[0]
+    width = np.sqrt(plan.radii()) * plan.law["inverse_layer"]
+    return np.column_stack([width, columns / (1.0 + facing)[:, None]])
 
 
 def body_rows(plan: Plan, mass: np.ndarray) -> np.ndarray:

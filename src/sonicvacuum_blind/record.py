@@ -44,7 +44,7 @@ def _chain(design):
         "material": plan.bead.name,
     }
     if design.coating is not None and plan.beads:
-        bead |= {"coating_um": _clean(1e6 * design.coating), "core": "stainless-steel"}
+        bead |= {"coating_um": _clean(1e6 * design.coating), "core": plan.core.name}
     return {
         "beads": plan.beads,
         "orientation": "vertical" if plan.gravity else "horizontal",
@@ -59,7 +59,8 @@ def _materials(design):
     plan = design.reference
     block = {
         s.name: {"modulus_GPa": _clean(s.modulus / 1e9), "poisson": s.poisson}
-        for s in (plan.bead, plan.striker, plan.wall)
+        for s in (plan.bead, plan.striker, plan.wall, plan.core)
+        if s is not None
     }
     block[plan.bead.name]["modulus_rel_sigma"] = design.modulus_sigma
     return block

@@ -17,6 +17,7 @@ USUAL = 3e-5
 CLOSE = {
     "guide-friction": 1e-2,  # below 1 mm/s a straight line here and a cubic there
     "sensor-lowpass": 5e-4,  # two grids on which the force is taken as linear
+    "coating-thickness": 1e-3,  # two solutions of the layer, each put into a formula good to 6e-4
     "linear-dashpot": 1e-4,  # the force jumps where contacts close
 }
 

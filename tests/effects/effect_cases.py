@@ -44,6 +44,7 @@ def nominal(p: Plain | None = None) -> Setup:
         speed=p.speed,
         gravity=p.gravity,
         static_force=p.preload,
+        core=Elastic("core", p.core_modulus, p.core_poisson),
     )
     return Setup(chain, (Gauge("g3", "embedded", 3), Gauge("wall", "wall", None)))
 

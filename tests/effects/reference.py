@@ -6,9 +6,11 @@ the true forces (weights and preloads act as such, nothing is measured from rest
 
 import math
 from dataclasses import dataclass, field
+from functools import cache
 
 import numpy as np
 from scipy.integrate import solve_ivp
+from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 
 G = 9.81
@@ -24,6 +26,8 @@ class Plain:
     poisson: float = 0.388
     wall_modulus: float = 193e9
     wall_poisson: float = 0.30
+    core_modulus: float = 193e9
+    core_poisson: float = 0.30
     striker_modulus: float = 370e9
     striker_poisson: float = 0.22
     mass: float = 0.44e-3
@@ -72,24 +76,47 @@ class Plain:
         return constants
 
 
+def layer_compliance(x, p: Plain):
+    """Surface compliance of a layer bonded to its core over that of a half-space of the layer (Burmister 1945)."""
+    shear = p.modulus / (1 + p.poisson) / p.core_modulus * (1 + p.core_poisson)
+    own, other = 3 - 4 * p.poisson, 3 - 4 * p.core_poisson
+    a, b = (shear * other - own) / (1 + shear * other), (shear - 1) / (shear + own)
+    e = np.exp(-2 * x)
+    return (1 + 4 * b * x * e - a * b * e**2) / (1 - (a + b + 4 * b * x**2) * e + a * b * e**2)
+
+
+@cache
+def inverse_layer_factor(*materials):
+    """Hertz force over force of a layer under a rigid body, a spline over ln chi, from the integral equation.
+
+    Of materials modulus, poisson, core_modulus and core_poisson: see `sonicvacuum.physics.layered`.
+    """
+    p = Plain(modulus=materials[0], poisson=materials[1], core_modulus=materials[2], core_poisson=materials[3])
+    x, w = np.polynomial.legendre.leggauss(400)
+    x, lack = 11 * (x + 1), 11 * w * (1 - layer_compliance(11 * (x + 1), p))
+    s, w = np.polynomial.legendre.leggauss(90)
+    s, w = (s + 1) / 2, w / 2
+    chi, inverse = [], []
+    for a in np.geomspace(0.002, 8, 90):
+        waves = np.cos(a * np.outer(np.append(s, 1), x))
+        kernel = a * (waves * lack) @ waves[:-1].T * w
+        right = np.stack([np.ones_like(s), s**2], axis=1)
+        flat, bowl = np.linalg.solve(np.pi / 2 * np.eye(len(s)) - kernel[:-1], right).T
+        depth = (1 + kernel[-1] @ bowl) / (1 + kernel[-1] @ flat)
+        chi.append(a * np.sqrt(depth))
+        inverse.append(4 / 3 * depth**1.5 / np.pi / (w @ (depth * flat - bowl)))
+    return CubicSpline(np.log(chi), inverse)
+
+
 def layer_factor(p: Plain, delta):
-    """Dimitriadis' quartic up to its inflection, found numerically, and its tangent from there."""
-    nu = p.poisson
-    alpha = -(1.2876 - 1.4678 * nu + 1.3442 * nu**2) / (1 - nu)
-    beta = (0.6387 - 1.0277 * nu + 1.5164 * nu**2) / (1 - nu)
-    quartic = np.polynomial.Polynomial(
-        [
-            1,
-            -2 * alpha / np.pi,
-            4 * alpha**2 / np.pi**2,
-            -8 / np.pi**3 * (alpha**3 + 4 * np.pi**2 / 15 * beta),
-            16 * alpha / np.pi**4 * (alpha**3 + 3 * np.pi**2 / 5 * beta),
-        ]
-    )
-    (bend,) = [r.real for r in quartic.deriv(2).roots() if r.real > 0]
+    """Force over Hertz force; striker and wall in series with the layer at equal chi."""
     chi = np.sqrt(p.radii() * np.maximum(delta, 0)) / p.layer
-    line = quartic(bend) + quartic.deriv()(bend) * (chi - bend)
-    return np.where(chi < bend, quartic(chi), line)
+    inverse = inverse_layer_factor(p.modulus, p.poisson, p.core_modulus, p.core_poisson)
+    own = np.where(chi > 0.002, inverse(np.log(np.maximum(chi, 0.002))), 1.0)
+    plane = [e / (1 - nu**2) for e, nu in ((p.striker_modulus, p.striker_poisson), (p.wall_modulus, p.wall_poisson))]
+    facing = np.zeros(p.beads + 1)
+    facing[[0, -1]] = p.modulus / (1 - p.poisson**2) / np.array(plane)
+    return (1 + facing) / (own + facing)
 
 
 def loading(p: Plain, delta):

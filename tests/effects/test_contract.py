@@ -31,7 +31,8 @@ SENSORS = (("embedded", 3), ("wall", None))
 # In sonic vacuum a load at rest is no small perturbation: delta_0 = (F_0/K)^{2/3}, Hertz's law inverted.
 LEADING_POWER = {"static-preload": 2 / 3, "gravity": 2 / 3}
 # The dashpot's force jumps from 0 to c v where a contact closes, which costs either solver its order there.
-AGREEMENT = {"linear-dashpot": 3e-5}
+# The layer's rational form departs from the exact solution by up to 6e-4 in force.
+AGREEMENT = {"linear-dashpot": 3e-5, "coating-thickness": 1e-3}
 
 
 def brings_a_term(id):
@@ -212,7 +213,5 @@ LOSSLESS = [(i, n) for i, n in SWITCHES if not effect(i).dissipative]
 @pytest.mark.parametrize(("id", "name"), LOSSLESS)
 def test_a_lossless_effect_keeps_the_energy(id, name):
     energy = batch(id, name).history.energy
-    # Blanes and Moan's scheme at a quarter of the default step; Gauss's rule for the energy of the layer
-    # errs by 5e-6 where its factor turns straight.
-    room = 1e-5 if id == "coating-thickness" else 1e-6
-    np.testing.assert_allclose(energy, np.broadcast_to(energy[0], energy.shape), rtol=room)
+    # Blanes and Moan's scheme at a quarter of the default step.
+    np.testing.assert_allclose(energy, np.broadcast_to(energy[0], energy.shape), rtol=1e-6)

@@ -19,14 +19,14 @@ from sonicvacuum.physics.lanes import root
 from sonicvacuum.physics.laws import Term
 
 
-def layer_factor(delta, width, deep, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10):
-    """Force over Hertz force: y^10/(deep y^10 + a1 y^9 + … + a10), y = 1 + width sqrt(delta)."""
+def layer_factor(delta, width, deep, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12):
+    """Force over Hertz force: y^12/(deep y^12 + a1 y^11 + … + a12), y = 1 + width sqrt(delta)."""
     y = 1.0 + width * root(delta)
-    square = y * y
-    eighth = square * square * square * square
     below = ((((deep * y + a1) * y + a2) * y + a3) * y + a4) * y + a5
     below = ((((below * y + a6) * y + a7) * y + a8) * y + a9) * y + a10
-    return eighth * square / below
+    below = (below * y + a11) * y + a12
+    fourth = y * y * y * y
+    return fourth * fourth * fourth / below
 
 
 TERM = Term("bonded-layer", "factor", layer_factor, 2 + layer_law.POWERS)
@@ -91,7 +91,7 @@ EFFECT = Effect(
     title="Bonded coating on its core",
     missing="the contact radius is not small against a soft bonded layer on a hard core; the contact "
     "stiffens with load",
-    equation="F = F_Hertz g(chi), chi = sqrt(R* delta)/t, 1/g = c + a1 u + ... + a10 u^10, u = 1/(1 + chi), "
+    equation="F = F_Hertz g(chi), chi = sqrt(R* delta)/t, 1/g = c + a1 u + ... + a12 u^12, u = 1/(1 + 1.25 chi), "
     "c = E1'/E0': exact axisymmetric frictionless contact of a bonded layer on its core, solved for the "
     "layer's and the core's constants; wall or striker in series, 1/g -> (1/g + e)/(1 + e), e = E1'/E'",
     energy="stores the integral of F over delta per contact",

@@ -23,9 +23,9 @@ import numpy as np
 
 from sonicvacuum.physics.layered import Layer, solve
 
-SCALE, POWERS = 1.0, 10
+SCALE, POWERS = 0.8, 12
 # Contact radii in thicknesses of the least squares; those beyond WIDEST only guide the way to the limit.
-RADII, WIDEST, GUIDING = np.geomspace(0.02, 30.0, 32), 12.0, 0.1
+RADII, WIDEST, GUIDING = np.geomspace(0.01, 30.0, 44), 12.0, 0.1
 # Fewer points than the reference solution takes: good to 1e-6.
 COARSE = 0.6
 # Ratios c in the range of which the law is meant, 1e-4 standing for a rigid core; and the grid between.

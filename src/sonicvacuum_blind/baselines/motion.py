@@ -47,6 +47,7 @@ def nominal(record: Record, run: Run) -> Plan:
     bead, striker, wall = (
         Solid(m.name, m.modulus_Pa, m.poisson) for m in (one.surface, run.striker.surface, specimen.wall)
     )
+    core = one.core and Solid(one.core.name, one.core.modulus_Pa, one.core.poisson)
     gauges = tuple(Gauge(g.id, g.kind, g.bead) for g in record.gauges)
     return Plan(
         beads=record.beads,
@@ -60,6 +61,7 @@ def nominal(record: Record, run: Run) -> Plan:
         speed=run.striker.speed_m_s,
         gravity=specimen.gravity_m_s2,
         static_force=specimen.static_force_N,
+        core=core,
         gauges=gauges,
     )
 
