@@ -113,7 +113,7 @@ def load(n, table, uses, room, depth, spring):
 
 @njit(nogil=True, error_model="numpy")
 def _layer(n, table, room, spring):
-    """Layer on a core: Hertz force over a polynomial of u = 1/(1 + χ), and its slope in u, by Horner's rule."""
+    """Layer on a core: Hertz force over a polynomial of u = 1/(1 + χ), with its slope by Horner's rule."""
     for c in range(n):
         u = 1.0 / (1.0 + table[_WIDTH, c] * room[ROOT, c])
         inverse, slope = table[_LAYER + DEGREE, c], 0.0

@@ -1,14 +1,14 @@
-"""A coating that acts as the layer it is, for hidden-effect data: solved apart from the engine, by other means.
+"""A coating that acts as the layer it is, for hidden-effect data: solved apart from the engine.
 
 The surface of a layer bonded to a half-space under a pressure wave of length 2π/k follows from six amplitudes
 of Papkovich and Neuber's solution, found numerically for each k. The contact is then a Galerkin problem: the
-density φ of the pressure's transform is a sum of even Legendre polynomials of the radius, whose cosine
-transforms are spherical Bessel functions j_2n (Abramowitz & Stegun 10.1.14), so that
+density φ of the pressure's transform is a sum of even Legendre polynomials of the radius s, whose cosine
+transforms are spherical Bessel functions j_2n (Abramowitz & Stegun 10.1.14), so that, with B_n = (−1)^n j_2n,
 
-    (π/2) b_m/(4m + 1) − (a/t) Σ_n b_n (−1)^{n+m} ∫(1 − L(x)) j_2n(x a/t) j_2m(x a/t) dx = depth δ_m0 − (s², P_2m)
+    (π/2) b_m/(4m + 1) − (a/t) Σ_n b_n ∫(1 − L(x)) B_n(x a/t) B_m(x a/t) dx = depth δ_m0 − (s², P_2m)
 
-with Σ b_n = 0 (no pressure at the edge) and force π b_0; depth in a²/R, force in E* a³/R. For the integrator
-the ratio of Hertz force to force is a polynomial of u = 1/(1 + χ), χ = √(R δ)/t, least squares of that solution.
+with Σ b_n = 0 (no pressure at the edge) and force π b_0; depth in a²/R, force in E* a³/R. The integrator
+takes the ratio of Hertz force to force as a polynomial of u = 1/(1 + χ), χ = √(R δ)/t, by least squares.
 """
 
 from functools import cache, lru_cache
@@ -16,12 +16,12 @@ from functools import cache, lru_cache
 import numpy as np
 from scipy.special import roots_legendre, spherical_jn
 
-# Powers of u from 0 to this; radii in layer thicknesses of the least squares, sparser than their number.
+# Highest power of u; contact radii of the least squares in layer thicknesses.
 DEGREE = 12
 RADII = tuple(np.geomspace(0.015, 24.0, 48))
 # Beyond so many thicknesses the points only guide the polynomial to its limit, with this weight.
 TOUCHED, GUIDING = 12.0, 0.1
-# Softest and stiffest core: E1'/E0' of the layer and the core.
+# Range of E1'/E0' of layer and core.
 STIFFEST, SOFTEST = 1e-4, 10.0
 # Wavenumbers in 1/t, where 1 − L has died out beyond, and their points.
 END, POINTS = 20.0, 640
@@ -29,7 +29,7 @@ END, POINTS = 20.0, 640
 
 @lru_cache(maxsize=256)
 def polynomial(poisson: float, core: float, core_poisson: float) -> np.ndarray:
-    """(DEGREE + 1,) coefficients of Hertz force over force in powers of u, between a layer and a rigid body.
+    """(DEGREE + 1,) coefficients of Hertz force over force in powers of u, a rigid body facing the layer.
 
     `core` is E1'/E0', the plane-strain modulus of the layer over that of the core.
     """

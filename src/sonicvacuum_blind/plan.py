@@ -6,7 +6,6 @@ the striker (0), contact c joins body c and c + 1, the last contact is the wall.
 a ball that hits the wall.
 """
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
@@ -185,8 +184,8 @@ def layer_columns(plan: Plan) -> np.ndarray:
     """(contacts, DEGREE + 2) numbers of the layer of thickness 1/`inverse_layer` on the beads' core.
 
     χ = √(R δ)/h between two beads as well, each layer taking half of δ on the radius 2R. The elasticity of
-    striker and wall is in series at equal χ: Hertz force over force becomes (… + e)/(1 + e), e the plane-strain
-    modulus of the layer over that of the other body.
+    striker and wall is in series at equal χ: Hertz force over force becomes (… + e)/(1 + e), e being the
+    plane-strain modulus of the layer over that of the other body.
     """
     soft, core = plan.modulus(plan.bead), plan.core
     share = soft / (core.modulus / (1.0 - core.poisson**2)) if core else 0.0

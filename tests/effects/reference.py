@@ -77,7 +77,7 @@ class Plain:
 
 
 def layer_compliance(x, p: Plain):
-    """Surface compliance of a layer bonded to its core over that of a half-space of the layer (Burmister 1945)."""
+    """Surface compliance of a bonded layer over that of a half-space of it (Burmister 1945)."""
     shear = p.modulus / (1 + p.poisson) / p.core_modulus * (1 + p.core_poisson)
     own, other = 3 - 4 * p.poisson, 3 - 4 * p.core_poisson
     a, b = (shear * other - own) / (1 + shear * other), (shear - 1) / (shear + own)
@@ -91,7 +91,9 @@ def inverse_layer_factor(*materials):
 
     Of materials modulus, poisson, core_modulus and core_poisson: see `sonicvacuum.physics.layered`.
     """
-    p = Plain(modulus=materials[0], poisson=materials[1], core_modulus=materials[2], core_poisson=materials[3])
+    p = Plain(
+        modulus=materials[0], poisson=materials[1], core_modulus=materials[2], core_poisson=materials[3]
+    )
     x, w = np.polynomial.legendre.leggauss(400)
     x, lack = 11 * (x + 1), 11 * w * (1 - layer_compliance(11 * (x + 1), p))
     s, w = np.polynomial.legendre.leggauss(90)
@@ -113,7 +115,10 @@ def layer_factor(p: Plain, delta):
     chi = np.sqrt(p.radii() * np.maximum(delta, 0)) / p.layer
     inverse = inverse_layer_factor(p.modulus, p.poisson, p.core_modulus, p.core_poisson)
     own = np.where(chi > 0.002, inverse(np.log(np.maximum(chi, 0.002))), 1.0)
-    plane = [e / (1 - nu**2) for e, nu in ((p.striker_modulus, p.striker_poisson), (p.wall_modulus, p.wall_poisson))]
+    plane = [
+        e / (1 - nu**2)
+        for e, nu in ((p.striker_modulus, p.striker_poisson), (p.wall_modulus, p.wall_poisson))
+    ]
     facing = np.zeros(p.beads + 1)
     facing[[0, -1]] = p.modulus / (1 - p.poisson**2) / np.array(plane)
     return (1 + facing) / (own + facing)

@@ -6,15 +6,17 @@ With chi = √(R* delta)/t and u = 1/(1 + chi/SCALE), Hertz force over force on 
 
 which is Hertz of the coating for narrow contacts and Hertz of the core for wide ones, exactly. The
 coefficients are least squares of the exact solution (`layered`), relative to 1/g, up to a contact radius of
-WIDEST thicknesses. They are linear in 1/g, so that interpolating them interpolates 1/g: they are worked out at
-fixed ratios c, STEP apart in ln c, once for each pair of Poisson's ratios (a few milliseconds each, as
-needed), and interpolated by fifth powers between. No table has to be kept.
+WIDEST thicknesses. They are linear in 1/g, so that interpolating them interpolates 1/g: they are worked out
+at fixed ratios c, STEP apart in ln c, once for each pair of Poisson's ratios (some 20 ms each, as needed),
+and interpolated by fifth powers between. No table has to be kept.
 
 A facing body of its own elasticity is put in series at equal chi, 1/g becoming (1/g + e)/(1 + e) with e =
 E1'/E' of that body: exact where one of the two rules.
 
-Errors of the force at given compression against the exact solution, contact radii up to 10 thicknesses: see
-the tests, which measure them. Beyond, the form leads smoothly to the limit.
+Errors of the force at given compression against the exact solution, contact radii up to 10 thicknesses: 3e-4
+for Poisson's ratios below 0.4, 6e-4 up to 1/2; wider ones are led smoothly to the limit. The series for the
+facing body is stiffer than exact by up to 1 % (the paper's coating on steel), 2.4 % (on any body), 9 % at a
+Poisson's ratio of 1/2.
 """
 
 from functools import lru_cache
@@ -59,7 +61,7 @@ def coefficients(poisson: float, core, core_poisson: float) -> tuple[np.ndarray,
 
 
 def faced(deep, a, facing):
-    """Limit and coefficients with a body of finite stiffness in series: (…), (…, POWERS), `facing` (…) E1'/E'."""
+    """The same with a body of finite stiffness in series, `facing` (…) being E1'/E' of that body."""
     own = 1.0 / (1.0 + np.asarray(facing, dtype=float))
     return own * deep + (1.0 - own), own[..., None] * a
 

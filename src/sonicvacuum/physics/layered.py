@@ -1,11 +1,11 @@
-"""The exact contact of a sphere on an elastic layer that covers an elastic half-space: the reference solution.
+"""The exact contact of a sphere on an elastic layer on an elastic half-space: the reference solution.
 
 Frictionless, axisymmetric, small strains; a layer of thickness t, on a core to which it is bonded or on which
 it slips, is touched over a circle of radius a by a sphere of radius R or by the flat end of a cylinder. Under
 a pressure of wavenumber k the surface sinks by 2 L(kt)/(E1' k) times that pressure, E' = E/(1 − nu²), with
 L(∞) = 1 (half-space of the layer) and L(0) = E1'/E0' (half-space of the core). Dual integral equations with
 this L reduce to a Fredholm equation of the second kind (Lebedev & Ufliand, J. Appl. Math. Mech. 22, 442
-(1958); Perriot & Barthel, J. Mater. Res. 19, 600 (2004) in other words). In units of a, on 0 < s < 1:
+(1958); in other words Perriot & Barthel, J. Mater. Res. 19, 600 (2004)). In units of a, on 0 < s < 1:
 
     (pi/2) phi(s) − integral of phi(r) M(s, r) dr = depth − s²,
     M(s, r) = (a/t) integral of (1 − L(x)) cos(x s a/t) cos(x r a/t) dx,
@@ -71,7 +71,7 @@ class Layer:
 
 
 def _bonded(x, layer):
-    """Layer that sticks to its core (Burmister, J. Appl. Phys. 16, 89 (1945); Perriot & Barthel 2004, Eq. 2)."""
+    """Layer that sticks to its core (Burmister, J. Appl. Phys. 16, 89 (1945); Perriot & Barthel 2004)."""
     shear = layer.core * (1.0 - layer.poisson) / (1.0 - layer.core_poisson)  # mu1/mu0
     own, other = 3.0 - 4.0 * layer.poisson, 3.0 - 4.0 * layer.core_poisson
     a, b = (shear * other - own) / (1.0 + shear * other), (shear - 1.0) / (shear + own)
@@ -82,8 +82,8 @@ def _bonded(x, layer):
 def _slipping(x, layer):
     """Layer that slips on its core: sinh, cosh and x times 4 exp(−2x), from plates bent and squeezed.
 
-    A plate without shear on its faces answers equal pressures on both with (cosh x − 1)/(sinh x + x), opposite
-    ones with (cosh x + 1)/(sinh x − x); the lower face follows the core (Sneddon, Fourier Transforms, 1951).
+    A plate without shear on its faces answers equal pressures on both with (cosh x − 1)/(sinh x + x),
+    opposite ones with (cosh x + 1)/(sinh x − x); the lower face follows the core (Sneddon, Fourier Transforms, 1951).
     """
     e = np.exp(-2.0 * x)
     squared, product = (1.0 - e) ** 2, 1.0 - e * e + 4.0 * x * e
@@ -143,9 +143,9 @@ def _contact(layer, radius, refine):
 
 @lru_cache(maxsize=64)
 def _rules(radius, refine):
-    """Points and weights on the radius and in wavenumbers, and the cosines of both: the same for all layers."""
+    """Points and weights on the radius and in wavenumbers, cosines of both: the same for all layers."""
     s, weight = _gauss(int(refine * (FEWEST_POINTS + POINTS_PER_RADIUS * radius)), 1.0)
-    # Products of cosines turn by 2 a/t HIGHEST radians: a point for two of them, and for the shape of L itself.
+    # Products of cosines turn by 2 a/t HIGHEST radians: a point for two, and some for the shape of L itself.
     x, step = _panels(int(max(refine, 1.0) * (100 + 1.2 * HIGHEST * radius)) // PANEL + 1, HIGHEST)
     return s, weight, x, step, np.cos(radius * np.outer(np.append(s, 1.0), x))
 
