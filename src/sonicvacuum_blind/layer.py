@@ -81,7 +81,7 @@ def _wavenumbers():
 
 
 def surface(x: np.ndarray, poisson: float, core: float, core_poisson: float) -> np.ndarray:
-    """L(x): how far a layer's surface yields to a pressure wave, over a half-space of the layer; x = k t (n,).
+    """L(x) of a layer at x = k t (n,): its surface yielding to a pressure wave, over a half-space of it.
 
     Unknowns: amplitudes of ∇φ and of (3 − 4ν)ψ e_z − z∇ψ, with φ and ψ as exp(∓z) in the layer (z from the
     surface, growing ones from the core) and exp(−z) in the core; k = 1. Equations: pressure 1 and no shear
@@ -107,7 +107,7 @@ def surface(x: np.ndarray, poisson: float, core: float, core_poisson: float) -> 
 
 
 def _state(z, sign, nu):
-    """(n, 4, 2) displacements u_x, u_z (times 2 mu) and stresses s_zz, s_xz of both solutions at depth z (n,).
+    """(n, 4, 2) displacements u_x, u_z (times 2 mu), stresses s_zz, s_xz of both solutions at depth z (n,).
 
     Without the factor exp(sign z); u_x and s_xz are amplitudes of sin x, the others of cos x.
     """

@@ -10,10 +10,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sonicvacuum.observe.contacts import contact_radius, max_compression, mean_pressure, peak_pressure
+from sonicvacuum.card import CardBead
+from sonicvacuum.observe.contacts import contact_radius, mean_pressure, peak_pressure
 from sonicvacuum.observe.pulse import Pulse, main_pulse
 from sonicvacuum.observe.shape import duration, onset
 from sonicvacuum.observe.trace import Measured, missing
+from sonicvacuum.physics import layer_law
 from sonicvacuum_paper.one_run import OneRun
 from sonicvacuum_paper.printed import ASSUMED
 
@@ -30,8 +32,8 @@ class Loaded:
         run, contact: which.
         pulse: its main pulse, dynamic part.
         force: total in N.
-        depth: approach in m.
-        radius: of the touching area in m.
+        depth: approach in m, by the law of the run.
+        radius: √(R* depth) in m: that of the touching area by Hertz's law.
         coatings: how many share the approach.
     """
 
@@ -48,7 +50,7 @@ class Loaded:
         """The contact at its peak; NaN where it has none."""
         pulse = main_pulse(run.contact(contact))
         force = pulse.force + run.static_force(contact)
-        depth = float(max_compression(force, run.stiffness(contact)))
+        depth = float(run.depth_at(contact, [force])[0])
         radius = float(contact_radius(depth, run.reduced_radius(contact)))
         return cls(run, contact, pulse, force, depth, radius, 1 if contact == run.card.beads else 2)
 
@@ -115,8 +117,9 @@ def _coated(c, lasting):
         )
     if c.coatings == 2:
         yield "core_compliance_fraction", "1", Measured(core_compliance(c))
-        yield "half_space_correction", "1", Measured(half_space_correction(c.radius / layer, surface.poisson))
-        yield "thin_layer_over_hertz", "1", Measured(thin_layer_force(c) / c.force)
+        yield "half_space_correction", "1", Measured(half_space_correction(c.radius / layer, c.bead))
+        hertz = c.run.stiffness(c.contact) * c.depth**1.5
+        yield "thin_layer_over_hertz", "1", Measured(thin_layer_force(c) / hertz)
         yield from _strain_rates(c)
     if surface.density_kg_m3 is not None:
         crossing = layer / math.sqrt(c.confined_modulus / surface.density_kg_m3)
@@ -125,8 +128,8 @@ def _coated(c, lasting):
 
 def _strain_rates(c):
     rise = onset(c.run.contact(c.contact), c.pulse, RISE_LEVEL)
-    stiffness, static = c.run.stiffness(c.contact), c.run.static_force(c.contact)
-    approach = c.depth - float(max_compression(static, stiffness))
+    static = c.run.static_force(c.contact)
+    approach = c.depth - float(c.run.depth_at(c.contact, [static])[0])
     two_coatings = 2.0 * c.bead.coating_m
     speed = approach / (c.pulse.time - rise.value)
     yield "strain_rate", "1/s", Measured(speed / two_coatings, rise.reason)
@@ -138,7 +141,7 @@ def _strain_rates(c):
 def largest_rate(c: Loaded, static: float) -> float:
     """Largest d(delta)/dt in m/s before the main peak."""
     trace = c.run.contact(c.contact)
-    depth = max_compression(trace.force[: c.pulse.peak + 2] + static, c.run.stiffness(c.contact))
+    depth = c.run.depth_at(c.contact, trace.force[: c.pulse.peak + 2] + static)
     return float(np.gradient(depth, trace.interval).max())
 
 
@@ -160,17 +163,14 @@ def core_compliance(c: Loaded) -> float:
     return 1.5 * c.force / (plane * c.radius * c.depth)
 
 
-def half_space_correction(x: float, poisson: float) -> float:
-    """Force on a layer bonded to a rigid base over that on a half-space, x = contact radius/thickness.
+def half_space_correction(x: float, bead: CardBead) -> float:
+    """Force on a layer bonded to its core over that on a half-space of it at the same depth.
 
-    Dimitriadis et al., Biophys. J. 82, 2798 (2002), meant for x up to about 1.
+    Exact contact (`sonicvacuum.physics.layered`); x = √(R* × approach) over the layer's thickness.
     """
-    a = -(1.2876 - 1.4678 * poisson + 1.3442 * poisson**2) / (1.0 - poisson)
-    b = (0.6387 - 1.0277 * poisson + 1.5164 * poisson**2) / (1.0 - poisson)
-    pi = math.pi
-    third = 8.0 / pi**3 * (a**3 + 4.0 * pi**2 / 15.0 * b)
-    fourth = 16.0 * a / pi**4 * (a**3 + 3.0 * pi**2 / 5.0 * b)
-    return 1.0 - 2.0 * a / pi * x + 4.0 * a**2 / pi**2 * x**2 - third * x**3 + fourth * x**4
+    layer, core = (m.modulus_Pa / (1.0 - m.poisson**2) for m in (bead.surface, bead.core))
+    deep, a = layer_law.coefficients(bead.surface.poisson, np.array([layer / core]), bead.core.poisson)
+    return float(layer_law.factor(x, deep[0], a[0]))
 
 
 def thin_layer_force(c: Loaded) -> float:

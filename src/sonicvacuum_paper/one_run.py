@@ -113,18 +113,23 @@ class OneRun:
         """Force in N at rest."""
         return float(self._at_rest[0][contact])
 
+    def depth_at(self, contact: int, force: np.ndarray) -> np.ndarray:
+        """(n,) compression in m of a contact that bears `force` (n,) in N, by the law of the run."""
+        chain = self.study.chain.take(np.array([self.lane]))
+        return chain.depth_at(contact, np.asarray(force)[:, None])[:, 0]
+
     def stiffness(self, contact: int) -> float:
         """Hertz constant in N/m^(3/2)."""
-        return float(self._at_rest[1][contact])
+        return float(self._at_rest[2][contact])
 
     def reduced_radius(self, contact: int) -> float:
         """Effective radius in m."""
-        return float(self._at_rest[2][contact])
+        return float(self._at_rest[1][contact])
 
     @cached_property
     def _at_rest(self):
         chain, bodies = self.study.chain, self.card.beads + 1
-        tables = chain.static_forces(bodies), chain.stiffnesses(bodies), chain.reduced_radii(bodies)
+        tables = chain.static_forces(bodies), chain.reduced_radii(bodies), chain.stiffnesses(bodies)
         return [np.broadcast_to(t, (bodies, chain.lanes))[:, self.lane] for t in tables]
 
     def contacts_between_gauges(self) -> range:

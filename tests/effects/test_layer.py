@@ -7,8 +7,8 @@ from effect_cases import in_lanes, nominal
 from sonicvacuum.effects import effect
 from sonicvacuum.effects.coating_thickness import coefficients, layer_factor
 from sonicvacuum.physics.contact import hertz_constant
+from sonicvacuum.physics.laws import columns_of, depth_at, elastic_at
 from sonicvacuum.physics.layered import Layer, solve
-from sonicvacuum.physics.laws import columns_of, elastic_at, rest_compression
 
 THICKNESS = 50e-6
 
@@ -60,7 +60,7 @@ def test_depth_at_rest_is_that_of_the_law_in_force():
     laws = chain.laws()
     table = chain.coefficients(laws, 7)
     load = np.full((7, 1), 0.2)
-    depth = rest_compression(laws, table, load)
+    depth = depth_at(laws, table, load)
     np.testing.assert_allclose(elastic_at(laws, table, depth), load, rtol=1e-12)  # rounding
     hertz = (load / chain.stiffnesses(7)) ** (2.0 / 3.0)
     assert np.all(depth < 0.8 * hertz)

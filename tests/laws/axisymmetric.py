@@ -1,8 +1,8 @@
 """Axisymmetric finite elements of a layer on its core: the layer's contact by a method of its own.
 
-Nine-node elements on a rectangular grid, lengths in layer thicknesses, E1' = 1. The contact of radius a under a
-profile is linear in the depth: F = depth S(a) − B(a), S of a flat punch and B of the bowl r²/2; the depth that
-belongs to a makes F stationary in a (no pressure at the edge).
+Nine-node elements on a rectangular grid, lengths in layer thicknesses, E1' = 1. The contact of radius a under
+a profile is linear in the depth: F = depth S(a) − B(a), S of a flat punch and B of the bowl r²/2; the depth
+that belongs to a makes F stationary in a (no pressure at the edge).
 """
 
 import numpy as np

@@ -92,8 +92,8 @@ EFFECT = Effect(
     missing="the contact radius is not small against a soft bonded layer on a hard core; the contact "
     "stiffens with load",
     equation="F = F_Hertz g(chi), chi = sqrt(R* delta)/t, 1/g = c + a1 u + ... + a12 u^12, "
-    "u = 1/(1 + 1.25 chi), c = E1'/E0': exact axisymmetric frictionless contact of a bonded layer on its core, solved for the "
-    "layer's and the core's constants; wall or striker in series, 1/g -> (1/g + e)/(1 + e), e = E1'/E'",
+    "u = 1/(1 + 1.25 chi), c = E1'/E0': exact axisymmetric frictionless contact of a bonded layer on its "
+    "core, solved for the constants of both; wall or striker in series, 1/g -> (1/g + e)/(1 + e), e = E1'/E'",
     energy="stores the integral of F over delta per contact",
     reference="integral equation: Lebedev & Ufliand, J. Appl. Math. Mech. 22, 442 (1958); Perriot & Barthel, "
     "J. Mater. Res. 19, 600 (2004); limits: Johnson, Contact Mechanics (1985), Sec. 5.8; Dimitriadis et al., "

@@ -15,8 +15,13 @@ import numpy as np
 
 from sonicvacuum.laboratory.bodies import Bodies
 from sonicvacuum.physics.bodies import Body, Elastic
-from sonicvacuum.physics.contact import hertz_constant, radius_of_curvature, reduced_modulus
-from sonicvacuum.physics.laws import HERTZ, LawSet, Term
+from sonicvacuum.physics.contact import (
+    compression_at,
+    hertz_constant,
+    radius_of_curvature,
+    reduced_modulus,
+)
+from sonicvacuum.physics.laws import HERTZ, LawSet, Term, depth_at
 
 
 @dataclass(frozen=True)
@@ -304,6 +309,17 @@ class Chain:
             start = laws.first_coefficient[action.term.name]
             table[:, start : start + action.term.coefficients] = action.table(self, stiffness, mass)
         return table
+
+    def depth_at(self, contact: int, force) -> np.ndarray:
+        """(n, lanes) compression in m at which one contact bears `force` (n, lanes) in N while it is loaded.
+
+        By the loading curve in force, Hertz or not; 0 where the force is not positive.
+        """
+        force = np.broadcast_to(np.asarray(force, dtype=float), (len(force), self.lanes))
+        laws, bodies = self.laws(), contact + 1
+        if not laws.in_slot("factor") and HERTZ in laws.in_slot("elastic"):
+            return compression_at(np.maximum(force, 0.0), self.stiffnesses(bodies)[contact])
+        return depth_at(laws, self.coefficients(laws, bodies)[contact:], force)
 
     def _scaled(self, values, what):
         for e in self.departures:

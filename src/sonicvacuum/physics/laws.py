@@ -177,10 +177,11 @@ def elastic_at(laws: LawSet, coefficients: np.ndarray, delta: np.ndarray) -> np.
     return force
 
 
-def rest_compression(laws: LawSet, coefficients: np.ndarray, load: np.ndarray) -> np.ndarray:
-    """Compression in m at which each contact bears its static `load` (bodies, lanes) in N.
+def depth_at(laws: LawSet, coefficients: np.ndarray, load: np.ndarray) -> np.ndarray:
+    """Compression in m at which each contact bears `load` (bodies, lanes) in N by the loading curve in force.
 
-    Secant method on ln F(ln δ), which is straight for power laws and nearly so for all contact laws.
+    `coefficients` is (bodies, n, lanes); 0 where the load is not positive. Secant method on
+    ln F(ln δ), which is straight for power laws and nearly so for all contact laws.
     """
     borne = load > 0.0
     wanted = np.log(np.where(borne, load, 1.0))

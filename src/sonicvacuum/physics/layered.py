@@ -10,9 +10,9 @@ this L reduce to a Fredholm equation of the second kind (Lebedev & Ufliand, J. A
     (pi/2) phi(s) − integral of phi(r) M(s, r) dr = depth − s²,
     M(s, r) = (a/t) integral of (1 − L(x)) cos(x s a/t) cos(x r a/t) dx,
 
-depth in a²/R, force = pi times the integral of phi, in E* a³/R. The pressure of a sphere vanishes at the edge,
-which is phi(1) = 0 and fixes the depth. A flat punch has the right-hand side 1. Solved by Nyström's method
-with Gauss's rule, which converges faster than any power.
+depth in a²/R, force = pi times the integral of phi, in E* a³/R. The pressure of a sphere vanishes at the
+edge, which is phi(1) = 0 and fixes the depth. A flat punch has the right-hand side 1. Solved by Nyström's
+method with Gauss's rule, which converges faster than any power.
 
 An elastic body facing the layer adds its own compliance, constant in k: L and 1/E1' then stand for the sum of
 both. Two equal coated spheres mirror each other: each is a layer indented by half the approach by a rigid
@@ -83,7 +83,8 @@ def _slipping(x, layer):
     """Layer that slips on its core: sinh, cosh and x times 4 exp(−2x), from plates bent and squeezed.
 
     A plate without shear on its faces answers equal pressures on both with (cosh x − 1)/(sinh x + x),
-    opposite ones with (cosh x + 1)/(sinh x − x); the lower face follows the core (Sneddon, Fourier Transforms, 1951).
+    opposite ones with (cosh x + 1)/(sinh x − x); the lower face follows the core (Sneddon, Fourier
+    Transforms, 1951).
     """
     e = np.exp(-2.0 * x)
     squared, product = (1.0 - e) ** 2, 1.0 - e * e + 4.0 * x * e

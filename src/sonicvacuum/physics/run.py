@@ -15,7 +15,7 @@ from sonicvacuum.physics.chain import Chain
 from sonicvacuum.physics.compiled import cached, prepare
 from sonicvacuum.physics.history import History
 from sonicvacuum.physics.lanes import LANES
-from sonicvacuum.physics.laws import memory_at_rest, rest_compression
+from sonicvacuum.physics.laws import depth_at, memory_at_rest
 from sonicvacuum.physics.methods import CARPENTER_KENNEDY, METHODS
 from sonicvacuum.physics.steps import choose_steps, reachable_bodies
 from sonicvacuum.physics.table import INVERSE_MASS, REST, Composition, V
@@ -171,7 +171,7 @@ class _Batch:
         if not (self.laws.preloaded or c.memories):
             return
         load = self.chain.static_forces(bodies)
-        delta = rest_compression(self.laws, coefficients, load)
+        delta = depth_at(self.laws, coefficients, load)
         memory = memory_at_rest(self.laws, coefficients, delta)
         body[:, :, c.first_memory : c.first_increment] = self._spread(memory)
         if self.laws.preloaded:
