@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sonicvacuum.card import CardBead
+from sonicvacuum.laboratory.specimen import Bead
 from sonicvacuum.observe.contacts import contact_radius, mean_pressure, peak_pressure
 from sonicvacuum.observe.pulse import Pulse, main_pulse
 from sonicvacuum.observe.shape import duration, onset
@@ -163,7 +163,7 @@ def core_compliance(c: Loaded) -> float:
     return 1.5 * c.force / (plane * c.radius * c.depth)
 
 
-def half_space_correction(x: float, bead: CardBead) -> float:
+def half_space_correction(x: float, bead: Bead) -> float:
     """Force on a layer bonded to its core over that on a half-space of it at the same depth.
 
     Exact contact (`sonicvacuum.physics.layered`); x = √(R* × approach) over the layer's thickness.

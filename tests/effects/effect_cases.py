@@ -36,7 +36,12 @@ def nominal(p: Plain | None = None) -> Setup:
     p = p or Plain()
     chain = Chain(
         beads=p.beads,
-        bodies=Body(Elastic("soft", p.modulus, p.poisson), p.mass, p.radius),
+        bodies=Body(
+            Elastic("soft", p.modulus, p.poisson),
+            p.mass,
+            p.radius,
+            core=Elastic("core", p.core_modulus, p.core_poisson),
+        ),
         striker=Elastic("hard", p.striker_modulus, p.striker_poisson),
         wall=Elastic("steel", p.wall_modulus, p.wall_poisson),
         striker_radius=np.inf,
@@ -44,7 +49,6 @@ def nominal(p: Plain | None = None) -> Setup:
         speed=p.speed,
         gravity=p.gravity,
         static_force=p.preload,
-        core=Elastic("core", p.core_modulus, p.core_poisson),
     )
     return Setup(chain, (Gauge("g3", "embedded", 3), Gauge("wall", "wall", None)))
 

@@ -1,11 +1,14 @@
 """The coating in the chain: two layers in contact, layer against flat, and where it is off."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from effect_cases import in_lanes, nominal
 
 from sonicvacuum.effects import effect
 from sonicvacuum.effects.coating_thickness import coefficients, layer_factor
+from sonicvacuum.laboratory.bodies import Bodies
 from sonicvacuum.physics.contact import hertz_constant
 from sonicvacuum.physics.laws import columns_of, depth_at, elastic_at
 from sonicvacuum.physics.layered import Layer, solve
@@ -19,29 +22,46 @@ def table_of(chain):
     return np.array([np.broadcast_to(c, (7, 1)) for c in columns])
 
 
+def layer_of(bead):
+    """Plane-strain modulus of a bead's coating, and the layer on its core."""
+    plane, core = (e.modulus[0] / (1.0 - e.poisson**2) for e in (bead.surface, bead.core))
+    return plane, Layer(bead.surface.poisson, plane / core, bead.core.poisson)
+
+
 def test_two_coated_spheres_are_each_half_of_a_mirrored_pair():
     chain = nominal().chain
-    plane = chain.bead.modulus[0] / (1.0 - chain.bead.poisson**2)
-    layer = Layer(chain.bead.poisson, plane / (chain.core.modulus[0] / (1.0 - chain.core.poisson**2)), 0.3)
+    bead = chain.first
+    plane, layer = layer_of(bead)
     for a in (0.5, 2.0):
         exact = solve(layer, a)
         # One sphere against the mirror plane: its layer takes half of the approach.
-        half = exact.depth * (a * THICKNESS) ** 2 / chain.bead_radius
-        alone = hertz_constant(plane, chain.bead_radius) * half**1.5 * exact.factor
+        half = exact.depth * (a * THICKNESS) ** 2 / bead.radius[0]
+        alone = hertz_constant(plane, bead.radius[0]) * half**1.5 * exact.factor
         pair = chain.stiffness[0] * (2 * half) ** 1.5 * layer_factor(2 * half, *table_of(chain)[:, 3, 0])
         assert pair == pytest.approx(alone, rel=3e-4)  # the kernel's form
 
 
 def test_flat_striker_and_wall_have_one_layer_in_series():
     chain = nominal().chain
-    plane = chain.bead.modulus[0] / (1.0 - chain.bead.poisson**2)
-    layer = Layer(chain.bead.poisson, plane / (chain.core.modulus[0] / (1.0 - chain.core.poisson**2)), 0.3)
+    plane, layer = layer_of(chain.first)
     exact = solve(layer, 1.5)
-    delta = (exact.width * THICKNESS) ** 2 / chain.bead_radius
+    delta = (exact.width * THICKNESS) ** 2 / chain.first.radius[0]
     for contact, other in ((0, chain.striker), (6, chain.wall)):
         share = plane / (other.modulus[0] / (1.0 - other.poisson**2))
         expected = (1.0 + share) / (1.0 / exact.factor + share)
         assert layer_factor(delta, *table_of(chain)[:, contact, 0]) == pytest.approx(expected, rel=3e-4)
+
+
+def test_solid_beads_of_a_mixed_chain_have_no_layer():
+    chain = nominal().chain
+    coated = chain.first
+    solid = replace(coated, core=None)
+    both, one = (
+        layer_factor(4e-6, *table_of(replace(chain, bodies=Bodies(kinds)))[:, 2, 0])
+        for kinds in ((coated,), (coated, solid))
+    )
+    # One of two equal surfaces on a core: its compliance counts half.
+    assert 2.0 / one == pytest.approx(1.0 / both + 1.0, rel=1e-12)  # rounding
 
 
 def test_an_infinitely_thick_layer_is_none_to_the_bit():

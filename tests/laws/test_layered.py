@@ -1,5 +1,7 @@
 """The exact contact on a layer: limits, asymptotes, published numbers, finite elements; the kernel's form."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from axisymmetric import Layered, graded
@@ -8,7 +10,7 @@ from scipy.interpolate import CubicSpline
 
 from sonicvacuum.effects import Setup, effect
 from sonicvacuum.physics import layer_law
-from sonicvacuum.physics.chain import Elastic
+from sonicvacuum.physics.bodies import Elastic
 from sonicvacuum.physics.layered import Layer, solve
 from sonicvacuum.physics.run import simulate
 from sonicvacuum_blind import layer as blind
@@ -210,7 +212,8 @@ def test_ratios_between_nodes_are_smooth():
 
 def test_a_chain_with_layers_keeps_its_energy_and_converges():
     core = Elastic("core", 193e9, 0.3)
-    chain = coated(2.76e9, beads=5, coating=50e-6, core=core)
+    chain = coated(2.76e9, beads=5)
+    chain = replace(chain, bodies=replace(chain.first, core=core))
     layered = effect("coating-thickness").apply(Setup(chain), layer_thickness_um=50.0).chain
     contact = [3]
     history = simulate(layered, contact, 4e-4, 1e-6, refine=4.0, audit=True)

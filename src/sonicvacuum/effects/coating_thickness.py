@@ -52,7 +52,7 @@ def coefficients(chain, stiffness, mass, thickness):
 
 
 def _layers(chain):
-    """Limit (solids, lanes) and powers (solids, lanes, POWERS) of 1/g of what touches; 1 and 0 if not coated."""
+    """Limit (solids, lanes) and powers (solids, lanes, POWERS) of 1/g of each; 1 and 0 if not coated."""
     solids = len(chain.solids)
     limit, powers = np.ones((solids, chain.lanes)), np.zeros((solids, chain.lanes, layer_law.POWERS))
     for place, core in _coated(chain).items():
