@@ -106,8 +106,15 @@ def test_contact_that_never_closes_or_does_not_open():
 
 
 def test_restitution():
-    assert restitution(0.5, 0.4).value == pytest.approx(0.8, rel=1e-15)  # rounding
-    assert restitution(0.5, 0.0).value == 0.0
-    assert restitution(0.5, -0.1).reason.startswith("absent")
-    with pytest.raises(ValueError, match="impact_speed"):
-        restitution(0.0, 0.1)
+    time, push = np.arange(11) * 1e-6, np.array([0, 1, 2, 3, 4, 3, 2, 1, 0, 0, 0]) * 50.0
+    impulse = push.sum() * 1e-6
+    # An impulse of 1.8 m v turns v into 0.8 v; one of 0.9 m v leaves 0.1 v onwards.
+    assert restitution(time, push, impulse / (1.8 * 0.5), 0.5).value == pytest.approx(0.8, rel=1e-14)
+    assert restitution(time, push, impulse / (0.9 * 0.5), 0.5).value == pytest.approx(-0.1, rel=1e-13)
+    # Gravity has taken 8 us of it when the contact opens.
+    heavy = restitution(time, push, impulse / (1.8 * 0.5), 0.5, 9.81).value
+    assert heavy == pytest.approx(0.8 - 9.81 * 8e-6 / 0.5, rel=1e-12)
+    assert restitution(time, 0.0 * push, 1.0, 0.5).reason.startswith("absent")
+    assert restitution(time[:8], push[:8], 1.0, 0.5).reason.startswith("truncated")
+    with pytest.raises(ValueError, match="impact speed"):
+        restitution(time, push, 1.0, 0.0)

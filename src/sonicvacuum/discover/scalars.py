@@ -6,7 +6,7 @@ import numpy as np
 
 from sonicvacuum.discover import gauges
 from sonicvacuum.gauges import needed
-from sonicvacuum.observe.contacts import contact_duration
+from sonicvacuum.observe.contacts import contact_duration, restitution
 from sonicvacuum.observe.quantities import measure_run
 from sonicvacuum.observe.run import Geometry, Run
 from sonicvacuum.records.predict import virtual
@@ -74,7 +74,9 @@ def _measured(experiment, scalar, seen, lane, passage):
     if scalar.quantity == "contact_duration":
         return contact_duration(history.time, history.of(0)[:, lane]).value
     if scalar.quantity == "restitution":
-        return _restitution(seen.setup.chain, history.time, history.of(0)[:, lane], lane)
+        chain = seen.setup.chain
+        striker = chain.striker_mass[lane], chain.speed[lane], chain.gravity[lane]
+        return restitution(history.time, history.of(0)[:, lane], *striker).value
     if scalar.quantity == "speed_at_amplitude":
         gauge = next(g for g in seen.setup.sensors if g.id == scalar.options["sensor"])
         chain = seen.setup.chain.take([lane])
@@ -82,18 +84,6 @@ def _measured(experiment, scalar, seen, lane, passage):
             experiment.record, chain, gauge.lane(lane), scalar.options["amplitude"]
         ).value
     return measure_run(scalar.quantity, passage, **scalar.options).value
-
-
-def _restitution(chain, time, force, lane):
-    """Rebound over impact speed, from the impulse that the striker has received when its contact last
-    opens.
-    """
-    borne = np.flatnonzero(force > 0.0)
-    if not len(borne) or borne[-1] == len(force) - 1:
-        return np.nan
-    impulse = np.trapezoid(force, time) / chain.striker_mass[lane]
-    speed = chain.speed[lane]
-    return (impulse - chain.gravity[lane] * time[borne[-1] + 1] - speed) / speed
 
 
 def _passages(experiment, lanes, seen, signals):

@@ -84,13 +84,32 @@ def contact_duration(time: np.ndarray, force: np.ndarray) -> Measured:
     return Measured(trace.interval * (opened - closed))
 
 
-def restitution(impact_speed: float, rebound_speed: float) -> Measured:
-    """Rebound speed over impact speed of the striker, both positive; NaN where it does not come back."""
-    if not impact_speed > 0.0:
-        raise ValueError(f"impact_speed is {impact_speed}; it must be positive")
-    if rebound_speed < 0.0:
-        return missing("absent: the striker does not rebound")
-    return Measured(rebound_speed / impact_speed)
+def restitution(
+    time: np.ndarray, force: np.ndarray, mass: float, speed: float, gravity: float = 0.0
+) -> Measured:
+    """Rebound speed over impact speed of the striker, from the impulse that it has received at last opening.
+
+    Args:
+        time: (S,) equidistant times in s from the moment of impact.
+        force: (S,) on the striker in N.
+        mass, speed: of the striker in kg and m/s, at impact.
+        gravity: acceleration along the chain in m/s².
+
+    Returns:
+        The ratio, negative for a striker that follows the beads; NaN where its contact has not opened yet.
+
+    Raises:
+        ValueError: for a mass or speed that is not positive.
+    """
+    if not (mass > 0.0 and speed > 0.0):
+        raise ValueError(f"mass {mass} kg and impact speed {speed} m/s must be positive")
+    borne = np.flatnonzero(force > 0.0)
+    if not len(borne):
+        return missing("absent: the striker's contact never bears force")
+    if borne[-1] == len(force) - 1:
+        return missing("truncated: the record ends before the striker's contact opens")
+    impulse = np.trapezoid(force, time) / mass
+    return Measured(float((impulse - gravity * time[borne[-1] + 1] - speed) / speed))
 
 
 def _overhang(depth, edge, inward):

@@ -161,7 +161,8 @@ def _scalars(record, place, setup, history, lane, readings, refine):
 
     def value(o):
         if o.quantity == "restitution":
-            return _restitution(chain, history.time, force)
+            striker = (float(n[0]) for n in (chain.striker_mass, chain.speed, chain.gravity))
+            return restitution(history.time, force, *striker)
         if o.quantity == "contact_duration":
             return contact_duration(history.time, force)
         if o.quantity == "speed_at_amplitude":
@@ -170,15 +171,3 @@ def _scalars(record, place, setup, history, lane, readings, refine):
         return measure_run(o.quantity, passage, **o.options)
 
     return tuple(value(o) for o in record.runs[place].observables)
-
-
-def _restitution(chain, time, force):
-    """From the impulse that the striker has received when its contact last opens."""
-    borne = np.flatnonzero(force > 0.0)
-    if not len(borne):
-        return Measured(float("nan"), "absent: the striker's contact never bears force")
-    if borne[-1] == len(force) - 1:
-        return Measured(float("nan"), "truncated: the simulation ends before the striker's contact opens")
-    impulse = np.trapezoid(force, time) / chain.striker_mass[0]
-    fallen = chain.gravity[0] * time[borne[-1] + 1]
-    return restitution(float(chain.speed[0]), float(impulse - fallen - chain.speed[0]))
