@@ -1,0 +1,154 @@
+"""One file to its channels: text → dialect → table → roles of the columns → time base and units."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+
+from sonicvacuum.files import InputError
+from sonicvacuum.scope import keys as header_keys
+from sonicvacuum.scope import roles, text
+from sonicvacuum.scope.binary import is_binary, read_binary
+from sonicvacuum.scope.keys import Keys
+from sonicvacuum.scope.layouts import Layout, recognise
+from sonicvacuum.scope.recording import Channel, Recording
+from sonicvacuum.scope.table import Table, split
+from sonicvacuum.scope.timebase import TimeBase, from_column, from_header
+from sonicvacuum.scope.units import unit_of
+
+_HEAD = 20_000
+# A channel's mark in the name of a file that holds one channel.
+_MARK = re.compile(r"(?:^|[-_. ])((?:CH|C|F|M|R|REF|MATH)\d)(?=$|[-_. ]|Trace)", re.IGNORECASE)
+# Recorders write numbers of this size for a sample beyond the range (Agilent and others: 9.91e37).
+OVERFLOW = 9.0e36
+
+
+def read(path) -> Recording:
+    """The channels of a recorder's file.
+
+    Raises:
+        InputError: for a file that cannot be read, with the reason.
+    """
+    path = Path(path)
+    if not path.is_file():
+        raise InputError(f"{path}: no such file; give files as the recorder wrote them")
+    if is_binary(path):
+        return read_binary(path)
+    content, encoding = text.read(path)
+    layout = recognise(content[:_HEAD], path)
+    table = split(content, path)
+    found, rows = roles.columns(table)
+    if layout.companion:
+        rows = rows + [line.split(",") for line in layout.companion(path)]
+    keys = header_keys.read(table.beside + rows, table.dialect)
+    channels = [c for part in _parts(table, found) for c in _channels(part, found, keys, layout, path)]
+    if not channels:
+        raise InputError(f"{path}: has times but no channel beside them; export the traces too")
+    said = () if encoding.startswith("utf-8") else (f"Text is {encoding}.",)
+    return Recording(path, layout.name, tuple(channels), said)
+
+
+def _parts(table: Table, found):
+    """(number, rows) of each shot: cut where a header stands between, or where time starts again."""
+    rows = len(next(iter(table.columns.values())))
+    cuts = set(table.breaks)
+    for column in (c for c in found if c.role in ("time", "counter")):
+        times = table.columns[column.place]
+        cuts |= set((np.flatnonzero(np.diff(times) < 0.0) + 1).tolist())
+        break
+    edges = [0, *sorted(cuts), rows]
+    lengths = np.diff(edges)
+    if len(lengths) > 1 and np.median(lengths) < 8:
+        edges = [0, rows]
+    return [
+        (k + 1, len(edges) > 2, {p: v[a:b] for p, v in table.columns.items()})
+        for k, (a, b) in enumerate(zip(edges, edges[1:], strict=False))
+    ]
+
+
+def _channels(part, found, keys: Keys, layout: Layout, path):
+    number, several, columns = part
+    names = _names(found, keys, path)
+    clock, place = None, 0
+    for column in found:
+        if column.role == "value":
+            values, kept = _held(columns[column.place])
+            base = _base(clock, column, columns, kept, keys, place)
+            channel = _channel(names[place], column, values, base, keys, layout, place)
+            if several:
+                channel = Channel(**(vars(channel) | {"segment": number}))
+            if len(values) > 1:
+                yield channel
+            place += 1
+        elif clock is None or column.role == "time":
+            clock = column
+
+
+def _held(values):
+    """Samples of a channel without empty cells at its ends or in a regular pattern, and which rows those are."""
+    lost = np.isnan(values)
+    if not lost.any():
+        return values, slice(None)
+    held = np.flatnonzero(~lost)
+    if not len(held):
+        return values[:0], slice(0)
+    if lost.mean() > 0.4 and len(held) > 2 and np.ptp(np.diff(held)) == 0:
+        return values[held], held
+    rows = slice(int(held[0]), int(held[-1]) + 1)
+    return values[rows], rows
+
+
+def _base(clock, column, columns, kept, keys, place) -> TimeBase:
+    if clock is None:
+        return _shifted(from_header(keys, place, column.place), kept)
+    times = columns[clock.place]
+    if clock.role == "counter" or (clock.unit is None and roles.counts(times) and keys.values.get("interval")):
+        return _shifted(from_header(keys, place, column.place), kept)
+    return from_column(times[kept], clock.unit, keys, place, column.place)
+
+
+def _shifted(base, kept):
+    """The time base from the first sample that a channel has."""
+    first = kept.start or 0 if isinstance(kept, slice) else int(kept[0])
+    step = 1 if isinstance(kept, slice) else int(kept[1] - kept[0])
+    if base.interval_s is None or (first == 0 and step == 1):
+        return base
+    return TimeBase(base.start_s + first * base.interval_s, step * base.interval_s, base.notes)
+
+
+def _channel(name, column, values, base, keys, layout, place):
+    notes = list(base.notes)
+    if layout.readings:
+        values, said = layout.readings(values, keys, place)
+        notes += [said] if said else []
+    unit, factor = _unit(column, keys, layout, place, notes)
+    values = np.where(np.abs(values) > OVERFLOW, np.copysign(np.inf, values), values) * factor
+    if not np.isfinite(values).all():
+        over, lost = int(np.isinf(values).sum()), int(np.isnan(values).sum())
+        notes.append(f"{over} samples over range and {lost} lost, of {len(values)}.")
+    return Channel(name, unit, values, base.start_s, base.interval_s, tuple(notes), 1, base.times_s)
+
+
+def _unit(column, keys, layout, place, notes):
+    """Base unit and factor of a channel: the column's label, else the header's word, else the layout's."""
+    said = keys.text("unit", place, column.place)
+    header = unit_of(said)
+    if column.unit:
+        if header and header != column.unit:
+            notes.append(f"The header's unit is {said}, that of the column counts: {column.unit.base}.")
+        return column.unit.base, column.unit.factor
+    if header:
+        return header.base, header.factor
+    if said:
+        notes.append(f"The unit {said} is not known; numbers are as written.")
+        return said, 1.0
+    notes.append(f"No unit given; {layout.unit} assumed." if layout.unit else "No unit given.")
+    return layout.unit, 1.0
+
+
+def _names(found, keys, path):
+    names = roles.channel_names(found, keys.texts("name"))
+    mark = _MARK.search(Path(path).stem)
+    if names == ["CH1"] and len(keys.texts("name")) != 1 and mark:
+        return [mark.group(1).upper()]
+    return names

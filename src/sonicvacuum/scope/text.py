@@ -1,0 +1,60 @@
+"""Bytes of a text file to characters: encoding, byte order mark and line ends, whatever wrote them."""
+
+import codecs
+from pathlib import Path
+
+from sonicvacuum.files import InputError
+
+_MARKS = (
+    (codecs.BOM_UTF8, "utf-8-sig"),
+    (codecs.BOM_UTF32_LE, "utf-32"),
+    (codecs.BOM_UTF32_BE, "utf-32"),
+    (codecs.BOM_UTF16_LE, "utf-16"),
+    (codecs.BOM_UTF16_BE, "utf-16"),
+)
+_LOOKED_AT = 4096
+# Share of zero bytes at every other place from which text is UTF-16 without a mark.
+_WIDE = 0.3
+
+
+def read(path: Path) -> tuple[str, str]:
+    """Text of a file with lines ended by a line feed alone, and the name of its encoding.
+
+    Raises:
+        InputError: for a file that cannot be opened, is empty or holds no text.
+    """
+    try:
+        data = Path(path).read_bytes()
+    except OSError as error:
+        raise InputError(f"{path}: {error.strerror or error}; give the path of a readable file") from None
+    if not data.strip(b"\0 \t\r\n\x1a"):
+        raise InputError(f"{path}: the file is empty; export the traces again")
+    encoding = encoding_of(data)
+    if encoding is None:
+        raise InputError(
+            f"{path}: is a binary file of no kind that is read here; export the traces as text (CSV)"
+        )
+    try:
+        text = data.decode(encoding)
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path}: not valid {encoding} at byte {error.start}; export the file again") from None
+    return text.rstrip("\0\x1a").replace("\r\r\n", "\n").replace("\r\n", "\n").replace("\r", "\n"), encoding
+
+
+def encoding_of(data: bytes) -> str | None:
+    """Encoding of bytes that hold text, None for binary ones."""
+    for mark, name in _MARKS:
+        if data.startswith(mark):
+            return name
+    head = data[:_LOOKED_AT]
+    if head[1::2].count(0) > _WIDE * len(head) / 2:
+        return "utf-16-le"
+    if head[::2].count(0) > _WIDE * len(head) / 2:
+        return "utf-16-be"
+    if sum(b < 9 or 13 < b < 32 for b in head) > 0.01 * len(head):
+        return None
+    try:
+        data.decode("utf-8")
+    except UnicodeDecodeError:
+        return "latin-1"
+    return "utf-8"

@@ -1,0 +1,59 @@
+"""Thinning of traces that are sampled finer than their pulses need: a zero-phase low-pass, then every q-th sample."""
+
+import numpy as np
+from scipy.signal import firwin, oaconvolve
+
+# Samples that a pulse keeps over its width at half height.
+SAMPLES_A_PULSE = 40
+# The low-pass: half length in thinned samples, cut-off over the new Nyquist frequency, Kaiser parameter
+# (80 dB stop band; Oppenheim & Schafer, Discrete-Time Signal Processing, 3rd ed., Sec. 7.6.1).
+HALF, CUTOFF, BETA = 10, 0.8, 7.86
+# What the low-pass takes away within the pulse may exceed what it takes from the noise by this factor.
+LOSS = 1.5
+
+
+def low_pass(factor: int) -> np.ndarray:
+    """Taps of the filter for one factor, summing to 1."""
+    return firwin(2 * HALF * factor + 1, CUTOFF / factor, window=("kaiser", BETA))
+
+
+def factor_for(traces: list[np.ndarray], widths: list[int], arrivals: list[int]) -> int:
+    """Largest factor at which no trace loses more than noise; 1 where the sampling is no finer than needed.
+
+    Args:
+        traces: (S,) samples each, with rest 0.
+        widths, arrivals: width at half height and index of arrival of each, in samples.
+    """
+    factor = min(widths, default=0) // SAMPLES_A_PULSE
+    while factor > 1 and not all(_harmless(x, a, factor) for x, a in zip(traces, arrivals, strict=True)):
+        factor //= 2
+    return max(1, factor)
+
+
+def _harmless(values, arrival, factor):
+    """Whether the low-pass takes away nothing but noise, or less than a thousandth of the peak."""
+    reach = HALF * factor
+    quiet, pulse = slice(reach, max(reach, arrival - reach)), slice(max(reach, arrival - reach), -reach)
+    taken = values - filtered(values, factor)
+    if taken[pulse].size == 0:
+        return False
+    loss = float(np.sqrt(np.mean(taken[pulse] ** 2)))
+    noise = float(np.sqrt(np.mean(taken[quiet] ** 2))) if taken[quiet].size > 20 else 0.0
+    return loss < max(LOSS * noise, 1e-3 * float(np.abs(values).max()))
+
+
+def filtered(values: np.ndarray, factor: int) -> np.ndarray:
+    """(S,) samples behind the low-pass, delayed by nothing; the ends are continued by their last values."""
+    reach = HALF * factor
+    padded = np.concatenate((np.full(reach, values[0]), values, np.full(reach, values[-1])))
+    return oaconvolve(padded, low_pass(factor), mode="valid")
+
+
+def thinned(values: np.ndarray, factor: int) -> np.ndarray:
+    """Every factor-th sample behind the low-pass, from the first."""
+    return values if factor == 1 else filtered(values, factor)[::factor]
+
+
+def noise_left(factor: int) -> float:
+    """Standard deviation of white noise behind the low-pass over that before it."""
+    return 1.0 if factor == 1 else float(np.sqrt(np.sum(low_pass(factor) ** 2)))

@@ -1,0 +1,143 @@
+"""Start and interval of a trace from its column of times, or from what the header says; the unit of time.
+
+A header and a column may contradict each other. The unit of time is the one for which most witnesses speak:
+the label of the column, the header's unit, and the sampling interval or rate that the header gives. Where
+they draw, the label of the column counts; what was overruled is said.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sonicvacuum.scope.keys import Keys
+from sonicvacuum.scope.units import Unit, unit_of
+
+# A header's interval is that of the times within this (headers print few digits).
+ALIKE = 0.02
+# Steps off the mean by more than this fraction of it: times are uneven, or printed with few digits.
+EVEN = 0.01
+# A header's interval this near to that of rounded times is the finer statement.
+FINER = 2e-3
+_FACTORS = {1.0: "s", 1e-3: "ms", 1e-6: "us", 1e-9: "ns", 1e-12: "ps"}
+
+
+@dataclass(frozen=True, eq=False)
+class TimeBase:
+    """When samples were taken: start and interval in s (None: unknown), uneven times if so, and remarks."""
+
+    start_s: float | None
+    interval_s: float | None
+    notes: tuple[str, ...] = ()
+    times_s: np.ndarray | None = None
+
+
+def declared_interval(keys: Keys, place: int = 0, column: int = 0) -> float | None:
+    """Sampling interval in s as the header gives it, directly, by a rate or by start, stop and count."""
+    interval = keys.number("interval", "s", place, column)
+    if interval:
+        return tidy(abs(interval))
+    rate = keys.number("rate", "Hz", place, column)
+    if rate:
+        return tidy(1.0 / rate)
+    start, stop, count = (keys.number(m, b) for m, b in (("start", "s"), ("stop", "s"), ("count", "")))
+    if start is not None and stop is not None and count and count > 1:
+        return (stop - start) / count
+    return None
+
+
+def tidy(number: float) -> float:
+    """The number without the last digits, which are rounding errors of units and differences."""
+    return float(f"{number:.12g}")
+
+
+def from_header(keys: Keys, place: int = 0, column: int = 0) -> TimeBase:
+    """Time base of a table without times."""
+    interval = declared_interval(keys, place, column)
+    start = keys.number("start", "s", place, column)
+    notes = []
+    if interval is None:
+        return TimeBase(None, None, ("No time: the file has no times and no interval; give --interval.",))
+    trigger = keys.number("trigger", "", place, column)
+    if start is None and trigger is not None:
+        start = -trigger * interval
+        notes.append(f"Time counts from the trigger, sample {trigger:g}.")
+    if start is None:
+        start = 0.0
+        notes.append("Time counts from the first sample: the file does not say where the trigger is.")
+    return TimeBase(start, interval, tuple(notes))
+
+
+def from_column(times: np.ndarray, label: Unit | None, keys: Keys, place: int = 0, column: int = 0) -> TimeBase:
+    """Time base of a column of times, one shot."""
+    if len(times) < 2 or not np.isfinite(times).all():
+        base = from_header(keys, place, column)
+        said = "The column of times has gaps; start and interval are the header's."
+        return TimeBase(base.start_s, base.interval_s, (*base.notes, said))
+    declared = declared_interval(keys, place, column)
+    slope = float(times[-1] - times[0]) / (len(times) - 1)
+    factor, notes = _factor(slope, label, declared, keys)
+    interval, start = tidy(slope * factor), tidy(float(times[0]) * factor)
+    rounded, uneven = _spacing(times, slope)
+    if declared and rounded and not uneven and abs(declared / interval - 1.0) < FINER:
+        interval = declared
+        notes.append("Times are printed with few digits; the interval is the header's.")
+    elif declared and abs(declared / interval - 1.0) > ALIKE:
+        notes.append(f"The header gives an interval of {declared:g} s, the times one of {interval:g} s.")
+    if not uneven:
+        return TimeBase(start, interval, tuple(notes))
+    steps = np.diff(times) * factor
+    notes.append(
+        f"Times are uneven: steps of {steps.min():.4g} to {steps.max():.4g} s; the interval is the mean."
+    )
+    return TimeBase(start, interval, tuple(notes), times * factor)
+
+
+def _spacing(times, slope):
+    """Whether steps differ from the mean at all, and whether by more than the digits printed explain."""
+    spread = np.abs(np.diff(times) - slope).max()
+    if slope <= 0.0 or spread <= EVEN * slope:
+        return False, slope <= 0.0
+    off = np.abs(times - (times[0] + slope * np.arange(len(times)))).max()
+    return True, bool(off > 1.01 * _last_digit(times))
+
+
+def _last_digit(times):
+    """A unit of the last digit printed of the largest times, from the digits of some of them."""
+    some = times[:: max(1, len(times) // 500)]
+    digits = max(len(f"{abs(t):.14e}".split("e")[0].replace(".", "").rstrip("0")) for t in some)
+    return 10.0 ** (np.floor(np.log10(np.abs(times).max())) - (digits - 1))
+
+
+def _factor(slope, label, declared, keys):
+    """Seconds in one unit of the column, and remarks on contradictions."""
+    header = next((u for u in map(unit_of, keys.texts("time unit")) if u and u.base == "s"), None)
+    label = label if label and label.base == "s" else None
+    votes = {}
+    for unit in (label, header):
+        if unit:
+            votes[unit.factor] = votes.get(unit.factor, 0) + 1
+    told = None
+    if declared and slope > 0.0:
+        told = next((f for f in _FACTORS if abs(slope * f / declared - 1.0) < ALIKE), None)
+        if told:
+            votes[told] = votes.get(told, 0) + 1
+    if not votes:
+        return 1.0, ["The unit of time is not given; s assumed."]
+    most = max(votes.values())
+    order = [label and label.factor, told, header and header.factor]
+    factor = next(f for f in order if f and votes[f] == most)
+    return factor, _contradictions(factor, label, header, told)
+
+
+def _contradictions(factor, label, header, told):
+    witnesses = {
+        "the label of the column": label and label.factor,
+        "the header's unit": header and header.factor,
+        "the header's interval or rate": told,
+    }
+    against = [f"{who} says {_FACTORS.get(f, f)}" for who, f in witnesses.items() if f and f != factor]
+    if against:
+        return [f"Times are in {_FACTORS.get(factor, factor)}, although {' and '.join(against)}."]
+    if label is None and header is None:
+        return [f"The unit of time, {_FACTORS.get(factor, factor)}, follows from the header's interval."]
+    return []

@@ -1,0 +1,129 @@
+"""Units as recorders write them, and gauge sensitivities as a user writes them: texts to base units and factors.
+
+A base unit is what the record or SI counts in: V, N, m/s, m/s^2, s, Pa …; `g`, the acceleration, is left as
+it is and converted only by a gauge's sensitivity.
+"""
+
+import re
+from dataclasses import dataclass
+
+from sonicvacuum.files import InputError
+
+# Standard acceleration of free fall, exact (3rd CGPM, 1901), the unit g of accelerometers.
+STANDARD_GRAVITY = 9.80665
+_PREFIX = {"p": 1e-12, "n": 1e-9, "u": 1e-6, "m": 1e-3, "c": 1e-2, "k": 1e3, "M": 1e6, "G": 1e9}
+_LONG_PREFIX = {"pico": 1e-12, "nano": 1e-9, "micro": 1e-6, "milli": 1e-3, "kilo": 1e3, "mega": 1e6}
+# Symbol → base unit; those that take prefixes.
+_SYMBOLS = {
+    "V": "V", "A": "A", "N": "N", "Pa": "Pa", "s": "s", "m": "m", "m/s": "m/s", "m/s^2": "m/s^2", "g": "g",
+    "C": "C", "W": "W", "Hz": "Hz", "Sa/s": "Hz", "S/s": "Hz", "Ohm": "Ohm", "strain": "strain", "K": "K",
+    "J": "J", "T": "T", "F": "F", "H": "H",
+}  # fmt: skip
+# Spelled out, compared without regard to case and to a plural s.
+_WORDS = {
+    "volt": "V", "ampere": "A", "amp": "A", "newton": "N", "pascal": "Pa", "second": "s", "sec": "s",
+    "sekunde": "s", "sekunden": "s", "seconde": "s", "hertz": "Hz", "sample/second": "Hz", "meter": "m",
+    "metre": "m", "gee": "g", "gravity": "g", "ohm": "Ohm", "watt": "W", "kelvin": "K",
+}  # fmt: skip
+_WHOLE = {"S": ("s", 1.0), "kg": ("kg", 1.0), "1/s": ("Hz", 1.0), "sps": ("Hz", 1.0), "°C": ("degC", 1.0)}
+_WHOLE |= {"%": ("%", 1.0), "bar": ("Pa", 1e5), "dB": ("dB", 1.0), "deg": ("deg", 1.0), "min": ("s", 60.0)}
+_NUMBER = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?"
+# The micro sign in its two code points and as wrong decoding leaves it (UTF-8 and GBK read as Latin-1).
+_MICRO = re.compile("Âµ|Î¼|¦Ì|µ|μ|�(?=[sVANmg]\\b)")
+
+
+@dataclass(frozen=True)
+class Unit:
+    """A unit as a multiple of a base unit."""
+
+    base: str
+    factor: float = 1.0
+
+
+def unit_of(text: str) -> Unit | None:
+    """The unit that a text names, brackets around it allowed; None for anything else."""
+    text = _plain(text)
+    if not text:
+        return None
+    if text in _WHOLE:
+        return Unit(*_WHOLE[text])
+    for symbol, base in _SYMBOLS.items():
+        if text == symbol:
+            return Unit(base)
+        if text.endswith(symbol) and text[: -len(symbol)] in _PREFIX:
+            return Unit(base, _PREFIX[text[: -len(symbol)]])
+    return _spelled(text.lower())
+
+
+def _plain(text):
+    """Brackets off, one spelling of micro, of squares and of products with s."""
+    text = _MICRO.sub("u", text.strip().strip('"').strip())
+    text = re.sub(r"^[\[({<](.*)[\])}>]$", r"\1", text).strip()
+    text = re.sub(r"/s(²|\*\*2|\^2|2|/s)$", "/s^2", text)
+    text = re.sub(r"^(.*?)\s*(·|\*|\s)\s*s\^?-2$", r"\1/s^2", text)
+    return text.replace("Ω", "Ohm").replace("ε", "strain").replace("m/sec", "m/s").strip()
+
+
+def _spelled(word):
+    for prefix, factor in ({"": 1.0} | _LONG_PREFIX | {"m": 1e-3, "u": 1e-6, "n": 1e-9, "k": 1e3}).items():
+        if word.startswith(prefix):
+            rest = word[len(prefix) :]
+            base = _WORDS.get(rest) or _WORDS.get(rest.removesuffix("s"))
+            if base and (len(prefix) != 1 or rest.startswith(("sec", "volt", "hertz"))):
+                return Unit(base, factor)
+    return None
+
+
+def quantity(text: str, decimal: str = ".") -> tuple[float, Unit | None] | None:
+    """A number with its unit, as in `1e+06Hz` or `4 ns`; None where the text is no number."""
+    text = text.strip().strip('"').strip()
+    if decimal == ",":
+        text = text.replace(",", ".", 1)
+    found = re.match(rf"({_NUMBER})\s*(.*)$", text)
+    if not found:
+        return None
+    unit = unit_of(found.group(2))
+    if found.group(2) and unit is None:
+        return None
+    return float(found.group(1)), unit
+
+
+@dataclass(frozen=True)
+class Scale:
+    """A gauge's sensitivity: `factor` of `unit` for one `per`, both base units."""
+
+    factor: float
+    unit: str
+    per: str
+
+    def of(self, unit: str) -> tuple[float, str] | None:
+        """Factor and unit that readings in `unit` come to, None where the sensitivity is for another."""
+        if unit == self.per:
+            return self.factor, self.unit
+        if unit == self.unit:
+            return 1.0 / self.factor, self.per
+        return None
+
+
+def scale(text: str, name: str) -> Scale:
+    """A sensitivity such as `12.5N/V`, `-12.5 N/V`, `80mV/N`, `100 mV/g`; InputError for anything else."""
+    found = re.fullmatch(rf"\s*({_NUMBER})\s*(\S.*)", text)
+    value, units = (float(found.group(1)), found.group(2)) if found else (0.0, "")
+    for place in [m.start() for m in re.finditer("/", units)]:
+        upper, lower = unit_of(units[:place]), unit_of(units[place + 1 :])
+        if upper and lower and value:
+            factor = value * upper.factor / lower.factor
+            return _standard(factor, upper.base, lower.base)
+    raise InputError(
+        f"--scale {name}: is {text!r}; write a number other than 0 and two units, as in 12.5N/V, -12.5N/V, "
+        "80mV/N or 100mV/g"
+    )
+
+
+def _standard(factor, upper, lower):
+    """The sensitivity with g written out in m/s^2, which is what a record counts in."""
+    if upper == "g":
+        factor, upper = factor * STANDARD_GRAVITY, "m/s^2"
+    if lower == "g":
+        factor, lower = factor / STANDARD_GRAVITY, "m/s^2"
+    return Scale(factor, upper, lower)
