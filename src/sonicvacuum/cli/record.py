@@ -1,6 +1,8 @@
-"""`sonicvacuum record new`, `record check`: start a record of measured data, and see whether one is sound."""
+"""`sonicvacuum record new`, `import`, `check`: start a record of measured data, and see whether one is sound."""
 
 import click
+
+from sonicvacuum.cli.scope import import_
 
 
 @click.group()
@@ -24,3 +26,6 @@ def check(folders):
     from sonicvacuum.records import commands
 
     click.echo(commands.check(folders))
+
+
+record.add_command(import_)

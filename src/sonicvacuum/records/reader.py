@@ -11,6 +11,7 @@ from sonicvacuum.physics.scales import impact_scales
 from sonicvacuum.records import signals
 from sonicvacuum.records.assemble import assemble
 from sonicvacuum.records.blocks import AMPLITUDES, OBSERVABLES, UNITS, RecordBlock
+from sonicvacuum.records.missing import missing
 from sonicvacuum.records.record import Record
 from sonicvacuum.records.validate import validate
 
@@ -59,6 +60,9 @@ def parse(content: dict, path=FILE) -> RecordBlock:
     """The checked block of a YAML mapping; InputError as in `read`."""
     _check_finite(content, path)
     _check_observables(content, path)
+    lacking = missing(content, RecordBlock)
+    if len(lacking) > 1:
+        raise InputError(f"{path}: {', '.join(lacking)}: missing; these keys are required")
     try:
         block = convert(content, RecordBlock, path)
     except InputError as error:

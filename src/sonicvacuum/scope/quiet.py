@@ -55,12 +55,12 @@ def look(values: np.ndarray) -> Trace:
     """Find rest, noise and pulse in (S,) finite samples."""
     values = np.asarray(values, dtype=float)
     step = converter_step(values)
-    rest, sigma = _rest(values, step)
+    rest, sigma, wander = _rest(values, step)
     smooth = median_filter(values, 5, mode="nearest") if len(values) > 50 else values
     off = np.abs(smooth - rest)
     top = int(off.argmax())
-    least = max(SIGMAS * sigma, SHARE * off[top], STEPS * step)
-    arrival = _first_row(off > least) if off[top] > max(WEAKEST * sigma, STEPS * step) else None
+    least = max(SIGMAS * wander, SHARE * off[top], STEPS * step)
+    arrival = _first_row(off > least) if off[top] > max(WEAKEST * wander, STEPS * step) else None
     quiet = values[: int(0.9 * arrival)] if arrival else values[:0]
     if len(quiet) >= 20:
         rest, sigma = float(np.median(quiet)), white(quiet, step)
@@ -111,7 +111,7 @@ def converter_step(values: np.ndarray) -> float:
 
 
 def _rest(values, step):
-    """Level and noise of the stretches with least spread, early ones first."""
+    """Level, white noise and spread of the stretches that lie calm before the first that does not."""
     size = max(8, len(values) // STRETCHES)
     stretches = values[: len(values) // size * size].reshape(-1, size) if len(values) >= size else values[None]
     spread = stretches.std(axis=1)
@@ -119,7 +119,8 @@ def _rest(values, step):
     end = int(np.argmin(calm)) if not calm.all() else len(calm)
     chosen = stretches[:end] if end >= 1 else stretches[calm][:1]
     level = float(np.median(chosen))
-    return level, max(white(np.ravel(chosen), step), 1e-12 * float(np.abs(values).max()))
+    sigma = max(white(np.ravel(chosen), step), 1e-12 * float(np.abs(values).max()))
+    return level, sigma, max(sigma, float(_NORMAL * np.median(np.abs(chosen - level))))
 
 
 def _first_row(flags):

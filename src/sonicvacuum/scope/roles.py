@@ -104,7 +104,8 @@ def _row(table, k):
         held = [_at(cells, p) for p in table.places]
         words = [c for c in held if c and not table.dialect.is_number(c)]
         numbers = [c for c in held[1:] if table.dialect.is_number(c) and not c.isdigit()]
-        if len(words) >= max(1, len(held) // 2) and not numbers and _wide(cells, table):
+        values = [c for c in words if re.search(r"[:=]\s*[-+.\d]", c)]
+        if len(words) >= max(1, len(held) // 2) and not numbers and not values and _wide(cells, table):
             return cells
     return None
 

@@ -20,6 +20,8 @@ BEGINNING = 4
 LONGEST_HEADER = 100_000
 # Rows beside which a header may stand.
 BESIDE = 200
+# Numbers as Python reads them: the default from pandas 3.1 on, an option before.
+_EXACT = {} if tuple(map(int, pd.__version__.split(".")[:2])) >= (3, 1) else {"float_precision": "round_trip"}
 # Share of rows that are no samples from which a text is not taken for a table.
 MOST_FOREIGN = 0.3
 
@@ -155,9 +157,8 @@ def _numbers(body, dialect, places, path, width):
             index_col=False,
             skipinitialspace=True,
             engine="c",
-            float_precision="round_trip",
             low_memory=False,
-            keep_default_na=True,
+            **_EXACT,
         )
     except (pd.errors.ParserError, ValueError) as error:
         raise InputError(f"{path}: rows differ in their columns: {str(error).strip()}") from None

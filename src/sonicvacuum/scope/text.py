@@ -14,7 +14,7 @@ _MARKS = (
 )
 _LOOKED_AT = 4096
 # Share of zero bytes at every other place from which text is UTF-16 without a mark.
-_WIDE = 0.3
+_WIDE = 0.7
 
 
 def read(path: Path) -> tuple[str, str]:

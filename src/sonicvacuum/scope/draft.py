@@ -1,0 +1,170 @@
+"""The text of record.yaml for imported runs: what is known, what was assumed, what is still to be filled in."""
+
+from pathlib import Path
+
+import msgspec
+import yaml
+
+from sonicvacuum.files import InputError, read_yaml
+from sonicvacuum.records import writer
+from sonicvacuum.records.blocks import RecordBlock, RecordSensorBlock
+from sonicvacuum.records.reader import FILE
+from sonicvacuum.scope.clean import CleanRun
+from sonicvacuum.scope.options import Options
+
+# Of a sensitivity without a stated error, and stated in its comment.
+GAIN_REL_SIGMA = 0.05
+# Written for `unknown` while the format knows numbers only: the largest that it takes.
+_LARGEST = {"gain_rel_sigma": 2.0, "trigger_sigma_us": 1e4}
+_SIGMA_KEY = {"m/s": "sigma_m_s", "m/s^2": "sigma_m_s2"}
+_KIND = {"m/s": "velocity", "m/s^2": "acceleration"}
+_CHAIN = """\
+# To be filled in: the chain (sonicvacuum record new FOLDER writes a commented example).
+# chain:
+#   beads:            # bead 1 is the one the striker hits, the last bead touches the wall
+#   orientation:      # vertical | horizontal
+#   bead: {diameter_mm: , mass_g: , material: }
+#   wall: {material: }
+# materials:
+#   NAME: {modulus_GPa: , poisson: , modulus_rel_sigma: }
+"""
+
+
+def template(like=None, record=None) -> dict:
+    """Content of the record that gives chain, materials, gauges and striker, {} without one.
+
+    Args:
+        like: folder of a record. record: a YAML file with keys of a record, which may be incomplete.
+    """
+    if like is not None and record is not None:
+        raise InputError("--like and --record exclude each other; give one")
+    if like is not None:
+        folder = Path(like)
+        return read_yaml(folder if folder.is_file() else folder / FILE)
+    return read_yaml(record) if record is not None else {}
+
+
+def unknown(kind: type, key: str) -> str | float:
+    """`unknown` where the format takes it for a key, else the largest number it takes."""
+    field = next(f.type for f in msgspec.structs.fields(kind) if f.name == key)
+    try:
+        return msgspec.convert("unknown", field)
+    except msgspec.ValidationError:
+        return _LARGEST[key]
+
+
+def content(runs: list[CleanRun], given: dict, options: Options, title: str | None) -> dict:
+    """The mapping of record.yaml; what neither files nor template tell is left out."""
+    kept = {k: given[k] for k in ("source", "chain", "materials", "tolerances", "priors") if k in given}
+    result = {"format": 1, "title": title or f"Imported from {len(runs)} shots"} | kept
+    result["sensors"] = [_sensor(g, runs, given, options) for g in _gauges(runs)]
+    result["trigger_sigma_us"] = _trigger(runs)
+    result["runs"] = [_run(r, given, options) for r in runs]
+    return result
+
+
+def _gauges(runs):
+    return list(dict.fromkeys(g for r in runs for g in r.signals.readings))
+
+
+def _sensor(gauge, runs, given, options):
+    """A gauge: place and kind from options or template, noise from the runs, gain from the sensitivity."""
+    known = next((s for s in _listed(given, "sensors") if s.get("id") == gauge), {})
+    unit = next(r.unit[gauge] for r in runs if gauge in r.unit)
+    sensor = {"id": gauge} | {k: known[k] for k in ("kind", "bead") if k in known}
+    if gauge in options.places:
+        bead = options.places[gauge]
+        sensor["kind"] = _KIND.get(unit, "wall" if bead is None else "embedded")
+        sensor |= {"bead": bead} if bead is not None else {}
+    sigma = sum(r.sigma[gauge] ** 2 for r in runs if gauge in r.sigma) / sum(gauge in r.sigma for r in runs)
+    sensor[_SIGMA_KEY.get(unit, "sigma_N")] = float(f"{sigma**0.5:.3g}")
+    sensor["gain_rel_sigma"] = _gain(gauge, known, unit, options)
+    rest = {k: v for k, v in known.items() if k not in sensor and not k.startswith("sigma_")}
+    return sensor | rest
+
+
+def _gain(gauge, known, unit, options):
+    if gauge in options.gain_rel_sigma:
+        return options.gain_rel_sigma[gauge]
+    if gauge not in options.scales and unit not in ("N", *_SIGMA_KEY):
+        return unknown(RecordSensorBlock, "gain_rel_sigma")
+    return known.get("gain_rel_sigma", GAIN_REL_SIGMA)
+
+
+def _trigger(runs):
+    """Common standard error of time zero in us; without one the time before the arrival where it must be a number."""
+    sigmas = [r.zero_sigma_s for r in runs]
+    if None not in sigmas:
+        return float(f"{max(sigmas) * 1e6:.3g}")
+    word = unknown(RecordBlock, "trigger_sigma_us")
+    if isinstance(word, str):
+        return word
+    return float(f"{min(word, max(r.lead_s for r in runs) * 1e6):.3g}")
+
+
+def _run(run, given, options):
+    listed = _listed(given, "runs")
+    same = next((r for r in listed if r.get("id") == run.id), None)
+    striker = dict((same or (listed[0] if listed else {})).get("striker") or {})
+    if same is None:
+        striker.pop("speed_m_s", None)
+    if run.id in options.speeds:
+        striker["speed_m_s"] = options.speeds[run.id]
+    return {"id": run.id, "striker": striker, "signals": f"{run.id}.csv"}
+
+
+def _listed(given, key):
+    entries = given.get(key)
+    return [e for e in entries if isinstance(e, dict)] if isinstance(entries, list) else []
+
+
+def text(record: dict, runs: list[CleanRun], options: Options) -> str:
+    """record.yaml with comments on what was done, assumed, and is to be filled in."""
+    head = {k: record[k] for k in ("format", "title", "source") if k in record}
+    chain = {k: record[k] for k in ("chain", "materials", "tolerances", "priors") if k in record}
+    parts = ["# Imported from a recorder's files; what was done to each run stands at the end.\n", _yaml(head)]
+    parts.append(_yaml(chain) if "chain" in chain else _CHAIN + (_yaml(chain) if chain else ""))
+    parts.append("# Positive readings = compression. sigma: white noise of one sample, estimated at rest.\n")
+    parts += [f"# {line}\n" for line in _gauge_remarks(record, runs, options)]
+    parts.append(_yaml({"sensors": record["sensors"]}))
+    if any(r.zero_sigma_s is None for r in runs):
+        parts.append("# The moment of impact is not known (--impact-at gives it): time zero is free.\n")
+    parts.append(_yaml({"trigger_sigma_us": record["trigger_sigma_us"]}))
+    parts += [f"# To be filled in: {line}\n" for line in _striker_gaps(record)]
+    parts.append(_yaml({"runs": record["runs"]}))
+    for run in runs:
+        parts.append(f"# Run {run.id}:\n" + "".join(f"#   {note}\n" for note in run.notes))
+    return "".join(parts)
+
+
+def _gauge_remarks(record, runs, options):
+    for sensor in record["sensors"]:
+        gauge = sensor["id"]
+        unit = next(r.unit[gauge] for r in runs if gauge in r.unit)
+        if "kind" not in sensor:
+            yield f"To be filled in: kind and bead of {gauge} (--place {gauge}=13, or =wall)."
+        if unit not in ("N", *_SIGMA_KEY):
+            yield (
+                f"{gauge}: readings are in {unit or 'an unknown unit'}, its gain is unknown; to be filled in: "
+                f"the sensitivity (--scale {gauge}=12.5N/V)."
+            )
+        elif gauge not in options.gain_rel_sigma and sensor["gain_rel_sigma"] == GAIN_REL_SIGMA:
+            yield f"{gauge}: gain_rel_sigma is assumed; say how well the sensitivity is known."
+
+
+def _striker_gaps(record):
+    for run in record["runs"]:
+        keys = [k for k in ("shape", "material", "mass_g", "speed_m_s") if k not in run["striker"]]
+        if keys:
+            yield f"striker of {run['id']}: {', '.join(keys)}."
+
+
+def _yaml(mapping):
+    """YAML of some keys of the record, each beginning a line, as in a file of all keys."""
+    lines = []
+    for key, value in mapping.items():
+        if isinstance(value, dict | list):
+            lines.append(writer.text({key: value}))
+        else:
+            lines.append(yaml.safe_dump({key: value}, allow_unicode=True, default_flow_style=False, width=1000))
+    return "".join(lines)

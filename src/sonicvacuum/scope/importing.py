@@ -1,0 +1,60 @@
+"""Files of a recorder to a folder with record.yaml and one CSV file per run, and what the reader says of it."""
+
+from pathlib import Path
+
+from sonicvacuum.files import InputError, replacing
+from sonicvacuum.records import reader, signals
+from sonicvacuum.scope import draft
+from sonicvacuum.scope.clean import CleanRun, clean
+from sonicvacuum.scope.options import Options
+from sonicvacuum.scope.runs import shots
+
+
+def import_files(
+    files, folder, options: Options, *, like=None, record=None, title=None, force=False
+) -> list[str]:
+    """Write the record and return what was done and what is to be filled in, line by line.
+
+    Raises:
+        InputError: for files that cannot be read or do not fit together, a record that stands there already
+            (without `force`), or a folder that cannot be written; nothing is written then.
+    """
+    folder = Path(folder)
+    if (folder / reader.FILE).exists() and not force:
+        raise InputError(f"{folder / reader.FILE}: exists already; choose another folder, or give --force")
+    given = draft.template(like, record)
+    runs = [clean(s, options) for s in shots([Path(f) for f in files], options)]
+    content = draft.content(runs, given, options, title)
+    _write(folder, draft.text(content, runs, options), runs)
+    return [*_report(runs), *_checked(folder)]
+
+
+def _write(folder, text, runs: list[CleanRun]):
+    try:
+        for run in runs:
+            signals.write(run.signals, folder / f"{run.id}.csv")
+        with replacing(folder / reader.FILE) as stream:
+            stream.write(text)
+    except OSError as error:
+        raise InputError(
+            f"{folder}: {error.strerror or error}; choose a folder that can be written"
+        ) from None
+
+
+def _report(runs):
+    for run in runs:
+        yield (
+            f"run {run.id}: {run.signals.samples} samples, {run.signals.interval_s * 1e6:.6g} us apart, from "
+            f"{run.signals.start_s * 1e6:.6g} us"
+        )
+        yield from (f"  {note}" for note in run.notes)
+
+
+def _checked(folder):
+    """What the reader of records says of the folder."""
+    try:
+        reader.read(folder)
+    except InputError as error:
+        yield f"written, but still to be completed: {error}"
+    else:
+        yield f"{folder}: complete; next: sonicvacuum record check {folder}"

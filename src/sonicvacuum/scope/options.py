@@ -1,0 +1,112 @@
+"""What the command line asks of an import, as `NAME=VALUE` texts, turned into numbers and names."""
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from sonicvacuum.files import InputError
+from sonicvacuum.scope.units import Scale, quantity, scale
+
+_ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.+-]*")
+_PERCENT = re.compile(r"\s*(?:±|\+-|\+/-)\s*([\d.]+)\s*%\s*$")
+
+
+@dataclass(frozen=True)
+class Options:
+    """How files become a record.
+
+    Attributes:
+        channels: name of a channel, or `FILE:name` → id of the gauge; empty: all channels under their names.
+        scales: gauge → sensitivity; gain_rel_sigma: gauge → its relative standard error, where stated.
+        runs: run → names of its files; files that no run names are runs of their own.
+        places: gauge → number of its bead, or None for the wall.
+        speeds: run → speed of the striker in m/s.
+        impacts: run, or "" for all → moment of impact in s on the recorder's clock.
+        interval_s, start_s: time base of files that have none.
+        keep_all: neither trim nor thin.
+    """
+
+    channels: dict[str, str] = field(default_factory=dict)
+    scales: dict[str, Scale] = field(default_factory=dict)
+    gain_rel_sigma: dict[str, float] = field(default_factory=dict)
+    runs: dict[str, list[Path]] = field(default_factory=dict)
+    places: dict[str, int | None] = field(default_factory=dict)
+    speeds: dict[str, float] = field(default_factory=dict)
+    impacts: dict[str, float] = field(default_factory=dict)
+    interval_s: float | None = None
+    start_s: float | None = None
+    keep_all: bool = False
+
+
+def options(
+    channel=(), scale=(), run=(), place=(), speed=(), impact_at=(), interval=None, start=None, keep_all=False
+) -> Options:
+    """Options of the command line; InputError names the option, the value and the cure."""
+    scales = _pairs("--scale", scale, "g9=12.5N/V")
+    sigmas = {g: float(m.group(1)) / 100.0 for g, t in scales.items() if (m := _PERCENT.search(t))}
+    given = _pairs("--impact-at", [t if "=" in t else f"={t}" for t in impact_at], "12us or v044=12us", "")
+    return Options(
+        {c: name("--channel", g) for c, g in _pairs("--channel", channel, "CH1=g9").items()},
+        {g: _scale(g, _PERCENT.sub("", t)) for g, t in scales.items()},
+        sigmas,
+        {name("--run", r): _files(r, t) for r, t in _pairs("--run", run, "v044=A.csv,B.csv").items()},
+        {g: _place(g, t) for g, t in _pairs("--place", place, "g9=13 or wall=wall").items()},
+        {r: _number("--speed", t, "m/s") for r, t in _pairs("--speed", speed, "v044=0.44").items()},
+        {r: _number("--impact-at", t, "s") for r, t in given.items()},
+        None if interval is None else _positive("--interval", _number("--interval", interval, "s"), interval),
+        None if start is None else _number("--start", start, "s"),
+        keep_all,
+    )
+
+
+def _scale(gauge, text):
+    return scale(text, gauge)
+
+
+def _pairs(option, texts: Iterable[str], example, empty=None):
+    found = {}
+    for text in texts:
+        key, mark, value = text.partition("=")
+        key, value = key.strip(), value.strip()
+        if not mark or not value or (not key and empty is None):
+            raise InputError(f"{option}: is {text!r}; write it as in {option} {example}")
+        if key in found:
+            raise InputError(f"{option}: {key!r} is given twice; give it once")
+        found[key] = value
+    return found
+
+
+def name(option: str, text: str) -> str:
+    """A gauge's or run's id as a record allows it."""
+    if not _ID.fullmatch(text):
+        raise InputError(f"{option}: is {text!r}; use letters, digits and _ . + - only")
+    return text
+
+
+def _files(run, text):
+    files = [Path(p.strip()) for p in text.split(",") if p.strip()]
+    if not files:
+        raise InputError(f"--run {run}: names no file; write it as in --run v044=A.csv,B.csv")
+    return files
+
+
+def _place(gauge, text):
+    if text.lower() == "wall":
+        return None
+    if not text.isdigit() or int(text) < 1:
+        raise InputError(f"--place {gauge}: is {text!r}; give the number of its bead, or wall")
+    return int(text)
+
+
+def _number(option, text, base):
+    found = quantity(text)
+    if found is None or (found[1] and found[1].base != base):
+        raise InputError(f"{option}: is {text!r}; give a number in {base}, or one with its unit")
+    return found[0] * (found[1].factor if found[1] else 1.0)
+
+
+def _positive(option, number, text):
+    if not number > 0.0:
+        raise InputError(f"{option}: is {text!r}; it must be above 0")
+    return number

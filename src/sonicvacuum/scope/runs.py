@@ -1,0 +1,171 @@
+"""Which files and channels make one run: by what the user says, else by the names of files and channels."""
+
+import re
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from sonicvacuum.files import InputError
+from sonicvacuum.scope.options import Options
+from sonicvacuum.scope.reader import read
+from sonicvacuum.scope.recording import Channel, Recording
+
+# A channel's number in the name of a file, as in F0000CH1, C2Trace00001, shot_Ch3.
+_MARK = re.compile(r"(?<![A-Za-z])ch?[ _-]?([1-8])(?!\d)", re.IGNORECASE)
+# Intervals differing by less are the same; starts within this part of an interval are the same.
+SAME = 1e-6
+TOGETHER = 0.01
+
+
+@dataclass(frozen=True, eq=False)
+class Shot:
+    """One run's channels by gauge, as read; `notes` say how they were put together."""
+
+    id: str
+    channels: dict[str, Channel]
+    notes: tuple[str, ...]
+
+
+def shots(files: list[Path], options: Options) -> list[Shot]:
+    """The runs in files, in the order of the files; InputError for what does not fit together."""
+    named = {f for group in options.runs.values() for f in group}
+    recordings = {f: read(f) for f in dict.fromkeys((*files, *named))}
+    groups = [(run, [recordings[f] for f in group]) for run, group in options.runs.items()]
+    groups += _grouped([recordings[f] for f in files if f not in named])
+    found = [s for run, group in groups for s in _segments(run, group, options)]
+    used = [s.id for s in found]
+    for twice in {u for u in used if used.count(u) > 1}:
+        raise InputError(f"two runs are called {twice}; name them by --run NAME=FILE")
+    _all_mapped(found, options)
+    return found
+
+
+def _grouped(recordings):
+    """Files of one channel each whose names differ in the channel's number only are one run."""
+    groups = {}
+    for r in recordings:
+        single = len({c.name for c in r.channels}) == 1
+        stem = _MARK.sub("", r.file.stem, count=1) if single and _MARK.search(r.file.stem) else None
+        groups.setdefault((r.file.parent, stem) if stem is not None else (r.file, None), []).append(r)
+    return [
+        (_id(stem if stem is not None and len(group) > 1 else group[0].file.stem), group)
+        for (_, stem), group in groups.items()
+    ]
+
+
+def _id(text):
+    """A run's or gauge's id from a name: other characters become `_`."""
+    return re.sub(r"[^A-Za-z0-9_.+-]+", "_", text).strip("_.+-") or "run"
+
+
+def _segments(run, group: list[Recording], options):
+    """One run per shot of the files; shots are numbered where there are several."""
+    count = max(r.segments for r in group)
+    if any(r.segments != count for r in group):
+        raise InputError(f"run {run}: its files hold different numbers of shots; import them one by one")
+    for k in range(1, count + 1):
+        channels, notes = {}, []
+        for recording in group:
+            for channel in (c for c in recording.channels if c.segment == k):
+                gauge = _gauge(channel, recording, len(group) > 1, options)
+                if gauge in channels:
+                    raise InputError(
+                        f"run {run}: two channels are {gauge}; tell them apart by --channel FILE:NAME=GAUGE"
+                    )
+                if gauge:
+                    channels[gauge] = _timed(channel, recording, options)
+            notes.append(f"{recording.file.name}: layout {recording.layout}.")
+            notes += recording.notes
+        if not channels:
+            names = ", ".join(c.name for r in group for c in r.channels)
+            raise InputError(f"run {run}: none of its channels ({names}) is named by --channel")
+        yield Shot(run if count == 1 else f"{run}-{k}", channels, tuple(notes))
+
+
+def _plain(name):
+    """`CH 1`, `Channel 1`, `1` and `ch1` are the same channel."""
+    bare = re.sub(r"[\s_-]", "", name.lower())
+    return re.sub(r"^(channel|kanal|chan|ch|c)(?=\w{1,2}$)", "", bare)
+
+
+def _gauge(channel, recording, several, options):
+    """The gauge that a channel reads, None for one that is left out."""
+    mark = _MARK.search(recording.file.stem)
+    single = len({c.name for c in recording.channels}) == 1
+    names = [channel.name] + ([f"CH{mark.group(1)}"] if mark and single and several else [])
+    for key, gauge in options.channels.items():
+        file, colon, own = key.rpartition(":")
+        if colon and file in (str(recording.file), recording.file.name, recording.file.stem):
+            if _plain(own) == _plain(channel.name):
+                return gauge
+        elif _plain(key) in map(_plain, names):
+            return gauge
+    return None if options.channels else _id(names[-1])
+
+
+def _all_mapped(found, options):
+    """Every channel and gauge that an option names must be there."""
+    gauges = {g for s in found for g in s.channels}
+    for option, wanted in (
+        ("--channel", options.channels.values()),
+        ("--scale", options.scales),
+        ("--place", options.places),
+    ):
+        for gauge in wanted:
+            if gauge not in gauges:
+                raise InputError(
+                    f"{option}: no channel is {gauge!r}; there are {', '.join(sorted(gauges))}: "
+                    "look with --list how the channels are called"
+                )
+    ids = {s.id for s in found}
+    for option, wanted in (("--speed", options.speeds), ("--impact-at", options.impacts)):
+        for run in wanted:
+            if run and run not in ids:
+                raise InputError(f"{option}: no run is {run!r}; there are {', '.join(sorted(ids))}")
+
+
+def _timed(channel, recording, options):
+    """The channel with a time base, given by the user where the file has none."""
+    if channel.interval_s is None:
+        if options.interval_s is None:
+            raise InputError(
+                f"{recording.file}: channel {channel.name} has no times and no interval; give --interval"
+            )
+        start = options.start_s or 0.0
+        return replace(channel, interval_s=options.interval_s, start_s=start).noting("Interval as given.")
+    return channel
+
+
+def common_grid(shot: Shot) -> tuple[float, float, dict[str, np.ndarray], list[str]]:
+    """Start and interval in s of one grid for all channels, their samples on it, and remarks.
+
+    Channels on other times are interpolated linearly onto those of the coarsest one.
+    """
+    coarsest = max(shot.channels.values(), key=lambda c: c.interval_s)
+    step, begin, end = coarsest.interval_s, coarsest.start_s, np.inf
+    same = all(_together(c, coarsest) for c in shot.channels.values())
+    begin = max(c.start_s for c in shot.channels.values()) if not same else begin
+    end = min(c.start_s + (c.samples - 0.5) * c.interval_s for c in shot.channels.values())
+    count = int(np.floor((end - begin) / step)) + 1
+    if count < 16:
+        raise InputError(f"run {shot.id}: its channels share less than 16 samples in time")
+    if same:
+        return begin, step, {g: c.values[:count] for g, c in shot.channels.items()}, []
+    times = begin + step * np.arange(count)
+    samples = {g: np.interp(times, _times(c), c.values) for g, c in shot.channels.items()}
+    return begin, step, samples, ["Channels were interpolated linearly onto common, even times."]
+
+
+def _together(one, other):
+    return (
+        one.times_s is None
+        and abs(one.interval_s / other.interval_s - 1.0) < SAME
+        and abs(one.start_s - other.start_s) < TOGETHER * other.interval_s
+    )
+
+
+def _times(channel):
+    if channel.times_s is not None:
+        return channel.times_s
+    return channel.start_s + channel.interval_s * np.arange(channel.samples)
