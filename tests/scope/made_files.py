@@ -10,32 +10,42 @@ import numpy as np
 
 COUNT, STEP, START = 200, 1e-6, -1e-4
 TIMES = START + STEP * np.arange(COUNT)
-PULSE = np.round(2.0 * np.exp(-(((np.arange(COUNT) - 120) / 12.0) ** 2)) + 0.01 * ((np.arange(COUNT) * 7) % 5 - 2), 4)
+PULSE = np.round(
+    2.0 * np.exp(-(((np.arange(COUNT) - 120) / 12.0) ** 2)) + 0.01 * ((np.arange(COUNT) * 7) % 5 - 2), 4
+)
 
 
 def table(head, columns, cell=",", end="\n", form="{:.6e}", decimal=".", encoding="utf-8", close=""):
     """Bytes of a header and rows of numbers."""
-    rows = [cell.join(form.format(v).replace(".", decimal) for v in row) + close for row in zip(*columns, strict=True)]
+    rows = [
+        cell.join(form.format(v).replace(".", decimal) for v in row) + close
+        for row in zip(*columns, strict=True)
+    ]
     return (end.join([*head, *rows]) + end).encode(encoding)
 
 
 def tds(times, volts):
-    keys = ["Record Length,2.000000e+02,", "Sample Interval,1.000000e-06,", "Trigger Point,1.000000000000e+02,",
-            ",,", "Source,CH2,", "Vertical Units,V,", "Horizontal Units,s,", "Pt Fmt,Y,", "Model Number,TDS2024B,",
+    keys = ["Record Length,2.000000e+02,", "Sample Interval,1.000000e-06,", "Trigger Point,1.0000e+02,",
+            ",,", "Source,CH2,", "Vertical Units,V,", "Horizontal Units,s,",
+            "Pt Fmt,Y,", "Model Number,TDS2024B,",
             "Firmware Version,FV:v22.01,"]  # fmt: skip
     keys += [",,"] * (len(times) - len(keys))
-    return "\r\n".join(f"{k},{t:018.12f},  {v:.5f}," for k, t, v in zip(keys, times, volts, strict=True)).encode()
+    return "\r\n".join(
+        f"{k},{t:018.12f},  {v:.5f}," for k, t, v in zip(keys, times, volts, strict=True)
+    ).encode()
 
 
 def tbs(times, volts):
     head = ["Model,TBS1202C", "Firmware Version,1.2", "", "Point Format,Y,", "Horizontal Units,s,",
-            "Sample Interval,1e-06,", "Record Length,200,", "Probe Attenuation,1,1", "Vertical Units,V,V", "Label,,",
+            "Sample Interval,1e-06,", "Record Length,200,", "Probe Attenuation,1,1", "Vertical Units,V,V",
+            "Label,,",
             "TIME,CH1,CH2"]  # fmt: skip
     return table(head, (times, volts, -volts), end="\r\n")
 
 
 def siglent_old(times, volts):
-    head = ["Record Length,200", "Sample Interval,CH1:0.000001000 CH2:0.000001000", "Vertical Units,CH1:V CH2:V,,",
+    head = ["Record Length,200", "Sample Interval,CH1:0.000001000 CH2:0.000001000", 
+            "Vertical Units,CH1:V CH2:V,,",
             "Vertical Scale,CH1:0.05 CH2:0.10,,", "Horizontal Units,s,,", "Model Number,ADS1202CL+,,", "",
             "Source,CH1,CH2", "Second,Volt,Volt"]  # fmt: skip
     return table(head, (times, volts, -volts), form="{:.11f}")
@@ -43,8 +53,9 @@ def siglent_old(times, volts):
 
 def siglent_new(times, volts):
     """The header counts time in us, the column in s."""
-    head = ["Record Length,Analog:200,", "Sample Interval,Analog:1.000000E-06,", "Vertical Units,CH1:V,CH3:mV,",
-            "Horizontal Units,us,", "Model Number,SDS1104X-U,", "Source,CH1,CH3", "Second,Value,Value"]  # fmt: skip
+    head = ["Record Length,Analog:200,", "Sample Interval,Analog:1.000000E-06,", 
+            "Vertical Units,CH1:V,CH3:mV,", "Horizontal Units,us,", "Model Number,SDS1104X-U,", "Source,CH1,CH3",
+            "Second,Value,Value"]  # fmt: skip
     return table(head, (times, volts, 1e3 * volts), form="{:+.6E}")
 
 
@@ -55,7 +66,10 @@ def siglent_binary_converted(times, volts):
 
 def picoscope(times, volts):
     """Milliseconds and millivolts; the second channel leaves its range at one sample."""
-    rows = [f"{t * 1e3:.8f},{v * 1e3:.5f},{'∞' if k == 120 else v}" for k, (t, v) in enumerate(zip(times, volts, strict=True))]
+    rows = [
+        f"{t * 1e3:.8f},{v * 1e3:.5f},{'∞' if k == 120 else v}"
+        for k, (t, v) in enumerate(zip(times, volts, strict=True))
+    ]
     return "\r\n".join(["Time,Channel A,Channel B", "(ms),(mV),(V)", "", *rows, ""]).encode()
 
 
@@ -71,7 +85,8 @@ def picoscope_latin(times, volts):
 def digilent(times, volts):
     head = ["#Digilent WaveForms Oscilloscope Acquisition", "#Device Name: Discovery2",
             "#Date Time: 2021-03-09 12:00:00.123.456.789", "#Sample rate: 1e+06Hz", "#Samples: 200",
-            "#Channel 1: Range: 500 mV/div Offset: 0 V", "", "Time (s),Channel 1 (V),Channel 2 (V)"]  # fmt: skip
+            "#Channel 1: Range: 500 mV/div Offset: 0 V", "",
+            "Time (s),Channel 1 (V),Channel 2 (V)"]  # fmt: skip
     return table(head, (times, volts, -volts))
 
 
@@ -81,7 +96,8 @@ def phyphox(times, volts):
 
 
 def lecroy(times, volts):
-    head = ["LECROYWR104MXi-A,52137,Waveform", "Segments,1,SegmentSize,200", "Segment,TrigTime,TimeSinceSegment1",
+    head = ["LECROYWR104MXi-A,52137,Waveform", "Segments,1,SegmentSize,200",
+            "Segment,TrigTime,TimeSinceSegment1",
             "#1,03-Apr-2017 14:53:22,0                 ", "Time,Ampl"]  # fmt: skip
     return table(head, (times, volts), form="{:.9g}")
 
@@ -144,7 +160,9 @@ def dewesoft(times, volts):
     head = ["Data file\tC:\\data\\x.dxd", "Start time\t12.03.2020 12:00:00.123", "Number of channels\t2",
             "Sample rate\t1000000", "", "Events", "1\tstoring started\t0\t", "",
             "Time (s)\tForce (N)\tAcc [m/s2]"]  # fmt: skip
-    return table(head, (times, volts, -volts), cell="\t", end="\r\n", form="{:.7f}", decimal=",", encoding="utf-16")
+    return table(
+        head, (times, volts, -volts), cell="\t", end="\r\n", form="{:.7f}", decimal=",", encoding="utf-16"
+    )
 
 
 def elsys(times, volts):
@@ -154,17 +172,23 @@ def elsys(times, volts):
 
 
 def lvm(times, volts):
-    head = ["LabVIEW Measurement\t", "Writer_Version\t2", "Separator\tTab", "Decimal_Separator\t,", "X_Columns\tNo",
-            "***End_of_Header***\t", "\t", "Channels\t2\t\t", "Samples\t200\t200\t", "Y_Unit_Label\tNewtons\tVolts\t",
+    head = ["LabVIEW Measurement\t", "Writer_Version\t2", "Separator\tTab", "Decimal_Separator\t,",
+            "X_Columns\tNo",
+            "***End_of_Header***\t", "\t", "Channels\t2\t\t", "Samples\t200\t200\t",
+            "Y_Unit_Label\tNewtons\tVolts\t",
             "X_Dimension\tTime\tTime\t", "X0\t-1,0E-4\t-1,0E-4\t", "Delta_X\t1,000000E-6\t1,000000E-6\t",
             "***End_of_Header***\t\t\t", "X_Value\tHammer\tGauge\tComment"]  # fmt: skip
-    return table(head, (volts, -volts), cell="\t", form="\t{:.6f}", decimal=",").replace(b"\t\t-", b"\t-").replace(
-        b"\t\t", b"\t"
+    return (
+        table(head, (volts, -volts), cell="\t", form="\t{:.6f}", decimal=",")
+        .replace(b"\t\t-", b"\t-")
+        .replace(b"\t\t", b"\t")
     )
 
 
 def plain_blanks(times, volts):
-    return table(["# Time (us)   Force (N)   Speed (m/s)"], (times * 1e6, volts, -volts), cell="  ", form="{:12.4f}")
+    return table(
+        ["# Time (us)   Force (N)   Speed (m/s)"], (times * 1e6, volts, -volts), cell="  ", form="{:12.4f}"
+    )
 
 
 def no_header(times, volts):
@@ -192,7 +216,12 @@ def quoted_commas(times, volts):
 
 
 def index_and_rate(times, volts):
-    return table(["Sampling Frequency [kHz];1000", "Start;-1e-4", "Index;F [N]"], (np.arange(len(times)), volts), cell=";", form="{:.10g}")
+    return table(
+        ["Sampling Frequency [kHz];1000", "Start;-1e-4", "Index;F [N]"],
+        (np.arange(len(times)), volts),
+        cell=";",
+        form="{:.10g}",
+    )
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,17 @@ from hypothesis import strategies as st
 from sonicvacuum.scope import read
 from sonicvacuum.scope.units import quantity, scale, unit_of
 
-SEPARATORS = [(",", "."), (";", "."), (";", ","), ("\t", "."), ("\t", ","), (" ", "."), ("  ", ","), ("|", "."), (", ", ".")]
+SEPARATORS = [
+    (",", "."),
+    (";", "."),
+    (";", ","),
+    ("\t", "."),
+    ("\t", ","),
+    (" ", "."),
+    ("  ", ","),
+    ("|", "."),
+    (", ", "."),
+]
 FACTORS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "ns": 1e-9}
 VOLTS = {"V": 1.0, "mV": 1e-3, "uV": 1e-6, "kV": 1e3}
 numbers = st.floats(-1e6, 1e6, allow_subnormal=False).map(lambda v: v if abs(v) > 1e-6 else 0.0)
@@ -22,12 +32,18 @@ def tables(draw):
     columns = [draw(st.lists(numbers, min_size=count, max_size=count)) for _ in range(width)]
     time_unit, unit = draw(st.sampled_from(list(FACTORS))), draw(st.sampled_from(list(VOLTS)))
     bracket = draw(st.sampled_from(["({})", "[{}]"]))
-    labels = [f"Time {bracket.format(time_unit)}", *(f"CH{k + 1} {bracket.format(unit)}" for k in range(width))]
+    labels = [
+        f"Time {bracket.format(time_unit)}",
+        *(f"CH{k + 1} {bracket.format(unit)}" for k in range(width)),
+    ]
     joint = {" ": "   ", "  ": "   "}.get(cell, cell)
     times = [-5.0 + 0.5 * k for k in range(count)]
     quoted = draw(st.booleans()) and cell.strip() != ""
     mark = '"' if quoted else ""
-    rows = [cell.join(f"{mark}{v!r}{mark}".replace(".", decimal) for v in row) for row in zip(times, *columns, strict=True)]
+    rows = [
+        cell.join(f"{mark}{v!r}{mark}".replace(".", decimal) for v in row)
+        for row in zip(times, *columns, strict=True)
+    ]
     comments = [f"Comment;{k}" for k in range(draw(st.integers(0, 5)))]
     close = draw(st.sampled_from(["", cell.strip()])) if cell.strip() else ""
     lines = [*comments, joint.join(labels), *(r + close for r in rows)]

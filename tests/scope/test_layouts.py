@@ -1,4 +1,4 @@
-"""Files in the layouts of many recorders come back as the same pulse, and what is wrong with files is said."""
+"""Files in the layouts of many recorders come back as the same pulse; what is wrong with files is said."""
 
 import numpy as np
 import pytest
@@ -70,13 +70,17 @@ def test_times_printed_with_few_digits(tmp_path):
 
 def test_uneven_times_are_kept(tmp_path):
     times = np.cumsum(np.random.default_rng(2).uniform(4e-3, 6e-3, COUNT))
-    (channel,) = read(put(tmp_path, "u.csv", table(["Time (s),a (m/s^2)"], (times, PULSE), form="{:.9e}"))).channels
+    (channel,) = read(
+        put(tmp_path, "u.csv", table(["Time (s),a (m/s^2)"], (times, PULSE), form="{:.9e}"))
+    ).channels
     assert channel.times_s == pytest.approx(times)
     assert any("uneven" in n for n in channel.notes)
 
 
 def test_a_slower_channel_with_empty_cells(tmp_path):
-    rows = [f"{t:.6e},{v},{v if k % 4 == 0 else ''}" for k, (t, v) in enumerate(zip(TIMES, PULSE, strict=True))]
+    rows = [
+        f"{t:.6e},{v},{v if k % 4 == 0 else ''}" for k, (t, v) in enumerate(zip(TIMES, PULSE, strict=True))
+    ]
     path = put(tmp_path, "two.csv", "\n".join(["time (s),fast (V),slow (V)", *rows]).encode())
     fast, slow = read(path).channels
     assert (fast.interval_s, slow.interval_s, slow.samples) == (1e-6, 4e-6, 50)

@@ -1,4 +1,4 @@
-"""`sonicvacuum record new`, `import`, `check`: start a record of measured data, and see whether one is sound."""
+"""`sonicvacuum record new`, `import`, `check`: start a record of measured data, see whether it is sound."""
 
 import click
 

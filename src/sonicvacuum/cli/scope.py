@@ -10,10 +10,15 @@ import click
 @click.argument("files", nargs=-1, required=True, type=click.Path())
 @click.option("--list", "listed", is_flag=True, help="Only say what is in FILES.")
 @click.option("--json", "as_json", is_flag=True, help="With --list: as JSON.")
-@click.option("--out", type=click.Path(file_okay=False), help="Folder to write record.yaml and CSV files into.")
+@click.option(
+    "--out", type=click.Path(file_okay=False), help="Folder to write record.yaml and CSV files into."
+)
 @click.option("--run", multiple=True, metavar="RUN=FILE,…", help="These files are one run of this name.")
 @click.option(
-    "--channel", multiple=True, metavar="CH=GAUGE", help="A channel (or FILE:CH) reads this gauge; others are left out."
+    "--channel",
+    multiple=True,
+    metavar="CH=GAUGE",
+    help="A channel (or FILE:CH) reads this gauge; others are left out.",
 )
 @click.option(
     "--scale", multiple=True, metavar="GAUGE=12.5N/V", help="Sensitivity, also -12.5N/V, 80mV/N, 12.5N/V±2%."
@@ -21,13 +26,18 @@ import click
 @click.option("--place", multiple=True, metavar="GAUGE=BEAD", help="Bead that holds a gauge, or wall.")
 @click.option("--speed", multiple=True, metavar="RUN=M/S", help="Speed of a run's striker.")
 @click.option(
-    "--impact-at", multiple=True, metavar="[RUN=]TIME", help="Moment of impact on the recorder's clock, as in 12us."
+    "--impact-at",
+    multiple=True,
+    metavar="[RUN=]TIME",
+    help="Moment of impact on the recorder's clock, as in 12us.",
 )
 @click.option("--interval", metavar="TIME", help="Time between samples of files that have no times.")
 @click.option("--start", metavar="TIME", help="Time of the first sample of files that have no times.")
 @click.option("--keep-all", is_flag=True, help="Neither trim nor thin.")
 @click.option("--like", type=click.Path(), help="Record with the same chain, gauges and striker.")
-@click.option("--record", "template", type=click.Path(), help="YAML file with keys of a record; may be incomplete.")
+@click.option(
+    "--record", "template", type=click.Path(), help="YAML file with keys of a record; may be incomplete."
+)
 @click.option("--title", help="Title of the record.")
 @click.option("--force", is_flag=True, help="Overwrite a record that is there already.")
 def import_(files, listed, as_json, out, like, template, title, force, **given):

@@ -1,4 +1,4 @@
-"""Binary files of recorders through two well-kept libraries: npTDMS (.tdms) and RigolWFM (.wfm, .trc, .isf, .bin).
+"""Binary files of recorders through two well-kept libraries: npTDMS for .tdms, RigolWFM for all others.
 
 Both are in the optional extra `scope`. Nothing is ever unpickled or evaluated.
 """
@@ -14,6 +14,8 @@ from sonicvacuum.scope.timebase import tidy
 from sonicvacuum.scope.units import unit_of
 
 _WAVEFORMS = (".wfm", ".trc", ".isf", ".bin", ".wvf", ".hdr")
+# Relative rounding error of a four-byte number, doubled.
+FLOAT_ERROR = 1.2e-7
 CURE = "python -m pip install 'sonicvacuum[scope]'"
 
 
@@ -50,7 +52,9 @@ def _tdms(path):
             channels = [(g.name, c, c[:]) for g in file.groups() for c in g.channels() if len(c)]
     except Exception as error:
         raise InputError(f"{path}: not a sound .tdms file: {error}; export it again") from None
-    numeric = [(g, c, np.asarray(v, dtype=float)) for g, c, v in channels if np.asarray(v).dtype.kind in "iufb"]
+    numeric = [
+        (g, c, np.asarray(v, dtype=float)) for g, c, v in channels if np.asarray(v).dtype.kind in "iufb"
+    ]
     if not numeric:
         raise InputError(f"{path}: holds no channel of numbers; export the traces again")
     return Recording(path, "tdms", tuple(_timed(numeric)))
@@ -67,7 +71,9 @@ def _timed(numeric):
         said = str(properties.get("unit_string") or properties.get("NI_UnitDescription") or "")
         unit = unit_of(said)
         if not unit:
-            notes.append(f"The unit {said} is not known; numbers are as written." if said else "No unit given.")
+            notes.append(
+                f"The unit {said} is not known; numbers are as written." if said else "No unit given."
+            )
         interval = properties.get("wf_increment")
         start = float(properties.get("wf_start_offset") or 0.0) if interval else None
         clock = times.get((group, len(values)))
@@ -110,8 +116,11 @@ def _waveform_channels(waveform, path):
         interval = _interval(times, channel.seconds_per_point) if count > 1 else None
         name = channel.name.replace(" ", "")
         unit = {"v": "V", "a": "A", "w": "W"}.get(getattr(channel.unit, "name", ""), "V")
-        values = np.asarray(channel.volts, dtype=float)
-        yield Channel(name, unit, values, tidy(float(times[0])), interval)
+        values, shots = np.asarray(channel.volts, dtype=float), _shots(path)
+        if count % shots:
+            shots = 1
+        for k, part in enumerate(values.reshape(shots, -1)):
+            yield Channel(name, unit, part, tidy(float(times[0])), interval, (), k + 1)
 
 
 def _interval(times, stated):
@@ -119,4 +128,21 @@ def _interval(times, stated):
     interval = float(times[-1] - times[0]) / (len(times) - 1)
     if stated and abs(interval / stated - 1.0) < 1.5 / (len(times) - 1):
         interval = float(stated)
-    return tidy(interval)
+    # Many files hold four-byte numbers: the shortest text of one is what the recorder meant.
+    short = float(str(np.float32(interval)))
+    return short if abs(short / interval - 1.0) < FLOAT_ERROR else tidy(interval)
+
+
+def _shots(path):
+    """Number of shots that a LeCroy file holds one after the other: SUBARRAY_COUNT of its WAVEDESC.
+
+    Place 144 of template LECROY_2_3 (LeCroy, MAUI Automation Manual); COMM_ORDER at 34 is 1 for the low byte
+    first.
+    """
+    with open(path, "rb") as stream:
+        head = stream.read(4096)
+    begin = head.find(b"WAVEDESC")
+    if begin < 0 or len(head) < begin + 148:
+        return 1
+    order = "little" if head[begin + 34] == 1 else "big"
+    return max(1, int.from_bytes(head[begin + 144 : begin + 148], order, signed=True))

@@ -96,8 +96,8 @@ def _bridged(values, where, gauge, notes):
     edges = np.flatnonzero(np.diff(np.concatenate(([0], lost.astype(int), [0]))))
     if len(edges) and (edges[1::2] - edges[::2]).max() > BRIDGED:
         raise InputError(
-            f"{where}: {int((edges[1::2] - edges[::2]).max())} samples in a row are lost; cut the file there, "
-            "or leave the channel out"
+            f"{where}: {int((edges[1::2] - edges[::2]).max())} samples in a row are lost; cut the file "
+            "there, or leave the channel out"
         )
     places = np.arange(len(values))
     values[lost] = np.interp(places[lost], places[~lost], values[~lost])
@@ -111,7 +111,9 @@ def _scaled(channel, gauge, options, notes):
         if channel.unit == "g":
             return 9.80665, "m/s^2"
         if channel.unit not in FORCE_UNITS:
-            notes.append(f"{gauge}: readings stay in {channel.unit or 'an unknown unit'}: no --scale is given.")
+            notes.append(
+                f"{gauge}: readings stay in {channel.unit or 'an unknown unit'}: no --scale is given."
+            )
         return 1.0, channel.unit
     found = scale.of(channel.unit)
     if found is None and channel.unit == "":
@@ -146,7 +148,7 @@ def _found(trace: Trace, unit, step, start):
     if trace.clipped:
         yield f"{trace.clipped} samples lie at an end of the range: clipped."
     if len(trace.spikes):
-        yield f"{len(trace.spikes)} single samples stood far off their neighbours (spikes); medians put there."
+        yield f"{len(trace.spikes)} single samples lay far off their neighbours (spikes); medians stand there."
 
 
 def _without_spikes(values, trace):
@@ -159,7 +161,7 @@ def _without_spikes(values, trace):
 
 
 def _window(values, seen, impact, options):
-    """First and last sample to keep, and the factor of thinning; the impact (a sample or None) is kept too."""
+    """First and last sample to keep (the impact, a sample or None, among them), and the factor of thinning."""
     count = len(next(iter(values.values())))
     found = {g: t for g, t in seen.items() if t.arrival is not None}
     if options.keep_all or not found:
@@ -177,7 +179,7 @@ def _window(values, seen, impact, options):
 
 
 def _sigma(written, trace, begin, factor):
-    """White noise of one written sample: measured at rest where that is long enough, else as the filter says."""
+    """White noise of one written sample: measured at rest where that lasts, else as the filter says."""
     rest = (trace.arrival - begin) // factor if trace.arrival is not None else 0
     quiet = written[: int(0.9 * rest)]
     floor = trace.step / np.sqrt(12.0) if factor == 1 else 0.0

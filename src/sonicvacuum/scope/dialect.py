@@ -35,7 +35,9 @@ class Dialect:
             parts = next(csv.reader([line.strip()], delimiter=" ", skipinitialspace=True), [])
             return [p for p in (x.strip() for x in parts) if p] if '"' in line else line.split()
         if '"' in line:
-            return [c.strip() for c in next(csv.reader([line], delimiter=self.delimiter, skipinitialspace=True))]
+            return [
+                c.strip() for c in next(csv.reader([line], delimiter=self.delimiter, skipinitialspace=True))
+            ]
         return [c.strip() for c in line.split(self.delimiter)]
 
     def is_number(self, cell: str) -> bool:

@@ -1,4 +1,4 @@
-"""The text of record.yaml for imported runs: what is known, what was assumed, what is still to be filled in."""
+"""The text of record.yaml for imported runs: what is known, what was assumed, what is to be filled in."""
 
 from pathlib import Path
 
@@ -92,7 +92,7 @@ def _gain(gauge, known, unit, options):
 
 
 def _trigger(runs):
-    """Common standard error of time zero in us; without one the time before the arrival where it must be a number."""
+    """Common standard error of time zero in us, or `unknown`; as a number, the time ahead of the pulse."""
     sigmas = [r.zero_sigma_s for r in runs]
     if None not in sigmas:
         return float(f"{max(sigmas) * 1e6:.3g}")
@@ -122,7 +122,10 @@ def text(record: dict, runs: list[CleanRun], options: Options) -> str:
     """record.yaml with comments on what was done, assumed, and is to be filled in."""
     head = {k: record[k] for k in ("format", "title", "source") if k in record}
     chain = {k: record[k] for k in ("chain", "materials", "tolerances", "priors") if k in record}
-    parts = ["# Imported from a recorder's files; what was done to each run stands at the end.\n", _yaml(head)]
+    parts = [
+        "# Imported from a recorder's files; what was done to each run stands at the end.\n",
+        _yaml(head),
+    ]
     parts.append(_yaml(chain) if "chain" in chain else _CHAIN + (_yaml(chain) if chain else ""))
     parts.append("# Positive readings = compression. sigma: white noise of one sample, estimated at rest.\n")
     parts += [f"# {line}\n" for line in _gauge_remarks(record, runs, options)]
@@ -145,8 +148,8 @@ def _gauge_remarks(record, runs, options):
             yield f"To be filled in: kind and bead of {gauge} (--place {gauge}=13, or =wall)."
         if unit not in ("N", *_SIGMA_KEY):
             yield (
-                f"{gauge}: readings are in {unit or 'an unknown unit'}, its gain is unknown; to be filled in: "
-                f"the sensitivity (--scale {gauge}=12.5N/V)."
+                f"{gauge}: readings are in {unit or 'an unknown unit'}, its gain is unknown; to be filled "
+                f"in: the sensitivity (--scale {gauge}=12.5N/V)."
             )
         elif gauge not in options.gain_rel_sigma and sensor["gain_rel_sigma"] == GAIN_REL_SIGMA:
             yield f"{gauge}: gain_rel_sigma is assumed; say how well the sensitivity is known."
@@ -166,5 +169,7 @@ def _yaml(mapping):
         if isinstance(value, dict | list):
             lines.append(writer.text({key: value}))
         else:
-            lines.append(yaml.safe_dump({key: value}, allow_unicode=True, default_flow_style=False, width=1000))
+            lines.append(
+                yaml.safe_dump({key: value}, allow_unicode=True, default_flow_style=False, width=1000)
+            )
     return "".join(lines)

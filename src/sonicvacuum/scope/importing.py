@@ -1,4 +1,4 @@
-"""Files of a recorder to a folder with record.yaml and one CSV file per run, and what the reader says of it."""
+"""Files of a recorder to a folder with record.yaml and a CSV file per run, and what the reader says of it."""
 
 from pathlib import Path
 

@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 from sonicvacuum.scope.dialect import Dialect
 from sonicvacuum.scope.units import quantity, unit_of
@@ -32,7 +33,19 @@ MEANINGS = {
     "scale": {"verticalscale", "voltsdiv", "voltdiv", "vscale"},
 }  # fmt: skip
 # Keys that mean other things too; another key of the same meaning overrules them.
-_VAGUE = {"start", "interval", "samples", "points", "size", "units", "unit", "labels", "channel", "channels", "ch"}
+_VAGUE = {
+    "start",
+    "interval",
+    "samples",
+    "points",
+    "size",
+    "units",
+    "unit",
+    "labels",
+    "channel",
+    "channels",
+    "ch",
+}
 _MEANING = {key: meaning for meaning, keys in MEANINGS.items() for key in keys}
 
 
@@ -118,7 +131,7 @@ def _pairs(row):
         yield found.group(1), [found.group(2).rstrip(":"), *cells[1:]]
     else:
         yield first, [c for c in cells[1:] if c != cells[0]]
-    for key, value in zip(cells[1:], cells[2:], strict=False):
+    for key, value in pairwise(cells[1:]):
         if _name(key)[0] in _MEANING and re.search(r"[A-Za-z]", key) and key != cells[0]:
             yield key, [value]
     for cell in cells[1:]:

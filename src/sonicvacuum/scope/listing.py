@@ -55,7 +55,9 @@ def text(entries: list[dict[str, Any]]) -> str:
         rows = [_row(c) for c in entry["channels"]]
         heads = ("channel", "unit", "samples", "interval s", "start s", "minimum", "maximum")
         widths = [max(len(r[k]) for r in (heads, *rows)) for k in range(len(heads))]
-        lines += ["  " + "  ".join(c.ljust(w) for c, w in zip(r, widths, strict=True)) for r in (heads, *rows)]
+        lines += [
+            "  " + "  ".join(c.ljust(w) for c, w in zip(r, widths, strict=True)) for r in (heads, *rows)
+        ]
         said = dict.fromkeys(n for c in entry["channels"] for n in c["notes"])
         lines += [f"    note: {n}" for n in said]
     return "\n".join(line.rstrip() for line in lines)

@@ -99,7 +99,7 @@ def white(values: np.ndarray, step: float) -> float:
 
 
 def converter_step(values: np.ndarray) -> float:
-    """Step of the converter: the distance of which all distances of neighbouring values are multiples; else 0."""
+    """Step of the converter, of which all distances of neighbouring values are multiples; 0 without one."""
     levels = np.unique(values)
     if len(levels) < 3 or len(levels) > len(values) / 3:
         return 0.0
@@ -113,7 +113,9 @@ def converter_step(values: np.ndarray) -> float:
 def _rest(values, step):
     """Level, white noise and spread of the stretches that lie calm before the first that does not."""
     size = max(8, len(values) // STRETCHES)
-    stretches = values[: len(values) // size * size].reshape(-1, size) if len(values) >= size else values[None]
+    stretches = (
+        values[: len(values) // size * size].reshape(-1, size) if len(values) >= size else values[None]
+    )
     spread = stretches.std(axis=1)
     calm = spread <= 2.0 * np.quantile(spread, 0.2) + step
     end = int(np.argmin(calm)) if not calm.all() else len(calm)

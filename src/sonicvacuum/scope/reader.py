@@ -1,6 +1,7 @@
 """One file to its channels: text → dialect → table → roles of the columns → time base and units."""
 
 import re
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -62,7 +63,7 @@ def _parts(table: Table, found):
         edges = [0, rows]
     return [
         (k + 1, len(edges) > 2, {p: v[a:b] for p, v in table.columns.items()})
-        for k, (a, b) in enumerate(zip(edges, edges[1:], strict=False))
+        for k, (a, b) in enumerate(pairwise(edges))
     ]
 
 
@@ -85,7 +86,7 @@ def _channels(part, found, keys: Keys, layout: Layout, path):
 
 
 def _held(values):
-    """Samples of a channel without empty cells at its ends or in a regular pattern, and which rows those are."""
+    """Samples of a channel without empty cells at its ends or in a regular pattern, and their rows."""
     lost = np.isnan(values)
     if not lost.any():
         return values, slice(None)
@@ -102,7 +103,9 @@ def _base(clock, column, columns, kept, keys, place) -> TimeBase:
     if clock is None:
         return _shifted(from_header(keys, place, column.place), kept)
     times = columns[clock.place]
-    if clock.role == "counter" or (clock.unit is None and roles.counts(times) and keys.values.get("interval")):
+    if clock.role == "counter" or (
+        clock.unit is None and roles.counts(times) and keys.values.get("interval")
+    ):
         return _shifted(from_header(keys, place, column.place), kept)
     return from_column(times[kept], clock.unit, keys, place, column.place)
 

@@ -13,7 +13,9 @@ _TIME = re.compile(
     r"(time|zeit|temps|tiempo|tempo|tid|tijd|czas|timestamp|elapsed.*|x[-_ ]?axis|x[-_ ]?values?|x|t|in|"
     r"seconds?|sec|time[ _].*|.*[ _]time|时间|時間)", re.IGNORECASE
 )  # fmt: skip
-_COUNTER = re.compile(r"(sequence|samples?|sample[ _-]?(no|nr|number)\.?|nr|no|index|idx|#|points?|n|i)\.?", re.I)
+_COUNTER = re.compile(
+    r"(sequence|samples?|sample[ _-]?(no|nr|number)\.?|nr|no|index|idx|#|points?|n|i)\.?", re.I
+)
 _COUNTS = re.compile(r"(sequence|samples?|index|points?|#|no\.?)", re.IGNORECASE)
 # Rows above samples that only say where these begin.
 _MARKER = re.compile(r"(waveform )?data:?|\*+end.*", re.IGNORECASE)

@@ -37,7 +37,9 @@ def read(path: Path) -> tuple[str, str]:
     try:
         text = data.decode(encoding)
     except UnicodeDecodeError as error:
-        raise InputError(f"{path}: not valid {encoding} at byte {error.start}; export the file again") from None
+        raise InputError(
+            f"{path}: not valid {encoding} at byte {error.start}; export the file again"
+        ) from None
     return text.rstrip("\0\x1a").replace("\r\r\n", "\n").replace("\r\n", "\n").replace("\r", "\n"), encoding
 
 

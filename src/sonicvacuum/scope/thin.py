@@ -1,4 +1,4 @@
-"""Thinning of traces that are sampled finer than their pulses need: a zero-phase low-pass, then every q-th sample."""
+"""Thinning of traces sampled finer than their pulses need: a zero-phase low-pass, then every q-th sample."""
 
 import numpy as np
 from scipy.signal import firwin, oaconvolve

@@ -67,7 +67,9 @@ def from_header(keys: Keys, place: int = 0, column: int = 0) -> TimeBase:
     return TimeBase(start, interval, tuple(notes))
 
 
-def from_column(times: np.ndarray, label: Unit | None, keys: Keys, place: int = 0, column: int = 0) -> TimeBase:
+def from_column(
+    times: np.ndarray, label: Unit | None, keys: Keys, place: int = 0, column: int = 0
+) -> TimeBase:
     """Time base of a column of times, one shot."""
     if len(times) < 2 or not np.isfinite(times).all():
         base = from_header(keys, place, column)

@@ -1,4 +1,4 @@
-"""Units as recorders write them, and gauge sensitivities as a user writes them: texts to base units and factors.
+"""Units as recorders write them and sensitivities as users write them: texts to base units and factors.
 
 A base unit is what the record or SI counts in: V, N, m/s, m/s^2, s, Pa …; `g`, the acceleration, is left as
 it is and converted only by a gauge's sensitivity.

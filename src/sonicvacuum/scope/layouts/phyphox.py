@@ -2,4 +2,6 @@
 
 from sonicvacuum.scope.layouts.base import Layout
 
-LAYOUT = Layout("phyphox", r"phyphox|^\W*Time \(s\)\W+(Linear |Absolute )?(acceleration|gyroscope|magnetic)", unit="")
+LAYOUT = Layout(
+    "phyphox", r"phyphox|^\W*Time \(s\)\W+(Linear |Absolute )?(acceleration|gyroscope|magnetic)", unit=""
+)

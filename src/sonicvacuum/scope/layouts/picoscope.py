@@ -2,4 +2,7 @@
 
 from sonicvacuum.scope.layouts.base import Layout
 
-LAYOUT = Layout("picoscope", r"^\W*\S+([,;\t](Channel|Kanal|Canal|Voie|Average\(.*\)|Math)?\s?[A-H]\b)+.*\n\W*\([munµμ]?s\)|PicoScope|PicoLog")
+LAYOUT = Layout(
+    "picoscope",
+    r"^\W*\S+([,;\t](Channel|Kanal|Canal|Voie|Average\(.*\)|Math)?\s?[A-H]\b)+.*\n\W*\([munµμ]?s\)|PicoScope|PicoLog",
+)

@@ -2,4 +2,8 @@
 
 from sonicvacuum.scope.layouts.base import Layout
 
-LAYOUT = Layout("tektronix", r"Model( Number)?,\W*(TDS|TBS|MSO|DPO|MDO|TPS|LPD|DSA)|^\"?Record Length\"?,.*\n\"?Sample Interval|^\W*TIME,(CH|REF|MATH)\d|Tektronix")
+LAYOUT = Layout(
+    "tektronix",
+    r"Model( Number)?,\W*(TDS|TBS|MSO|DPO|MDO|TPS|LPD|DSA)|^\"?Record Length\"?,.*\n\"?Sample Interval"
+    r"|^\W*TIME,(CH|REF|MATH)\d|Tektronix",
+)
