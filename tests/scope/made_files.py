@@ -44,7 +44,7 @@ def tbs(times, volts):
 
 
 def siglent_old(times, volts):
-    head = ["Record Length,200", "Sample Interval,CH1:0.000001000 CH2:0.000001000", 
+    head = ["Record Length,200", "Sample Interval,CH1:0.000001000 CH2:0.000001000",
             "Vertical Units,CH1:V CH2:V,,",
             "Vertical Scale,CH1:0.05 CH2:0.10,,", "Horizontal Units,s,,", "Model Number,ADS1202CL+,,", "",
             "Source,CH1,CH2", "Second,Volt,Volt"]  # fmt: skip
@@ -53,9 +53,9 @@ def siglent_old(times, volts):
 
 def siglent_new(times, volts):
     """The header counts time in us, the column in s."""
-    head = ["Record Length,Analog:200,", "Sample Interval,Analog:1.000000E-06,", 
-            "Vertical Units,CH1:V,CH3:mV,", "Horizontal Units,us,", "Model Number,SDS1104X-U,", "Source,CH1,CH3",
-            "Second,Value,Value"]  # fmt: skip
+    head = ["Record Length,Analog:200,", "Sample Interval,Analog:1.000000E-06,",
+            "Vertical Units,CH1:V,CH3:mV,", "Horizontal Units,us,", "Model Number,SDS1104X-U,",
+            "Source,CH1,CH3", "Second,Value,Value"]  # fmt: skip
     return table(head, (times, volts, 1e3 * volts), form="{:+.6E}")
 
 

@@ -148,7 +148,7 @@ def _found(trace: Trace, unit, step, start):
     if trace.clipped:
         yield f"{trace.clipped} samples lie at an end of the range: clipped."
     if len(trace.spikes):
-        yield f"{len(trace.spikes)} single samples lay far off their neighbours (spikes); medians stand there."
+        yield f"{len(trace.spikes)} single samples lay far off their neighbours (spikes): medians instead."
 
 
 def _without_spikes(values, trace):
@@ -161,7 +161,7 @@ def _without_spikes(values, trace):
 
 
 def _window(values, seen, impact, options):
-    """First and last sample to keep (the impact, a sample or None, among them), and the factor of thinning."""
+    """First and last sample to keep (the impact, a sample or None, is among them) and the thinning."""
     count = len(next(iter(values.values())))
     found = {g: t for g, t in seen.items() if t.arrival is not None}
     if options.keep_all or not found:

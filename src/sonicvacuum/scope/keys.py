@@ -16,7 +16,7 @@ MEANINGS = {
                  "timepersample", "timebaseinterval", "clock", "signalresolution"},
     "rate": {"samplerate", "samplingrate", "samplefrequency", "samplingfrequency", "sampfreq", "fs", "rate",
              "abtastrate", "samplespersecond", "samplingclock", "abtastfrequenz", "acquisitionrate",
-             "sampleratehz", "scanrate"},
+             "sampleratehz", "scanrate", "sampling"},
     "start": {"start", "x0", "xorg", "xorigin", "xorigine", "xstart", "xzero", "hoffset", "t0", "starttime",
               "timeoffirstpoint", "firstsampletime", "horizoffset", "signalxstart",
               "firstpointtime", "xoffset"},

@@ -36,6 +36,7 @@ def read(path) -> Recording:
     if is_binary(path):
         return read_binary(path)
     content, encoding = text.read(path)
+    content = content.rstrip(" ;,\t\n")
     layout = recognise(content[:_HEAD], path)
     table = split(content, path)
     found, rows = roles.columns(table)
@@ -70,7 +71,12 @@ def _parts(table: Table, found):
 def _channels(part, found, keys: Keys, layout: Layout, path):
     number, several, columns = part
     names = _names(found, keys, path)
-    clock, place = None, 0
+    values = [c.place for c in found if c.role == "value"]
+    # Times stand before their channels; where none do, the first further on counts for all.
+    clock = (
+        next((c for c in found if c.role == "time"), None) if values and found[0].place == values[0] else None
+    )
+    place = 0
     for column in found:
         if column.role == "value":
             values, kept = _held(columns[column.place])

@@ -18,7 +18,9 @@ _COUNTER = re.compile(
 )
 _COUNTS = re.compile(r"(sequence|samples?|index|points?|#|no\.?)", re.IGNORECASE)
 # Rows above samples that only say where these begin.
-_MARKER = re.compile(r"(waveform )?data:?|\*+end.*", re.IGNORECASE)
+_MARKER = re.compile(
+    r"\W*((waveform|measured|raw) )?(data|values|daten|messwerte)\W*|\*+end.*", re.IGNORECASE
+)
 # Words that name a kind of quantity, not a channel.
 _GENERIC = re.compile(r"(volts?|voltage|value|ampl(itude)?|data|y|level|signal|spannung)", re.IGNORECASE)
 _UNIT_AT_END = (
@@ -142,7 +144,7 @@ def _at(row, k):
 
 def _are_units(row, table):
     held = [_at(row, k) for k in table.places]
-    plain = [bool(unit_of(c)) or _COUNTS.fullmatch(c) for c in held if c]
+    plain = [bool(unit_of(c) or _COUNTS.fullmatch(c)) for c in held if re.search(r"\w", c)]
     return bool(plain) and all(plain)
 
 
@@ -167,6 +169,9 @@ def _roles(found, table):
         result.append(Column(k, role, name, unit))
     if len(result) > 1 and all(c.role == "value" for c in result):
         return _by_numbers(result, table)
+    first = result[0]
+    if first.role == "value" and not first.name and counts(table.columns[first.place]):
+        result[0] = replace(first, role="counter")
     return result
 
 

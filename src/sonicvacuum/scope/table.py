@@ -6,6 +6,7 @@ some recorders) is kept as further header rows.
 """
 
 import io
+import re
 from collections import Counter
 from dataclasses import dataclass
 
@@ -20,6 +21,8 @@ BEGINNING = 4
 LONGEST_HEADER = 100_000
 # Rows beside which a header may stand.
 BESIDE = 200
+# A time of day, maybe behind a date.
+_CLOCK = re.compile(r"(?:\d[\d./-]+\d[T ]+)?(?P<h>\d{1,2}):(?P<m>\d{2}):(?P<s>\d{2}(?:[.,]\d+)?)Z?")
 # Numbers as Python reads them: the default from pandas 3.1 on, an option before.
 _EXACT = {} if tuple(map(int, pd.__version__.split(".")[:2])) >= (3, 1) else {"float_precision": "round_trip"}
 # Share of rows that are no samples from which a text is not taken for a table.
@@ -59,7 +62,7 @@ def split(text: str, path) -> Table:
         InputError: where no columns of numbers are found, or a row has more cells than the table columns.
     """
     dialect = sniff(text, path)
-    places = _places(text, dialect)
+    places = _places(text, dialect, path)
     above, offset = _above(text, dialect, places, path)
     start = _rows(text[offset : offset + 200 * BESIDE].split("\n")[:BESIDE], dialect)
     header = [(raw, cells) for raw, cells in ((a, _header_cells(a, dialect)) for a in above) if any(cells)]
@@ -87,9 +90,11 @@ def _numeric(row, dialect):
     return tuple(k for k, cell in enumerate(row) if dialect.is_sample(cell))
 
 
-def _places(text, dialect):
+def _places(text, dialect, path):
     """Columns that hold samples in most of the last rows."""
     rows = _rows(text[-20_000:].split("\n")[-60:], dialect)
+    if dialect.delimiter is None and sum(len(_numeric(r, dialect)) < len(r) for r in rows[-16:]) > 8:
+        raise InputError(f"{path}: words stand between the numbers; export the traces as a table of numbers")
     seen = [p for p in (_numeric(r, dialect) for r in rows[-16:]) if p]
     return list(Counter(seen).most_common(1)[0][0])
 
@@ -166,6 +171,9 @@ def _numbers(body, dialect, places, path, width):
     for k in places:
         columns[k], strange = _column(frame[k], dialect)
         foreign |= strange
+    for k in range(places[0]):
+        times = clock(frame[k])
+        columns |= {k: times} if times is not None else {}
     if foreign.mean() > MOST_FOREIGN:
         raise InputError(f"{path}: most rows are no samples; export the traces as a table of numbers")
     return _cut(columns, foreign)
@@ -187,6 +195,19 @@ def _column(series, dialect):
         values[k] = np.inf if word in OVER else -np.inf if word in UNDER else np.nan
         strange[k] = bool(word) and word not in LOST and word not in OVER and word not in UNDER
     return values, strange
+
+
+def clock(series) -> np.ndarray | None:
+    """Times of day (or dates with them) as seconds from the first; None for a column of anything else."""
+    if series.dtype.kind in "iufb" or not _CLOCK.fullmatch(str(series.iloc[0]).strip()):
+        return None
+    parts = series.astype("string").str.strip().str.extract(_CLOCK)
+    hours, minutes, seconds = (
+        pd.to_numeric(parts[c].str.replace(",", ".", n=1, regex=False), errors="coerce") for c in "hms"
+    )
+    times = (3600.0 * hours + 60.0 * minutes + seconds).to_numpy(dtype=float, na_value=np.nan)
+    days = np.cumsum(np.concatenate(([0.0], np.diff(times) < -43_200.0)))
+    return np.round(times - times[0] + 86_400.0 * days, 9)
 
 
 def _cut(columns, foreign):

@@ -59,7 +59,7 @@ def from_header(keys: Keys, place: int = 0, column: int = 0) -> TimeBase:
         return TimeBase(None, None, ("No time: the file has no times and no interval; give --interval.",))
     trigger = keys.number("trigger", "", place, column)
     if start is None and trigger is not None:
-        start = -trigger * interval
+        start = tidy(-trigger * interval)
         notes.append(f"Time counts from the trigger, sample {trigger:g}.")
     if start is None:
         start = 0.0

@@ -5,5 +5,5 @@ from sonicvacuum.scope.layouts.base import Layout
 LAYOUT = Layout(
     "tektronix",
     r"Model( Number)?,\W*(TDS|TBS|MSO|DPO|MDO|TPS|LPD|DSA)|^\"?Record Length\"?,.*\n\"?Sample Interval"
-    r"|^\W*TIME,(CH|REF|MATH)\d|Tektronix",
+    r"|(?-i:^\W*TIME,(CH|REF|MATH)\d)|Tektronix",
 )
