@@ -92,6 +92,17 @@ def test_nothing_is_overwritten_without_force(tmp_path):
     import_files([tmp_path / "shot.csv"], tmp_path / "r", options(), force=True)
 
 
+def test_raw_files_are_never_overwritten(tmp_path):
+    (tmp_path / "shot.csv").write_bytes(tbs(TIMES, PULSE))
+    with pytest.raises(InputError, match="one of the files to import"):
+        import_files([tmp_path / "shot.csv"], tmp_path, options(), force=True)
+    (tmp_path / "r").mkdir()
+    (tmp_path / "r" / "shot.csv").write_text("mine")
+    with pytest.raises(InputError, match="exists already"):
+        import_files([tmp_path / "shot.csv"], tmp_path / "r", options())
+    assert (tmp_path / "r" / "shot.csv").read_text() == "mine"
+
+
 def one_channel(volts):
     return table(["Time (s),Ampl (V)"], (TIMES, volts), form="{:.6e}")
 

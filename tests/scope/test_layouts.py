@@ -47,6 +47,16 @@ def test_segments_are_shots(tmp_path):
     assert [c.values.max() for c in recording.channels] == pytest.approx([2.0, 4.0, 4.0], rel=0.02)
 
 
+def test_further_headers_part_shots(tmp_path):
+    made = next(m for m in LAYOUTS if m.file == "m.lvm")
+    whole = made.maker(TIMES, PULSE)
+    again = whole[whole.index(b"Channels") :]
+    recording = read(put(tmp_path, "two.lvm", whole + b"\n" + again))
+    assert [(c.name, c.segment, c.samples) for c in recording.channels] == [
+        (name, k, COUNT) for k in (1, 2) for name in ("Hammer", "Gauge")
+    ]
+
+
 def test_values_alone_have_no_time(tmp_path):
     (channel,) = read(put(tmp_path, "v.csv", table([], (PULSE,)))).channels
     assert channel.interval_s is None and channel.start_s is None

@@ -7,7 +7,7 @@ import click
 
 
 @click.command("import")
-@click.argument("files", nargs=-1, required=True, type=click.Path())
+@click.argument("files", nargs=-1, type=click.Path())
 @click.option("--list", "listed", is_flag=True, help="Only say what is in FILES.")
 @click.option("--json", "as_json", is_flag=True, help="With --list: as JSON.")
 @click.option(
@@ -46,6 +46,8 @@ def import_(files, listed, as_json, out, like, template, title, force, **given):
     The pulse is found, the baseline removed, what lies far off cut away, what is sampled too finely thinned,
     the noise estimated; record.yaml says what was done and what is still to be filled in.
     """
+    if not files and (listed or not given["run"]):
+        raise click.UsageError("name the recorder's FILES, or give them by --run RUN=FILE,…")
     if listed:
         _list(files, as_json)
         return

@@ -71,6 +71,7 @@ def clean(shot: Shot, options: Options) -> CleanRun:
         )
     written = {g: thin.thinned(v[begin:end], factor) for g, v in values.items()}
     sigma = {g: _sigma(written[g], seen[g], begin, factor) for g in written}
+    notes += [f"{g}: noise {s:.3g} {unit[g]} a written sample." for g, s in sigma.items()]
     first = min((t.arrival for t in seen.values() if t.arrival is not None), default=None)
     zero, zero_sigma = _zero(impact, start, step, begin, first, seen, notes)
     count = len(next(iter(written.values())))

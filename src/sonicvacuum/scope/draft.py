@@ -144,6 +144,9 @@ def _gauge_remarks(record, runs, options):
     for sensor in record["sensors"]:
         gauge = sensor["id"]
         unit = next(r.unit[gauge] for r in runs if gauge in r.unit)
+        noise = [r.sigma[gauge] for r in runs if gauge in r.sigma]
+        if max(noise) > 2.0 * min(noise):
+            yield f"{gauge}: noise differs from run to run, {min(noise):.3g} to {max(noise):.3g} {unit}."
         if "kind" not in sensor:
             yield f"To be filled in: kind and bead of {gauge} (--place {gauge}=13, or =wall)."
         if unit not in ("N", *_SIGMA_KEY):

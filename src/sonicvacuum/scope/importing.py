@@ -23,10 +23,21 @@ def import_files(
     if (folder / reader.FILE).exists() and not force:
         raise InputError(f"{folder / reader.FILE}: exists already; choose another folder, or give --force")
     given = draft.template(like, record)
-    runs = [clean(s, options) for s in shots([Path(f) for f in files], options)]
+    files = [Path(f) for f in files]
+    runs = [clean(s, options) for s in shots(files, options)]
+    _spare(folder, runs, {f.resolve() for g in (files, *options.runs.values()) for f in g}, force)
     content = draft.content(runs, given, options, title)
     _write(folder, draft.text(content, runs, options), runs)
     return [*_report(runs), *_checked(folder)]
+
+
+def _spare(folder, runs, raw, force):
+    """Refuse to write over the raw files themselves, and over other files without `force`."""
+    for target in (folder / f"{r.id}.csv" for r in runs):
+        if target.resolve() in raw:
+            raise InputError(f"{target}: is one of the files to import; choose another folder for --out")
+        if target.exists() and not force:
+            raise InputError(f"{target}: exists already; choose another folder, or give --force")
 
 
 def _write(folder, text, runs: list[CleanRun]):

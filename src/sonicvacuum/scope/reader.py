@@ -81,7 +81,7 @@ def _channels(part, found, keys: Keys, layout: Layout, path):
         if column.role == "value":
             values, kept = _held(columns[column.place])
             base = _base(clock, column, columns, kept, keys, place)
-            channel = _channel(names[place], column, values, base, keys, layout, place)
+            channel = _channel(names[place], column, values, base, keys, layout, place, several)
             if several:
                 channel = Channel(**(vars(channel) | {"segment": number}))
             if len(values) > 1:
@@ -125,13 +125,16 @@ def _shifted(base, kept):
     return TimeBase(base.start_s + first * base.interval_s, step * base.interval_s, base.notes)
 
 
-def _channel(name, column, values, base, keys, layout, place):
+def _channel(name, column, values, base, keys, layout, place, several):
     notes = list(base.notes)
     if layout.readings:
         values, said = layout.readings(values, keys, place)
         notes += [said] if said else []
     unit, factor = _unit(column, keys, layout, place, notes)
     values = np.where(np.abs(values) > OVERFLOW, np.copysign(np.inf, values), values) * factor
+    count = keys.number("count", "", place, column.place)
+    if count and not several and abs(count - len(values)) > 1:
+        notes.append(f"The header announces {count:g} samples, the file holds {len(values)}.")
     if not np.isfinite(values).all():
         over, lost = int(np.isinf(values).sum()), int(np.isnan(values).sum())
         notes.append(f"{over} samples over range and {lost} lost, of {len(values)}.")

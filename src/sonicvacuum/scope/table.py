@@ -174,6 +174,8 @@ def _numbers(body, dialect, places, path, width):
     for k in range(places[0]):
         times = clock(frame[k])
         columns |= {k: times} if times is not None else {}
+    left = frame[[k for k in range(places[0]) if k not in columns]].notna().any(axis=1).to_numpy()
+    foreign = _whole_headers(foreign, left | np.isnan([columns[k] for k in places]).all(axis=0))
     if foreign.mean() > MOST_FOREIGN:
         raise InputError(f"{path}: most rows are no samples; export the traces as a table of numbers")
     return _cut(columns, foreign)
@@ -195,6 +197,16 @@ def _column(series, dialect):
         values[k] = np.inf if word in OVER else -np.inf if word in UNDER else np.nan
         strange[k] = bool(word) and word not in LOST and word not in OVER and word not in UNDER
     return values, strange
+
+
+def _whole_headers(foreign, beside):
+    """Rows of further headers: foreign ones, and those with words beside numbers in one stretch with them."""
+    odd = foreign | beside
+    edges = np.flatnonzero(np.diff(np.concatenate(([0], odd.astype(int), [0]))))
+    result = foreign.copy()
+    for begin, end in zip(edges[::2], edges[1::2], strict=True):
+        result[begin:end] = foreign[begin:end].any()
+    return result
 
 
 def clock(series) -> np.ndarray | None:
