@@ -56,7 +56,7 @@ def unknown(kind: type, key: str) -> str | float:
 def content(runs: list[CleanRun], given: dict, options: Options, title: str | None) -> dict:
     """The mapping of record.yaml; what neither files nor template tell is left out."""
     kept = {k: given[k] for k in ("source", "chain", "materials", "tolerances", "priors") if k in given}
-    result = {"format": 1, "title": title or f"Imported from {len(runs)} shots"} | kept
+    result = {"format": 1, "title": title or f"Imported: {', '.join(r.id for r in runs)}"[:100]} | kept
     result["sensors"] = [_sensor(g, runs, given, options) for g in _gauges(runs)]
     result["trigger_sigma_us"] = _trigger(runs)
     result["runs"] = [_run(r, given, options) for r in runs]
