@@ -66,10 +66,10 @@ lock:  ## resolve the requirements anew; versions already locked stay unless UPG
 	@tools=$$(mktemp -d) && trap 'rm -rf "$$tools"' EXIT && $(PYTHON) -m venv "$$tools" && \
 	"$$tools/bin/python" -m pip --quiet --quiet install uv==$(UV_VERSION) && \
 	lock() { "$$tools/bin/uv" $(COMPILE) $(UPGRADE) "$$@"; } && \
-	lock pyproject.toml --group dev --output-file requirements.lock && \
+	lock pyproject.toml --extra workflow --group dev --output-file requirements.lock && \
 	lock --group build --constraints requirements.lock --output-file requirements-build.lock && \
 	lock --group bench --constraints requirements.lock --output-file requirements-bench.lock && \
-	lock --group study --constraints requirements.lock --output-file requirements-study.lock
+	lock pyproject.toml --extra study --constraints requirements.lock --output-file requirements-study.lock
 
 clean:  ## remove the environment, the results and all caches
 	rm -rf .venv results .snakemake .pytest_cache .ruff_cache .import_linter_cache .hypothesis .benchmarks

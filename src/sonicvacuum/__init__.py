@@ -6,8 +6,80 @@ The package simulates such chains and reads the simulated signals as the gauges 
 V. F. Nesterenko, Phys. Rev. E 73, 026612 (2006), would. It looks for the effects that a model of measured
 signals lacks.
 
-The library is in SI units throughout. Importing the package loads nothing else: import the module you need,
-for example ``sonicvacuum.physics``.
+SI units throughout, except where a key carries its unit in its name. What a model of measured data lacks:
+
+    import sonicvacuum as sv
+    found = sv.discover(sv.read("my-record"))
+    print(found.verdict.named, found.verdict.probabilities)
+
+The signals of Fig. 3(a) of that paper, gauge by gauge, in N over s:
+
+    card = sv.read_case("config.yaml", "fig3a", "matched")
+    study = sv.simulate(card)
+    signals = study.readings()
+
+Everything below is loaded when it is first used; importing the package loads nothing else.
+
+>>> import sonicvacuum as sv
+>>> round(float(sv.theory.speed_from_force(1.0, 193e9, 0.3, 4.76e-3, 0.44e-3)))  # Eq. (6), steel, 1 N
+344
 """
 
+from importlib import import_module
+from typing import TYPE_CHECKING
+
 __version__ = "0.1.0"
+
+if TYPE_CHECKING:
+    from sonicvacuum.api import case, compare, read, read_case, simulate
+    from sonicvacuum.card import Card
+    from sonicvacuum.discover.session import discover
+    from sonicvacuum.files import InputError
+    from sonicvacuum.physics import solitary, theory
+    from sonicvacuum.physics.chain import Chain
+    from sonicvacuum.records import Record
+
+# Name → module, or module:attribute.
+_PUBLIC = {
+    "Card": "sonicvacuum.card:Card",
+    "Chain": "sonicvacuum.physics.chain:Chain",
+    "InputError": "sonicvacuum.files:InputError",
+    "Record": "sonicvacuum.records:Record",
+    "case": "sonicvacuum.api:case",
+    "compare": "sonicvacuum.api:compare",
+    "discover": "sonicvacuum.discover",
+    "read": "sonicvacuum.api:read",
+    "read_case": "sonicvacuum.api:read_case",
+    "simulate": "sonicvacuum.api:simulate",
+    "solitary": "sonicvacuum.physics.solitary",
+    "theory": "sonicvacuum.physics.theory",
+}
+
+__all__ = [
+    "Card",
+    "Chain",
+    "InputError",
+    "Record",
+    "case",
+    "compare",
+    "discover",
+    "read",
+    "read_case",
+    "simulate",
+    "solitary",
+    "theory",
+]
+
+
+def __getattr__(name: str):
+    """A public name, loaded now (PEP 562)."""
+    if name not in _PUBLIC:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    module, _, attribute = _PUBLIC[name].partition(":")
+    found = import_module(module)
+    return getattr(found, attribute) if attribute else found
+
+
+def __dir__() -> list[str]:
+    """The public names among the others."""
+    return sorted({*globals(), *_PUBLIC})

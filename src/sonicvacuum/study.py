@@ -9,6 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
+from sonicvacuum.blas import one_thread
 from sonicvacuum.card import Card
 from sonicvacuum.effects import Setup, effect
 from sonicvacuum.files import InputError, replacing
@@ -125,6 +126,7 @@ def recorded_contacts(card: Card) -> tuple[int, ...]:
     return (*range(min(inside) - 1, max(inside) + 1), card.beads)
 
 
+@one_thread
 def run(card: Card) -> Study:
     """Simulate a card, at the chosen step and at half of it."""
     speeds = np.array(card.striker.speeds_m_s)

@@ -9,6 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from sonicvacuum import records
+from sonicvacuum.blas import one_thread
 from sonicvacuum.files import replacing
 from sonicvacuum.laboratory.ranges import likely_ball
 from sonicvacuum_blind.design import Design
@@ -127,6 +128,7 @@ def follow(spec: Spec, own: Laboratory, change: Change) -> records.Record:
     return as_record(made, traces, clean.scalars, title=f"Data set {spec.id}, one more run")
 
 
+@one_thread
 def write(spec: Spec, verdict: dict, choice: str, folder) -> None:
     """Make the further run that a verdict proposes, or a random one, as `folder/<id>/`; the change beside it.
 

@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from sonicvacuum import records
+from sonicvacuum.blas import one_thread
 from sonicvacuum.files import replacing
 from sonicvacuum_blind import catalogue, design, foreign
 from sonicvacuum_blind.design import Design
@@ -166,6 +167,7 @@ def hide(spec: Spec) -> tuple[records.Record, dict]:
     return record, _truth(spec, own.case, own.errors, noise, stream(spec, "rule"))
 
 
+@one_thread
 def write(spec: Spec, records_folder, truth_folder) -> None:
     """Hide, then write `records_folder/<id>/` and `truth_folder/<id>/truth.json`."""
     record, truth = hide(spec)

@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from sonicvacuum.blas import one_thread
 from sonicvacuum.effects import effect
 from sonicvacuum.files import InputError
 from sonicvacuum.observe.trace import Measured
@@ -59,6 +60,7 @@ OF_SWEEPS = (
 CONTACTS_OF_SWEEPS = ("contact_force", "contact_depth", "strain_rate")
 
 
+@one_thread
 def card_rows(study: Study) -> list[Row]:
     """The metrics of a card: of each run, and of the sweep where it has several.
 

@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 from pathlib import Path
 
+from sonicvacuum.blas import one_thread
 from sonicvacuum.card import Card, variant_names
 from sonicvacuum.config import Config, card, model
 from sonicvacuum_paper import arithmetic, assumptions, audit, compare, ledger, theory_rows
@@ -16,6 +17,7 @@ def absent_path(metrics_path) -> Path:
     return Path(metrics_path).with_name("absent.csv")
 
 
+@one_thread
 def write_metrics(card_metrics: Iterable, config: Config, out) -> None:
     """Gather the metrics of all cards, add those of theory, arithmetic, audit and comparison, and write them.
 

@@ -1,8 +1,6 @@
 """The command: every verb explains itself, and bad input ends in one line and exit code 2."""
 
 import json
-import os
-import subprocess
 import sys
 
 import numpy as np
@@ -20,16 +18,6 @@ def call(monkeypatch, *arguments):
     except SystemExit as end:
         return end.code or 0
     return 0
-
-
-def test_linear_algebra_gets_one_thread_before_it_is_loaded():
-    """With several, a verdict has other last digits: here it is as in a rule to which Snakemake gives two."""
-    code = (
-        "import os, sys, sonicvacuum.cli; print(os.environ['OPENBLAS_NUM_THREADS'], 'numpy' in sys.modules)"
-    )
-    two = os.environ | {"OPENBLAS_NUM_THREADS": "2"}
-    seen = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, env=two)
-    assert seen.stdout.split() == ["1", "False"]
 
 
 CONFIG = """\
@@ -103,8 +91,25 @@ def failing(monkeypatch, capsys, *arguments):
     return shown
 
 
-def test_an_unknown_verb_is_refused(monkeypatch, capsys):
-    assert "No such command 'guess'" in failing(monkeypatch, capsys, "guess")
+@pytest.mark.parametrize(
+    ("written", "meant"),
+    [
+        (["discovr"], "Did you mean 'discover'?"),
+        (["blind", "scor"], "Did you mean 'score'?"),
+        (["hide"], "Did you mean 'blind hide'?"),
+        (["draw"], "Did you mean 'blind draw' or 'paper draw'?"),
+        (["xyzzy"], "No such command 'xyzzy'."),
+    ],
+)
+def test_an_unknown_verb_is_refused_and_the_nearest_named(monkeypatch, capsys, written, meant):
+    assert failing(monkeypatch, capsys, *written).rstrip().endswith(meant)
+
+
+@pytest.mark.parametrize("group", ["paper", "blind"])
+def test_every_verb_of_a_group_has_help(monkeypatch, capsys, group):
+    for verb in cli.cli.get_command(None, group).verbs:
+        assert call(monkeypatch, group, verb, "--help") == 0
+        assert f"sonicvacuum {group} {verb}" in capsys.readouterr().out.replace("__main__.py", "sonicvacuum")
 
 
 def test_a_missing_file_is_named(monkeypatch, capsys, tmp_path):

@@ -3,17 +3,13 @@
 Bad input ends in one line on standard error and exit code 2, never in a traceback.
 """
 
-import os
 import sys
+from difflib import get_close_matches
 from importlib import import_module
 
 import click
 
 from sonicvacuum.files import InputError, check_file
-
-# Sums must not depend on the number of processors, nor on the threads that Snakemake gives a rule: numpy's
-# linear algebra gets one. It reads this when it is loaded, which no verb has done yet.
-os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
 # Verb → where it stands; the order is the order of the work. The two groups at the end belong to packages
 # that the library does not import.
@@ -30,6 +26,7 @@ VERBS = {
     "paper": "sonicvacuum_paper.cli:paper",
     "blind": "sonicvacuum_blind.cli:blind",
 }
+GROUPS = ("paper", "blind")
 
 
 class Verbs(click.Group):
@@ -59,23 +56,32 @@ class Verbs(click.Group):
         try:
             return super().resolve_command(ctx, args)
         except click.UsageError as error:
-            near = nearest(args[0], self.verbs)
+            near = self.nearest(ctx, args[0])
             if near:
-                error.message += f" Did you mean {' or '.join(near)}?"
+                error.message = f"No such command {args[0]!r}. Did you mean {' or '.join(map(repr, near))}?"
             raise
 
-
-def nearest(name: str, verbs) -> list[str]:
-    """Up to two verbs that are spelled like a name, or those of a group that the name belongs to."""
-    from difflib import get_close_matches
-
-    return [repr(found) for found in get_close_matches(name, list(verbs), n=2, cutoff=0.6)]
+    def nearest(self, ctx, name: str) -> list[str]:
+        """Verbs of that name in a group below, or else up to two that are spelled like it."""
+        groups = {verb: self.get_command(ctx, verb) for verb in self.verbs if verb in GROUPS}
+        inside = sorted(f"{verb} {name}" for verb, group in groups.items() if name in group.verbs)
+        return inside or get_close_matches(name, list(self.verbs), n=2)
 
 
 @click.group(cls=Verbs, verbs=VERBS, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(package_name="sonicvacuum")
 def cli():
     """Strongly nonlinear waves in chains of beads: simulate, compare with the paper, report."""
+
+
+# Package that only a part of the command needs → extra that brings it.
+EXTRAS = {
+    "grimp": "workflow",
+    "matplotlib": "figures",
+    "pandas": "workflow",
+    "pysindy": "study",
+    "sklearn": "study",
+}
 
 
 def main():
@@ -91,6 +97,12 @@ def main():
     except OSError as error:  # a full disk, say: the machine's fault, not the input's
         click.echo(f"Error: {error.filename or 'file'}: {error.strerror or error}", err=True)
         sys.exit(1)
+    except ModuleNotFoundError as error:
+        if error.name not in EXTRAS:
+            raise
+        cure = f"pip install 'sonicvacuum[{EXTRAS[error.name]}]'"
+        click.echo(f"Error: {error.name} is not installed; this verb needs it: {cure}", err=True)
+        sys.exit(2)
     except (click.Abort, KeyboardInterrupt):
         sys.exit(130)
 

@@ -1,5 +1,6 @@
 """`sonicvacuum discover`: what records of measured data say is missing from the model."""
 
+from importlib import import_module
 from pathlib import Path
 
 import click
@@ -32,6 +33,9 @@ def discover(records, out, together, figures, threads):
     from sonicvacuum.records import read
     from sonicvacuum.records.guard import check_out
 
+    if figures:
+        # Where matplotlib is missing, that is said before the search and not after it.
+        import_module("sonicvacuum.figures.style")
     groups = {Path(out): records} if together else {f: (p,) for p, f in _folders(records, Path(out)).items()}
     for folder in groups:
         check_out(folder, records)

@@ -8,6 +8,7 @@ import msgspec
 import numpy as np
 from msgspec import Struct
 
+from sonicvacuum.blas import one_thread
 from sonicvacuum.discover.forward import Forward
 from sonicvacuum.discover.hypothesis import Component, Hypothesis
 from sonicvacuum.discover.problem import experiment
@@ -70,6 +71,7 @@ def hypothesis(model: Model) -> Hypothesis:
     return Hypothesis(tuple(components))
 
 
+@one_thread
 def compare(model: Model, record: Record, threads: int = 1) -> Comparison:
     """The model's score on a record."""
     forward = Forward(experiment(record), threads)

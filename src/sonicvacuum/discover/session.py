@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from sonicvacuum.blas import one_thread
 from sonicvacuum.discover import (
     degenerate,
     directions,
@@ -20,6 +21,7 @@ from sonicvacuum.discover import (
 from sonicvacuum.discover.problem import together
 from sonicvacuum.discover.rounds import Investigation, investigate
 from sonicvacuum.discover.verdict import Verdict
+from sonicvacuum.physics.run import available_threads
 from sonicvacuum.records import Record
 
 
@@ -35,10 +37,23 @@ class Result:
     verdict: Verdict
 
 
-def discover(*records: Record, threads: int = 1) -> Result:
-    """The verdict on one record, or on records of one laboratory taken together."""
+@one_thread
+def discover(*records: Record, threads: int | None = None) -> Result:
+    """What the nominal model of measured data lacks.
+
+    Args:
+        *records: one record, or records of one chain and its gauges, which get one verdict.
+        threads: of the compiled engine; all processors by default. The result does not depend on it.
+
+    Returns:
+        `verdict` (named effects, probabilities, parameters, gap before and after, limits, next run) and all
+        that tables and pictures need.
+
+    Raises:
+        InputError: for records that cannot be simulated or do not belong together.
+    """
     clock = Clock()
-    found = investigate(together(records), threads)
+    found = investigate(together(records), threads or available_threads())
     clock.mark("search")
     forward = found.forward
     places = locate.locate(forward, found.null)
@@ -95,6 +110,7 @@ class Clock:
         return {"total": round(time.perf_counter() - self._start, 3), **self._steps}
 
 
+@one_thread
 def write(result: Result, folder: Path) -> None:
     """Write verdict, model and tables; the verdict last, so that a folder that holds one is complete."""
     header = ["run", "sensor", "feature", "z_before", "p_before", "q_before", "size", "z_after"]

@@ -13,6 +13,7 @@ import msgspec
 import numpy as np
 from scipy.optimize import minimize
 
+from sonicvacuum.blas import one_thread
 from sonicvacuum.discover.calibration import Calibration
 from sonicvacuum.discover.evidence import log_weights, unknown_odds
 from sonicvacuum.files import InputError, replacing
@@ -33,6 +34,7 @@ class Outcome:
     truth: str
 
 
+@one_thread
 def outcomes(truth_folder, verdict_folder) -> list[Outcome]:
     """All cases with none or one hidden effect below two folders.
 
@@ -65,6 +67,7 @@ def _outcome(truth, verdict, table: Path):
     return Outcome(logs, math.log(unknown_odds(p)), true)
 
 
+@one_thread
 def calibrate(cases: list[Outcome]) -> Calibration:
     """The calibration under which what is true is most probable."""
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sonicvacuum.blas import one_thread
 from sonicvacuum.files import InputError
 from sonicvacuum_blind import design
 from sonicvacuum_blind.baselines import rules
@@ -90,6 +91,7 @@ def ideal(cases: Iterable[Case]) -> list[Line]:
     return found
 
 
+@one_thread
 def compare(cases: list[Case], training: list[Case], wanted: Iterable[str], state_cases: int) -> list[Line]:
     """All lines: the method's own, the ideal rule's, then those of the wanted rules in their order.
 

@@ -7,6 +7,7 @@ of them and of nothing else, and `CAPTION`. Importing this package loads neither
 from collections.abc import Mapping
 from pathlib import Path
 
+from sonicvacuum.blas import one_thread
 from sonicvacuum.files import InputError, replacing
 
 # Figure → the cards it shows, panel by panel.
@@ -50,6 +51,7 @@ def caption(name: str) -> str:
     return _module(name).CAPTION
 
 
+@one_thread
 def make(name: str, studies: Mapping, out_dir) -> tuple[Path, Path, Path]:
     """Write `name`.csv, then read it back and draw `name`.svg and `name`.png from it.
 

@@ -1,0 +1,94 @@
+"""The public face: what is imported and when, what its examples say, and how many threads its sums take."""
+
+import doctest
+import json
+import os
+import subprocess
+import sys
+
+import pytest
+from ball import RECORD
+
+import sonicvacuum as sv
+from sonicvacuum import api, blas
+
+
+def python(code, **environment):
+    """Standard output of a fresh interpreter."""
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, env=os.environ | environment
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout.strip()
+
+
+@pytest.fixture
+def ball(tmp_path):
+    (tmp_path / "record.yaml").write_text(RECORD)
+    return tmp_path
+
+
+def test_importing_loads_nothing_and_every_public_name_is_there():
+    code = "import sys, sonicvacuum as sv; print({'numpy', 'numba', 'msgspec', 'click'} & set(sys.modules)); "
+    assert python(code + "print([n for n in sv.__all__ if not hasattr(sv, n)])") == "set()\n[]"
+    assert set(sv.__all__) <= set(dir(sv))
+    with pytest.raises(AttributeError, match="no attribute 'nothing'"):
+        _ = sv.nothing
+
+
+@pytest.mark.parametrize("module", [sv, api])
+def test_the_examples_hold(module):
+    failed, tried = doctest.testmod(module)
+    assert tried > 0
+    assert failed == 0
+
+
+def test_three_lines_give_a_verdict(ball):
+    found = sv.discover(sv.read(ball), threads=1)
+    assert found.verdict.named == []
+    assert sv.discover.__name__ == "sonicvacuum.discover"  # a package and a function at once
+
+
+def test_a_case_of_ones_own_is_refused_with_key_value_and_cure():
+    steel = {"diameter_mm": 5.0, "mass_g": 0.5, "material": "bearing-steel"}
+    with pytest.raises(sv.InputError, match=r"case: chain\.bead\.mass_g: is -0\.5"):
+        sv.case(
+            chain={"beads": 3, "orientation": "vertical", "bead": steel | {"mass_g": -0.5}, "wall": steel},
+            striker={"shape": "flat", "material": "alumina", "mass_g": 1.0, "speed_m_s": 1.0},
+            sensors=[],
+            duration_us=1.0,
+        )
+
+
+def test_a_guarded_function_sees_one_thread_and_the_others_come_back():
+    """Two threads are asked for; more than one would sum in another order."""
+    code = """
+import numpy, scipy.linalg, threadpoolctl
+from sonicvacuum.blas import one_thread
+threads = lambda: {p["num_threads"] for p in threadpoolctl.threadpool_info() if p["user_api"] == "blas"}
+print(threads(), one_thread(threads)(), threads())
+"""
+    assert python(code, OPENBLAS_NUM_THREADS="2") == "{2} {1} {2}"
+
+
+def test_a_verdict_has_the_same_bytes_whatever_the_threads(ball):
+    code = f"""
+import sonicvacuum as sv, json
+from pathlib import Path
+from sonicvacuum.discover.session import write
+found = sv.discover(sv.read({str(ball)!r}))
+write(found, Path({str(ball / "out")!r}))
+"""
+    seen = []
+    for threads in ("1", "2"):
+        python(code, OPENBLAS_NUM_THREADS=threads, NUMBA_NUM_THREADS=threads)
+        verdict = json.loads((ball / "out/verdict.json").read_text())
+        tables = {
+            p.name: p.read_bytes() for p in sorted((ball / "out").iterdir()) if p.name != "verdict.json"
+        }
+        seen.append(({k: v for k, v in verdict.items() if k != "timing_s"}, tables))
+    assert seen[0] == seen[1]
+
+
+def test_the_guard_keeps_name_and_docstring():
+    assert blas.one_thread(api.read).__doc__ == api.read.__doc__
