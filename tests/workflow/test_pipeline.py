@@ -60,7 +60,8 @@ def snakemake(folder, *arguments):
     """The finished process of a snakemake call in a folder."""
     command = [sys.executable, "-m", "snakemake", "--cores", "2", *arguments]
     # The folder's own copy of the source, which the tests edit.
-    environment = os.environ | {"PYTHONPATH": str(folder / "src")}
+    own = {"PYTHONPATH": str(folder / "src")} if (folder / "src").exists() else {}
+    environment = os.environ | own
     return subprocess.run(command, cwd=folder, capture_output=True, text=True, env=environment)
 
 
@@ -209,6 +210,29 @@ def test_a_bad_configuration_stops_with_one_sentence(project):
     assert done.returncode != 0
     assert "config.yaml: cases.coated.chain.beads: is 'five'" in done.stdout + done.stderr
     assert "Traceback" not in done.stdout + done.stderr
+
+
+def test_the_root_makes_by_default_all_that_the_workflow_makes(pytestconfig):
+    done = snakemake(pytestconfig.rootpath, "--dry-run", "--forceall", "--quiet", "host")
+    jobs = set(re.findall(r"^(\w+)\s+\d+$", done.stdout + done.stderr, flags=re.MULTILINE))
+    assert {"pipeline", "page", "ledger", "draw", "record_page", "timings", "draw_kept", "score"} <= jobs
+
+
+def test_another_workflow_can_use_this_one_as_a_module(tmp_path, pytestconfig):
+    """Config and records are the other's, code and resources stay here."""
+    (tmp_path / "own.yaml").write_text(CONFIG)
+    (tmp_path / "records/ball").mkdir(parents=True)
+    (tmp_path / "records/ball/record.yaml").write_text(RECORD)
+    (tmp_path / "Snakefile").write_text(
+        f"""
+module sonicvacuum:
+    snakefile: {str(pytestconfig.rootpath / "workflow/Snakefile")!r}
+    config: {{"configuration": "own.yaml"}}
+
+use rule * from sonicvacuum as sv_*
+"""
+    )
+    assert planned(tmp_path) == {f"sv_{rule}": count for rule, count in ALL.items()}
 
 
 def test_the_workflow_passes_its_lint(pytestconfig):

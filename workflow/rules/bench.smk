@@ -4,7 +4,7 @@
 rule bench:
     input:
         sources("simulate", "discover", "blind hide", without=PAGES),
-        bench=Path("workflow/bench").glob("*.[pc]*"),
+        bench=Path(home("workflow/bench")).glob("*.[pc]*"),
     output:
         "results/bench.csv",
         "results/bench.md",

@@ -82,7 +82,7 @@ rule baselines:
         truth=batches("truth"),
         verdicts=batches("verdicts"),
         training=training,
-        lock="requirements-study.lock",
+        lock=home("requirements-study.lock"),
         sources=sources("blind baselines"),
     output:
         f"{BLIND}/baselines.csv",

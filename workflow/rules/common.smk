@@ -13,14 +13,23 @@ from sonicvacuum.cli.sources import files
 from sonicvacuum.files import InputError
 from sonicvacuum_paper.figures import caption, cards_of
 
-CONFIG_FILE = "config.yaml"
+# Another workflow that uses this one as a module may name its own: config: {"configuration": PATH}.
+CONFIG_FILE = config.get("configuration", "config.yaml")
 # For runs with conda; `make` has put the same packages on the path already.
 ENVIRONMENT = "../envs/locked.yaml"
+# Where this workflow lies; the working folder is another one where it is used as a module.
+HOME = Path(workflow.current_basedir.get_path_or_uri(secret_free=True)).resolve().parents[1]
 # Jobs call the command that stands beside this interpreter, whether or not its environment is activated.
 # Braces are doubled for Snakemake, which formats the prefix.
 COMMANDS = shlex.quote(str(Path(sys.executable).parent)).replace("{", "{{").replace("}", "}}")
 shell.prefix(f'export PATH={COMMANDS}:"$PATH"; ')
 FIGURES = ["fig3", "fig4", "fig5", "fig6"]
+
+
+def home(path):
+    """A file of this project, relative to the working folder if that is the project's."""
+    found, here = HOME / path, Path.cwd()
+    return str(found.relative_to(here) if found.is_relative_to(here) else found)
 
 
 try:
@@ -42,7 +51,7 @@ wildcard_constraints:
     record="[^/]+",
 
 
-LOCKS = ["requirements.lock", "requirements-build.lock"]
+LOCKS = [home("requirements.lock"), home("requirements-build.lock")]
 # The verb `discover` loads this for pictures and page, which the workflow makes by the verb `page`.
 PAGES = ["sonicvacuum.cli.page"]
 # Verbs that take a card load this where a model is put into it.

@@ -1,7 +1,7 @@
 """The ledger of claims, the audit of assumptions, the page, and what of them is kept in git."""
 
-CLAIMS = "workflow/resources/claims.csv"
-ASSUMPTIONS = "workflow/resources/assumptions.csv"
+CLAIMS = home("workflow/resources/claims.csv")
+ASSUMPTIONS = home("workflow/resources/assumptions.csv")
 
 
 rule ledger:
