@@ -65,7 +65,7 @@ class ModelBlock(_Block):
 
 
 class CaseBlock(_Block):
-    """One case of `config.yaml`; `model` is put in once `discover` has made it (`paper.named`)."""
+    """One case of `config.yaml`; `model` is put in once `discover` has made it (`discover.extended`)."""
 
     title: str
     chain: ChainBlock

@@ -11,7 +11,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sonicvacuum_blind.plan import G, Plan
+from sonicvacuum.laboratory.specimen import GRAVITY
+from sonicvacuum_blind.plan import Plan
 
 MICRO = 1e-6
 
@@ -189,7 +190,7 @@ ENTRIES = (
     Entry(
         "gravity",
         _gravity,
-        lambda plan, place, fraction: replace(plan, gravity=G * fraction),
+        lambda plan, place, fraction: replace(plan, gravity=GRAVITY * fraction),
         0.3,
         1.0,
         fits=_chained,

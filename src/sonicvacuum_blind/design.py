@@ -9,9 +9,10 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from sonicvacuum.laboratory.specimen import GRAVITY
 from sonicvacuum.materials import MATERIALS
 from sonicvacuum_blind.gauges import bounce, main_pulse, read, scalar
-from sonicvacuum_blind.plan import G, Gauge, Plan, Solid
+from sonicvacuum_blind.plan import Gauge, Plan, Solid
 
 KINDS = ("traces", "varied", "one-speed", "scalars", "ball")
 SAMPLES = 480
@@ -144,7 +145,7 @@ def _chain(kind, random):
         bead_mass=mass,
         striker_mass=_rounded(mass * math.exp(random.uniform(*np.log([0.7, 1.6]))), 3),
         speed=_rounded(math.exp(random.uniform(*np.log([0.15, 0.6])))),
-        gravity=G if vertical else 0.0,
+        gravity=GRAVITY if vertical else 0.0,
         core=None if coating is None else _table(CORE),
         gauges=_gauges(beads, random),
     )

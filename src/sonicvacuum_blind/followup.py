@@ -11,19 +11,16 @@ from pathlib import Path
 from sonicvacuum import records
 from sonicvacuum.blas import one_thread
 from sonicvacuum.files import replacing
+from sonicvacuum.laboratory.next_run import FASTEST, MASSES, PRELOADS, SLOWEST, SPEEDS, gauge_beads
 from sonicvacuum.laboratory.ranges import likely_ball
+from sonicvacuum.laboratory.specimen import GRAVITY
 from sonicvacuum_blind.design import Design
 from sonicvacuum_blind.hide import TOLERANCE, Laboratory, Spec, drawn_errors, laboratory, noisy, stream
-from sonicvacuum_blind.plan import G, Plan
+from sonicvacuum_blind.plan import Plan
 from sonicvacuum_blind.prediction import Errors, predict
 from sonicvacuum_blind.record import as_record
 
-# What discover may propose: factors on the last run's speed and striker mass, newtons added to the preload.
-SPEEDS = (0.2, 0.5, 2.0, 5.0)
-MASSES = (0.25, 4.0)
-PRELOADS = (0.5, 5.0)
-SLOWEST, FASTEST = 0.02, 20.0  # m/s
-ORIENTATIONS = {"horizontal": 0.0, "vertical": G}
+ORIENTATIONS = {"horizontal": 0.0, "vertical": GRAVITY}
 CHOICES = ("proposed", "random")
 # Beside the further run's record; the laboratory knows it.
 FILE = "change.json"
@@ -62,7 +59,7 @@ def offers(made: Design) -> list[Change]:
 def _moves(plan):
     """The first embedded gauge moved near either end."""
     gauge = next((g for g in plan.gauges if g.kind == "embedded"), None)
-    beads = sorted({max(1, plan.beads // 4), max(1, plan.beads - 2)}) if gauge else ()
+    beads = gauge_beads(plan.beads) if gauge else ()
     return [{f"sensors.{gauge.id}.bead": bead} for bead in beads if bead != gauge.bead]
 
 

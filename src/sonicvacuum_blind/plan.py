@@ -15,7 +15,6 @@ from sonicvacuum_blind.integrate import Problem
 from sonicvacuum_blind.laws import B, C, compression_at_rest, hertz_rows
 from sonicvacuum_blind.layer import DEGREE, polynomial
 
-G = 9.81
 REFERENCE = 1e-6  # m; compression at which all powers of the contact law give the Hertz force
 
 

@@ -1,8 +1,9 @@
 """The numbers that the paper prints and the metrics use, in SI units, and the few that it lacks.
 
 C. Daraio, V. F. Nesterenko, "Strongly nonlinear wave dynamics in a chain of polymer coated beads" (2006). The
-section in which a number stands follows it. Nowhere else does the package repeat them, but for the cases of
-`config.yaml` and the table of materials.
+section in which a number stands follows it. The points and traces of its figures are not available; no value
+is read off or guessed. Nowhere else does the package repeat these numbers, but for the cases of `config.yaml`
+and the table of materials.
 """
 
 from dataclasses import dataclass
@@ -41,6 +42,10 @@ class Printed:
     gauge_upper: int = 9  # Fig. 3, bead from the bottom
     gauge_lower: int = 5  # Fig. 3, bead from the bottom
     speed_coated: float = 197.0  # Exp., Fig. 3
+    speed_steel: float = 578.0  # Fig. 3b
+    speed_error: float = 0.10  # relative, of every measured speed; Fig. 3
+    coated_bar: float = 1.0  # N, length of the force bars; captions of Figs. 3 and 5
+    steel_bar: float = 5.0  # N, likewise
     speed_low: float = 130.0  # Exp., Fig. 3
     amplitude_low: float = 0.25  # Exp., Fig. 3
     duration_coated: float = 130e-6  # Exp., Fig. 3

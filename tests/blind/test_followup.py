@@ -13,10 +13,10 @@ from sonicvacuum.cli import cli
 from sonicvacuum.discover.next_experiment import changes
 from sonicvacuum.discover.problem import experiment
 from sonicvacuum.files import InputError
+from sonicvacuum.laboratory.specimen import GRAVITY
 from sonicvacuum_blind import followup, study
 from sonicvacuum_blind.followup import ambiguous, follow, offers, random_change, under
 from sonicvacuum_blind.hide import TOLERANCE, Spec, hide, laboratory
-from sonicvacuum_blind.plan import G
 from sonicvacuum_blind.prediction import predict
 
 SPEC = Spec("a", "single", "one-speed", "white", ("sensor-gain",), 10.0, 5, 40)
@@ -134,7 +134,7 @@ def test_each_quantity_is_changed(own):
     assert under(own.design, {"striker.mass_g": 2.5}).runs[0].striker_mass == pytest.approx(2.5e-3)
     assert under(own.design, {"chain.static_force_N": 3.0}).runs[0].static_force == 3.0
     turned = "horizontal" if last.gravity else "vertical"
-    assert under(own.design, {"chain.orientation": turned}).runs[0].gravity == G - last.gravity
+    assert under(own.design, {"chain.orientation": turned}).runs[0].gravity == GRAVITY - last.gravity
     moved = under(own.design, {"sensors.g1.bead": 2}).runs[0].gauges
     assert [g.bead for g in moved] == [2, *(g.bead for g in last.gauges[1:])]
 

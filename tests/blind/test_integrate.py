@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 from scipy.special import gamma
 
+from sonicvacuum.laboratory.specimen import GRAVITY
 from sonicvacuum_blind.gauges import bounce
 from sonicvacuum_blind.integrate import Problem, integrate
 from sonicvacuum_blind.laws import B, hertz_rows
-from sonicvacuum_blind.plan import G, Gauge, Plan, Solid, problem
+from sonicvacuum_blind.plan import Gauge, Plan, Solid, problem
 
 STEEL = Solid("steel", 193e9, 0.3)
 POLYMER = Solid("polymer", 15e9, 0.388)
@@ -34,7 +35,7 @@ def energy(plan, setting, motion, contacts):
     return kinetic + elastic - motion.displacement @ setting.load
 
 
-@pytest.mark.parametrize("gravity, static_force", [(0.0, 0.0), (G, 0.0), (G, 2.0)])
+@pytest.mark.parametrize("gravity, static_force", [(0.0, 0.0), (GRAVITY, 0.0), (GRAVITY, 2.0)])
 def test_elastic_chain_keeps_its_energy(gravity, static_force):
     plan = chain(gravity=gravity, static_force=static_force)
     setting = problem(plan)
@@ -46,10 +47,10 @@ def test_elastic_chain_keeps_its_energy(gravity, static_force):
 
 
 def test_chain_at_rest_stays_at_rest():
-    plan = chain(gravity=G, static_force=1.0, striker_mass=1e-12, speed=1e-9)
+    plan = chain(gravity=GRAVITY, static_force=1.0, striker_mass=1e-12, speed=1e-9)
     setting = problem(plan)
     motion = integrate(setting, np.linspace(0.0, 5e-4, 50), range(1, 13))
-    static = 1.0 + 0.44e-3 * G * np.arange(1, 13)
+    static = 1.0 + 0.44e-3 * GRAVITY * np.arange(1, 13)
     assert np.abs(motion.force / static - 1.0).max() < 1e-5  # what the feather of a striker does
 
 

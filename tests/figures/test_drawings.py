@@ -13,7 +13,8 @@ from matplotlib.transforms import Bbox
 
 from sonicvacuum.figures import style
 from sonicvacuum_paper import figures
-from sonicvacuum_paper.figures import printed, traces
+from sonicvacuum_paper.figures import traces
+from sonicvacuum_paper.printed import PRINTED
 from sonicvacuum_paper.report import guide
 
 NAMES = figures.names()
@@ -79,7 +80,7 @@ def test_text_is_legible_in_print_and_the_width_is_that_of_a_page(drawn, name):
 @pytest.mark.parametrize("name", ["fig3", "fig5"])
 def test_the_scale_bars_are_as_long_as_their_labels_say(drawn, name):
     _, figure = drawn[name]
-    for axes, force in zip(figure.axes, (printed.COATED_BAR, printed.STEEL_BAR), strict=True):
+    for axes, force in zip(figure.axes, (PRINTED.coated_bar, PRINTED.steel_bar), strict=True):
         upright, level = lines(axes)["force-bar"], lines(axes)["time-bar"]
         assert np.ptp(upright.get_ydata()) == pytest.approx(force)
         assert np.ptp(upright.get_xdata()) == np.ptp(level.get_ydata()) == 0.0

@@ -9,7 +9,7 @@ from sonicvacuum import study
 from sonicvacuum.files import InputError
 from sonicvacuum.physics.solitary import SolitaryWave
 from sonicvacuum_paper import figures
-from sonicvacuum_paper.figures import fig4, printed, traces
+from sonicvacuum_paper.figures import fig4, traces
 from sonicvacuum_paper.printed import PRINTED
 
 TRACES = ["fig3", "fig5", "fig6"]
@@ -63,7 +63,7 @@ def test_fig3_marks_only_what_the_paper_prints(drawn):
     table, _ = drawn["fig3"]
     marks = table[table.series.str.startswith("paper")]
     arrival = marks[marks.series == "paper-arrival"].set_index("panel")
-    assert arrival.speed_m_s.to_dict() == {"a": PRINTED.speed_coated, "b": printed.STEEL_SPEED}
+    assert arrival.speed_m_s.to_dict() == {"a": PRINTED.speed_coated, "b": PRINTED.speed_steel}
     start = table[(table.series == "peak") & (table.sensor == "g9") & (table["pulse"] == 1)].set_index(
         ["panel", "modulus_GPa"]
     )

@@ -1,6 +1,7 @@
 """The command: every verb explains itself, and bad input ends in one line and exit code 2."""
 
 import json
+import os
 import sys
 
 import numpy as np

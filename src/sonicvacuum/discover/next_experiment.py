@@ -14,14 +14,10 @@ from sonicvacuum.discover.experiment import Batch, Experiment, RunData
 from sonicvacuum.discover.forward import Forward
 from sonicvacuum.discover.rounds import Investigation
 from sonicvacuum.discover.verdict import Next
+from sonicvacuum.laboratory.next_run import FASTEST, MASSES, PRELOADS, SLOWEST, SPEEDS, gauge_beads
 from sonicvacuum.laboratory.ranges import likely_ball
 from sonicvacuum.laboratory.specimen import GRAVITY
 
-SPEEDS = (0.2, 0.5, 2.0, 5.0)
-MASSES = (0.25, 4.0)
-PRELOADS = (0.5, 5.0)
-# Changes are not proposed beyond these speeds (m/s) of the striker.
-SLOWEST, FASTEST = 0.02, 20.0
 # A run without signals is imagined with traces of this length.
 _RIVALS = 2
 
@@ -98,7 +94,7 @@ def changes(experiment: Experiment):
 def _gauges(experiment, batch, run, chain):
     """An embedded gauge moved near either end."""
     embedded = [k for k, g in enumerate(experiment.gauges) if g.kind == "embedded"]
-    for bead in {max(1, experiment.beads // 4), max(1, experiment.beads - 2)} if embedded else ():
+    for bead in gauge_beads(experiment.beads) if embedded else ():
         gauge = experiment.gauges[embedded[0]]
         moved = tuple(
             replace(g, bead=bead) if k == embedded[0] else g for k, g in enumerate(experiment.gauges)

@@ -9,10 +9,10 @@ rest have no term here.
 import numpy as np
 from scipy import signal
 
+from sonicvacuum.laboratory.specimen import GRAVITY
 from sonicvacuum_blind.baselines.motion import Motion
+from sonicvacuum_blind.plan import REFERENCE
 
-G = 9.81
-REFERENCE = 1e-6  # m, at which all powers of the contact law give the Hertz force
 SLOW = 1e-3  # m/s; dry friction grows in proportion to velocity below it
 POWER = 1.75  # of the relative velocity, the catalogue's middle
 # Relaxation times over the contact time.
@@ -80,5 +80,5 @@ def bead_terms(delta, rate, velocity, motion: Motion) -> np.ndarray:
     inner = slice(2, motion.plan.beads)
     contacts = (forces[:, 1:-2] - forces[:, 2:-1]) / motion.plan.bead_mass
     v = velocity[:, inner]
-    bodies = np.stack([-v, -np.clip(v / SLOW, -1.0, 1.0), np.full_like(v, G)], axis=-1)
+    bodies = np.stack([-v, -np.clip(v / SLOW, -1.0, 1.0), np.full_like(v, GRAVITY)], axis=-1)
     return np.concatenate([contacts, bodies], axis=-1)

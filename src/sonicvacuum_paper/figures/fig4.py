@@ -20,7 +20,6 @@ from sonicvacuum.figures import style
 from sonicvacuum.observe.pulse import main_pulse
 from sonicvacuum.physics import theory
 from sonicvacuum.study import Study
-from sonicvacuum_paper.figures import printed
 from sonicvacuum_paper.one_run import OneRun
 from sonicvacuum_paper.printed import PRINTED
 
@@ -52,7 +51,7 @@ total force and F_0 the mean static force on the contacts between the two beads;
 Eq. (6). Printed in the paper, with 10 % error: in (a) {PRINTED.speed_low:.0f} m/s at a gauge reading of
 about {PRINTED.amplitude_low:g} N (black circle: at the contact force which gives that reading in the
 simulation; white circle: with the reading taken as the contact force) and {PRINTED.speed_coated:.0f} m/s
-(grey band, amplitude not printed); in (b) {printed.STEEL_SPEED:.0f} m/s (grey band, likewise). The other
+(grey band, amplitude not printed); in (b) {PRINTED.speed_steel:.0f} m/s (grey band, likewise). The other
 measured points of the paper's figure are not available.
 """)
 
@@ -118,11 +117,11 @@ def _paper(rows: pandas.DataFrame):
             force = np.exp(np.interp(np.log(reading), np.log(sweep.gauge_N), np.log(sweep.force_N)))
             yield _printed("a", "paper", PRINTED.speed_low, gauge_N=reading, force_N=force)
     yield _printed("a", "paper-speed", PRINTED.speed_coated)
-    yield _printed("b", "paper-speed", printed.STEEL_SPEED)
+    yield _printed("b", "paper-speed", PRINTED.speed_steel)
 
 
 def _printed(panel, series, speed, **where):
-    error = printed.SPEED_ERROR * speed
+    error = PRINTED.speed_error * speed
     return {"panel": panel, "series": series, "speed_m_s": speed, "speed_error_m_s": error, **where}
 
 

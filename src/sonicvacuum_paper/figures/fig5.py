@@ -7,7 +7,8 @@ from matplotlib.figure import Figure
 
 from sonicvacuum.figures import style
 from sonicvacuum.study import Study
-from sonicvacuum_paper.figures import printed, traces
+from sonicvacuum_paper.figures import traces
+from sonicvacuum_paper.printed import PRINTED
 
 COLUMNS = traces.COLUMNS
 UNTIL_US = {"a": 1600.0, "b": 400.0}
@@ -15,7 +16,7 @@ UNTIL_US = {"a": 1600.0, "b": 400.0}
 CAPTION = style.paragraph(f"""
 Trains of solitary waves made by a 1.23 g alumina cylinder at 0.44 m/s in vertical chains of 21 beads: (a)
 steel beads coated with Parylene-C, (b) bare steel beads. Simulated, without losses; gauges, shifts, bars
-({printed.COATED_BAR:g} N and {printed.STEEL_BAR:g} N) and pale lines as in Fig. 3. Numbers: the separate
+({PRINTED.coated_bar:g} N and {PRINTED.steel_bar:g} N) and pale lines as in Fig. 3. Numbers: the separate
 waves at the wall that reach at least {traces.TRAIN:.2f} of the first. The legends give the speed of the
 first wave between the two beads; the paper prints none for these runs, and its measured traces are not
 available.
@@ -33,5 +34,5 @@ def table(studies: Mapping[str, Study]) -> pandas.DataFrame:
 
 def draw(table: pandas.DataFrame) -> Figure:
     """The figure of these numbers."""
-    bars = {"a": (printed.COATED_BAR, 200.0), "b": (printed.STEEL_BAR, 50.0)}
+    bars = {"a": (PRINTED.coated_bar, 200.0), "b": (PRINTED.steel_bar, 50.0)}
     return traces.draw(table, bars)

@@ -20,8 +20,8 @@ from sonicvacuum.gauges import Gauge
 from sonicvacuum.observe.pulse import pulses
 from sonicvacuum.observe.shape import onset
 from sonicvacuum.study import Study
-from sonicvacuum_paper.figures import printed
 from sonicvacuum_paper.one_run import OneRun
+from sonicvacuum_paper.printed import PRINTED
 
 COLUMNS = [
     "panel",
@@ -66,7 +66,7 @@ def paper_rows(panel: str, study: Study, speed: float, duration_us: float | None
         "series": "paper-arrival",
         "sensor": lower.id,
         "time_us": start + travel,
-        "time_error_us": printed.SPEED_ERROR * travel,
+        "time_error_us": PRINTED.speed_error * travel,
         "force_N": view.main(lower.id).force,
         "speed_m_s": speed,
     }
@@ -160,7 +160,7 @@ def legend(axes: Axes, table: pandas.DataFrame) -> None:
         text = f": {speed.iloc[0]:.0f} m/s" if len(speed) else ""
         handles.append(Line2D([], [], **look.line, label=look.label(modulus) + text))
     for mark in table[table.series == "paper-arrival"].itertuples():
-        label = f"printed in the paper: {mark.speed_m_s:.0f} m/s ± {100 * printed.SPEED_ERROR:.0f} %"
+        label = f"printed in the paper: {mark.speed_m_s:.0f} m/s ± {100 * PRINTED.speed_error:.0f} %"
         handles.append(Line2D([], [], **_MARK, ms=7, label=label))
     axes.legend(
         handles=handles, loc="upper left", bbox_to_anchor=(-0.01, 1.22), borderaxespad=0, handlelength=2.4

@@ -37,7 +37,9 @@ def summary(ledger: pd.DataFrame) -> str:
         if claim in known.index:
             lines.append(_row(claim, known.loc[claim]))
     lines += ["", "Where paper and simulation disagree, largest difference first:", ""]
-    lines += [f"* `{row.claim}`: {row.reason}" for row in tables.disagreements(ledger).itertuples()]
+    lines += [
+        f"* `{row.claim}`: {tables.shown(row.reason)}" for row in tables.disagreements(ledger).itertuples()
+    ]
     return "\n".join(lines)
 
 

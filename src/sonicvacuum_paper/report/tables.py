@@ -1,40 +1,27 @@
-"""The columns of the pipeline's tables, and what the report counts in the ledger."""
+"""The columns of the pipeline's tables, what the report counts in the ledger, and how a column is called."""
+
+import re
+from dataclasses import fields
 
 import pandas as pd
 
 from sonicvacuum.report.tables import number, read
+from sonicvacuum_paper.assumptions import AssumptionRow
+from sonicvacuum_paper.ledger import LedgerRow
+from sonicvacuum_paper.rows import COLUMNS
+from sonicvacuum_paper.verdict import DISAGREES, NOT_TESTABLE, REPRODUCED
 
 __all__ = ["number", "read"]
 
-LEDGER = [
-    "claim",
-    "section",
-    "quantity",
-    "unit",
-    "measured",
-    "sigma",
-    "handbook",
-    "matched",
-    "named",
-    "numerical_error",
-    "difference_sigma",
-    "verdict",
-    "reason",
-]
-ASSUMPTIONS = [
-    "assumption",
-    "section",
-    "statement",
-    "quantity",
-    "unit",
-    "limit",
-    "handbook",
-    "matched",
-    "verdict",
-    "reason",
-]
-METRICS = ["case", "quantity", "sensor", "value", "unit", "numerical_error"]
-VERDICTS = ("reproduced", "disagrees", "not testable")
+LEDGER = [field.name for field in fields(LedgerRow)]
+ASSUMPTIONS = [field.name for field in fields(AssumptionRow)]
+METRICS = list(COLUMNS)
+VERDICTS = (REPRODUCED, DISAGREES, NOT_TESTABLE)
+
+
+def shown(reason: str) -> str:
+    """The reason of a row of the ledger with its third column called as people read it."""
+    return re.sub(r"\bnamed: ", "as discovered: ", reason)
 
 
 def counts(ledger: pd.DataFrame) -> dict[str, int]:
