@@ -44,11 +44,12 @@ env: .venv/installed  ## build the locked environment in .venv
 	@$(LOCKED) requirements-study.lock
 	@touch $@
 
-test: env  ## check format, style, import contracts, and run the tests
+test: env  ## check format, style, types, import contracts, and run the tests
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/snakefmt --check Snakefile workflow
 	$(BIN)/lint-imports --no-logo
+	$(BIN)/mypy
 	$(BIN)/pytest
 
 reproduce: env  ## regenerate figures' numbers and ledger in a clean folder and compare with those in git
@@ -72,7 +73,7 @@ lock:  ## resolve the requirements anew; versions already locked stay unless UPG
 	lock pyproject.toml --extra study --constraints requirements.lock --output-file requirements-study.lock
 
 clean:  ## remove the environment, the results and all caches
-	rm -rf .venv results .snakemake .pytest_cache .ruff_cache .import_linter_cache .hypothesis .benchmarks
+	rm -rf .venv results .snakemake .pytest_cache .ruff_cache .import_linter_cache .mypy_cache .hypothesis .benchmarks
 	find src tests workflow -name __pycache__ -type d -prune -exec rm -rf {} +
 
 help:  ## list these targets

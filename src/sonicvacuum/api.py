@@ -8,11 +8,12 @@ from os import PathLike
 from typing import Any
 
 from sonicvacuum import config, study
-from sonicvacuum.card import Card, CardError, CaseBlock, resolve
+from sonicvacuum.card import Card, CaseBlock, resolve
 from sonicvacuum.discover import compare as comparison
 from sonicvacuum.discover.compare import Comparison
 from sonicvacuum.discover.verdict import Model
 from sonicvacuum.files import InputError, convert
+from sonicvacuum.laboratory.ranges import LaboratoryError
 from sonicvacuum.physics.run import available_threads
 from sonicvacuum.records import Record
 from sonicvacuum.records import read as read_record
@@ -55,7 +56,7 @@ def case(title: str = "case", **blocks: Any) -> Card:
     block = convert({"title": title, **blocks}, CaseBlock, "case")
     try:
         return resolve("case", "own", block)
-    except CardError as error:
+    except LaboratoryError as error:
         raise InputError(f"case: {error}") from None
 
 

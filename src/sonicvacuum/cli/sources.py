@@ -6,7 +6,7 @@ when one of them changes, and left alone when another does. Needs grimp (extra `
 
 from collections.abc import Iterable
 from functools import cache
-from importlib.util import find_spec
+from importlib import import_module
 from pathlib import Path
 
 import click
@@ -71,8 +71,7 @@ def _graph() -> grimp.ImportGraph:
 
 
 def _path(module: str) -> Path:
-    """File of a module, found without loading it."""
+    """File of a module, which is not loaded; its package is, and loads nothing."""
     package, *rest = module.split(".")
-    spec = find_spec(package)
-    stem = Path(spec.origin).parent.joinpath(*rest)
+    stem = Path(import_module(package).__path__[0]).joinpath(*rest)
     return stem / "__init__.py" if stem.is_dir() else stem.with_suffix(".py")

@@ -13,13 +13,13 @@ negative or non-finite amplitude, and where a docstring says so.
 """
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-Num = ArrayLike
-Real = float | NDArray[np.float64]
+Num = float | NDArray[np.float64]
+Real = Num
 
 
-def require(holds: Num, name: str, value: Num, demand: str) -> None:
+def require(holds: bool | NDArray[np.bool_], name: str, value: Num, demand: str) -> None:
     """Raise ValueError "name must be demand, got value" with the first value for which ``holds`` is False."""
     broken = ~np.broadcast_to(holds, np.broadcast_shapes(np.shape(holds), np.shape(value)))
     if broken.any():
