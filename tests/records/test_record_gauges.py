@@ -133,7 +133,7 @@ def test_any_choice_of_columns_and_sampling_reads_back(present, start, interval,
         path = Path(folder) / "x.csv"
         signals.write(trace, path)
         assert signals.read(path, ["laser", "wall", "far", "near"]).equals(trace)
-        missing = next((n for n in ("near", "far") if n in present), None)
+        missing = next((n for n in present if n in ("near", "far")), None)
         if missing:
             with pytest.raises(InputError, match=f"{missing!r} is no sensor of this record"):
                 signals.read(path, ["laser", "wall"])
@@ -151,7 +151,7 @@ def test_any_choice_of_columns_and_sampling_reads_back(present, start, interval,
         ({"sensors__0__gain_rel_sigma": -0.1}, ["sensors[0].gain_rel_sigma"]),
         ({"sensors__0__delay_sigma_us": 1e6}, ["sensors[0].delay_sigma_us", "us"]),
         ({"trigger_sigma_us": "about 3"}, ["trigger_sigma_us", "'about 3'"]),
-        ({"clock_rel_sigma": 50.0}, ["clock_rel_sigma", "%"]),
+        ({"clock_rel_sigma": 50.0}, ["clock_rel_sigma", "ppm"]),
         ({"tolerances": {"bead_colour": 0.1}}, ["tolerances.bead_colour", "unknown key"]),
         ({"tolerances": {"bead_mass_rel": 2.0}}, ["tolerances.bead_mass_rel", "%"]),
         ({"model_floor_rel": 3.0}, ["model_floor_rel", "%"]),

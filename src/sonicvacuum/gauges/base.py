@@ -174,7 +174,7 @@ def misplaced(kind: str, bead: int | None, beads: int) -> str | None:
     if what.in_bead and bead is None:
         return f"missing; {article} {kind} sensor needs the number of its bead"
     if not what.in_bead and bead is not None:
-        return f"is {bead}; the {kind} sensor sits in no bead: remove the key"
+        return f"is {bead}; the {kind} sensor sits in no bead: drop the key"
     if bead is not None and bead > beads:
         return f"is {bead}; the chain has {beads} beads"
     return None
