@@ -20,13 +20,17 @@ from sonicvacuum.physics.laws import Term
 
 
 def layer_factor(delta, width, deep, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12):
-    """Force over Hertz force: y^12/(deep y^12 + a1 y^11 + … + a12), y = 1 + width sqrt(delta)."""
+    """Force over Hertz force: y^12/(deep y^12 + a1 y^11 + … + a12), y = 1 + width sqrt(delta).
+
+    Summed in pairs and fours (Estrin), which do not wait for each other as Horner's steps do.
+    """
     y = 1.0 + width * root(delta)
-    below = ((((deep * y + a1) * y + a2) * y + a3) * y + a4) * y + a5
-    below = ((((below * y + a6) * y + a7) * y + a8) * y + a9) * y + a10
-    below = (below * y + a11) * y + a12
-    fourth = y * y * y * y
-    return fourth * fourth * fourth / below
+    y2 = y * y
+    y4 = y2 * y2
+    high = (a1 * y + a2) * y2 + (a3 * y + a4)
+    middle = (a5 * y + a6) * y2 + (a7 * y + a8)
+    low = (a9 * y + a10) * y2 + (a11 * y + a12)
+    return y4 * y4 * y4 / (((deep * y4 + high) * y4 + middle) * y4 + low)
 
 
 TERM = Term("bonded-layer", "factor", layer_factor, 2 + layer_law.POWERS)
