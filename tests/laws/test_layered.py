@@ -73,9 +73,9 @@ def test_thin_compressible_layer_is_a_winkler_bed(poisson):
     a = np.array([100.0, 200.0])
     found = solve(Layer(poisson), a)
     # The edge adds terms of order t/a: extrapolated.
-    assert 2.0 * found.depth[1] - found.depth[0] == pytest.approx(0.5, abs=3e-4)
+    assert 2.0 * found.depth[1] - found.depth[0] == pytest.approx(0.5, abs=1e-4)
     slope = np.diff(found.force)[0] / 100.0
-    assert slope == pytest.approx(np.pi / 4.0 * confined, rel=1e-3)
+    assert slope == pytest.approx(np.pi / 4.0 * confined, rel=1e-4)
 
 
 def test_thin_slipping_layer_is_a_winkler_bed_even_if_incompressible():
@@ -90,9 +90,9 @@ def test_thin_incompressible_layer_is_squeezed():
     found = solve(Layer(0.5), a)
     depth, force = found.depth, found.force / (np.pi * a**3 / 128.0)
     # Terms of order t/a and (t/a)²: extrapolated twice.
-    for ratio, exact, room in ((depth, 0.25, 1e-3), (force, 1.0, 0.01)):
+    for ratio, exact, room in ((depth, 0.25, 5e-4), (force, 1.0, 2e-3)):
         once = 2.0 * ratio[1:] - ratio[:-1]
-        assert (4.0 * once[1] - once[0]) / 3.0 == pytest.approx(exact, rel=room * 4.0)
+        assert (4.0 * once[1] - once[0]) / 3.0 == pytest.approx(exact, rel=room)
 
 
 @pytest.mark.parametrize("poisson", HAYES)
@@ -132,8 +132,8 @@ def test_finite_elements_agree():
         depth, force = elements.contact(a)
         chi = a * np.sqrt(depth)
         exact = factor_at(layer, np.array([chi, 1.01 * chi]))[0]
-        # Measured 0.2 to 0.6 %: singular slope at the edge, quadratic elements of a/15 to a/50.
-        assert force / (4.0 / 3.0 * depth**1.5) == pytest.approx(exact, rel=0.008)
+        # Measured 0.02 % at 0.3 to 0.42 % at 3: a body of 60 thicknesses for a half-space, steep edges.
+        assert force / (4.0 / 3.0 * depth**1.5) == pytest.approx(exact, rel=0.005)
 
 
 @pytest.mark.parametrize(
@@ -155,10 +155,12 @@ def test_the_solution_has_converged():
             assert solve(layer, a, refine=layer_law.COARSE).factor == pytest.approx(finer.factor, rel=1e-5)
 
 
-def test_the_papers_contact_is_nine_times_hertz():
-    # Contact radius by Hertz 123 um on 50 um at 2.76 GPa: chi = 2.47. The series of Dimitriadis gives 4.0.
+def test_the_papers_contact_is_some_eight_times_hertz():
+    # Contact radius by Hertz 123.3 um on 50 um at 2.76 GPa, fig3a: chi = 2.466. An independent calculation
+    # gives 9.0 on a rigid core and 7.9 on steel; the polynomial of Dimitriadis 4.0.
     for layer, expected in ((Layer(0.388), 9.0), (Layer(0.388, STEEL, 0.3), 7.9)):
-        assert factor_at(layer, np.array([2.47, 2.5]))[0] == pytest.approx(expected, abs=0.06)
+        assert factor_at(layer, np.array([2.466, 2.5]))[0] == pytest.approx(expected, rel=0.01)
+    assert dimitriadis(0.388, 2.466) == pytest.approx(4.0, abs=0.01)
 
 
 MATERIALS = [
