@@ -11,7 +11,7 @@ import numpy as np
 
 from sonicvacuum.blas import one_thread
 from sonicvacuum.card import Card
-from sonicvacuum.effects import Setup, effect
+from sonicvacuum.effects import CATALOGUE, Catalogue, Setup
 from sonicvacuum.files import InputError, replacing
 from sonicvacuum.gauges import Gauge, needed, reading
 from sonicvacuum.gauges.base import Recorded
@@ -38,6 +38,7 @@ class Study:
         bodies: recorded bodies, none where every gauge reads a force.
         motion: (2, 2, samples, bodies, runs) velocity in m/s and acceleration in m/s² of those bodies, with
             the chosen step and with half of it.
+        catalogue: knows the card's effects.
     """
 
     card: Card
@@ -50,10 +51,11 @@ class Study:
     momentum: np.ndarray
     bodies: tuple[int, ...] = ()
     motion: np.ndarray | None = None
+    catalogue: Catalogue = CATALOGUE
 
     @cached_property
     def _setup(self) -> Setup:
-        return set_up(self.card, self.speeds)
+        return set_up(self.card, self.speeds, self.catalogue)
 
     @property
     def chain(self) -> Chain:
@@ -95,7 +97,7 @@ class Study:
         return {s.id: self.read(s, refined) for s in self.sensors}
 
 
-def set_up(card: Card, speeds=None) -> Setup:
+def set_up(card: Card, speeds=None, catalogue: Catalogue = CATALOGUE) -> Setup:
     """Chains and gauges of a card with its effects in them; lane k is struck at `speeds[k]` in m/s.
 
     Raises:
@@ -104,7 +106,7 @@ def set_up(card: Card, speeds=None) -> Setup:
     setup = Setup(assemble(card.specimen, card.strikers(speeds)), sensors(card))
     for name, parameters in card.effects.items():
         try:
-            setup = effect(name).apply(setup, **parameters)
+            setup = catalogue.effect(name).apply(setup, **parameters)
         except ValueError as error:
             raise InputError(f"{card.name}: effects.{name}: {error}") from None
     return setup
@@ -127,13 +129,15 @@ def recorded_contacts(card: Card) -> tuple[int, ...]:
 
 
 @one_thread
-def run(card: Card) -> Study:
+def run(card: Card, catalogue: Catalogue = CATALOGUE) -> Study:
     """Simulate a card, at the chosen step and at half of it."""
     speeds = np.array(card.striker.speeds_m_s)
     if card.striker.aim is not None:
-        speeds = _aimed(card, speeds)
+        speeds = _aimed(card, speeds, catalogue)
     contacts = recorded_contacts(card)
-    plain, refined = (_simulate(card, speeds, contacts, refine, audit=refine == 1.0) for refine in (1.0, 2.0))
+    plain, refined = (
+        _simulate(card, speeds, contacts, catalogue, refine, audit=refine == 1.0) for refine in (1.0, 2.0)
+    )
     return Study(
         card=card,
         speeds=speeds,
@@ -145,11 +149,12 @@ def run(card: Card) -> Study:
         momentum=plain.momentum,
         bodies=plain.bodies,
         motion=np.array([(h.velocity, h.acceleration) for h in (plain, refined)]) if plain.bodies else None,
+        catalogue=catalogue,
     )
 
 
-def _simulate(card, speeds, contacts, refine=1.0, audit=False) -> History:
-    chain = set_up(card, speeds).chain
+def _simulate(card, speeds, contacts, catalogue, refine=1.0, audit=False) -> History:
+    chain = set_up(card, speeds, catalogue).chain
     _, bodies = needed(sensors(card), card.beads)
     history = simulate(
         chain, contacts, card.duration_s, card.interval_s, bodies=bodies, refine=refine, audit=audit
@@ -158,12 +163,12 @@ def _simulate(card, speeds, contacts, refine=1.0, audit=False) -> History:
     return replace(history, contacts=contacts, force=history.force[:, kept]) if bodies else history
 
 
-def _aimed(card, speeds):
+def _aimed(card, speeds, catalogue):
     """Striker speeds at which the aimed sensor's peak is the wanted one; peaks grow about as speed^(6/5)."""
-    sensor = next(s for s in set_up(card, speeds).sensors if s.id == card.striker.aim.sensor)
+    sensor = next(s for s in set_up(card, speeds, catalogue).sensors if s.id == card.striker.aim.sensor)
     aim = card.striker.aim.amplitude_N
     for _ in range(20):
-        history = _simulate(card, speeds, needed((sensor,), card.beads)[0])
+        history = _simulate(card, speeds, needed((sensor,), card.beads)[0], catalogue)
         peak = reading(sensor, history, card.beads).max(axis=0)
         if np.all(np.abs(peak - aim) < AIM_TOLERANCE * aim):
             return speeds
@@ -191,7 +196,7 @@ def save(study: Study, path) -> None:
         )
 
 
-def load(card: Card, path) -> Study:
+def load(card: Card, path, catalogue: Catalogue = CATALOGUE) -> Study:
     """The study that `save` wrote for this card; InputError where the file is not one."""
     try:
         with np.load(path) as data:
@@ -203,4 +208,4 @@ def load(card: Card, path) -> Study:
     time = np.arange(len(parts["force"])) * card.interval_s
     contacts = tuple(int(c) for c in parts.pop("contacts"))
     bodies = tuple(int(b) for b in parts.pop("bodies", ()))
-    return Study(card=card, time=time, contacts=contacts, bodies=bodies, **parts)
+    return Study(card=card, time=time, contacts=contacts, bodies=bodies, catalogue=catalogue, **parts)

@@ -32,6 +32,8 @@ class Entry:
         draw: (random generator, plan) → one shape.
         places: None, "bead", "contact" or "sensor".
         fits: plan → whether it can act there.
+        gauges: kinds of gauges at which it can sit.
+        coated: whether it acts on coated beads alone.
     """
 
     id: str
@@ -44,12 +46,13 @@ class Entry:
     draw: Callable[[np.random.Generator, Plan], float | None] = lambda random, plan: None
     places: str | None = None
     fits: Callable[[Plan], bool] = lambda plan: True
+    gauges: tuple[str, ...] = ("embedded", "wall")
+    coated: bool = False
 
     def where(self, plan: Plan) -> tuple:
         """Places at which the effect can sit."""
         if self.places == "sensor":
-            kinds = ("embedded",) if self.id == "sensor-offset" else ("embedded", "wall")
-            return tuple(g.id for g in plan.gauges if g.kind in kinds)
+            return tuple(g.id for g in plan.gauges if g.kind in self.gauges)
         return tuple(range(1, plan.beads + 1)) if self.places else (None,)
 
 
@@ -125,6 +128,7 @@ ENTRIES = (
         ),
         1e-4,
         0.2,
+        coated=True,
     ),
     Entry("plastic-contact", _one("residual_fraction"), _law("residual", "residual_fraction"), 0.005, 0.8),
     Entry("linear-dashpot", _one("damping_kg_s", _dashpot_unit), _law("dashpot", "damping_kg_s"), 0.003, 1.0),
@@ -266,9 +270,36 @@ ENTRIES = (
         0.48,
         (1, -1),
         places="sensor",
+        gauges=("embedded",),
     ),
 )
 BY_ID = {e.id: e for e in ENTRIES}
+# What the studies hide and hold a hidden effect against, in the order in which their cases were drawn: a
+# further entry is another study.
+STUDIED = (
+    "dynamic-modulus",
+    "contact-exponent",
+    "coating-thickness",
+    "plastic-contact",
+    "linear-dashpot",
+    "kuwabara-kono",
+    "tsuji",
+    "hunt-crossley",
+    "velocity-power",
+    "relaxing-contact",
+    "viscous-drag",
+    "guide-friction",
+    "static-preload",
+    "gravity",
+    "contact-gap",
+    "mass-defect",
+    "wall-compliance",
+    "striker-error",
+    "sensor-lowpass",
+    "sensor-droop",
+    "sensor-gain",
+    "sensor-offset",
+)
 
 
 def hidden(entry: Entry, strength: float, shape, place, reference: Plan) -> Callable[[Plan], Plan]:

@@ -115,3 +115,19 @@ ENTRIES = (
     ),
 )
 BY_ID = {e.id: e for e in ENTRIES}
+# What the studies hide, in the order in which their cases were drawn.
+STUDIED = (
+    "graded-modulus",
+    "quadratic-drag",
+    "adhesion",
+    "dimer",
+    "log-rate-stiffening",
+    "sensor-saturation",
+    "sensor-nonlinearity",
+    "resonant-wall",
+    "two-defects",
+    "piezo-hysteresis",
+    "double-hit",
+    "sensor-crosstalk",
+    "baseline-drift",
+)

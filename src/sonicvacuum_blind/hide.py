@@ -204,7 +204,7 @@ def _entry(spec, name):
 
 
 def _acts(made: Design, entry):
-    if entry.id == "coating-thickness" and made.coating is None:
+    if entry.coated and made.coating is None:
         return False
     return entry.fits(made.reference) and bool(entry.where(made.reference))
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy import special
 
-from sonicvacuum_blind.catalogue import ENTRIES, Entry, hidden
+from sonicvacuum_blind.catalogue import BY_ID, STUDIED, Entry, hidden
 from sonicvacuum_blind.signature import Fit, Frame
 
 CLOSE = 0.005  # relative, of the d′ reached to the one wanted
@@ -99,7 +99,7 @@ class Rival:
 def rivals(frame: Frame, size: float = 4.0) -> list[Rival]:
     """Directions of all effects, places, shapes and signs, from steps whose d′ is near `size`."""
     reference, found = frame.design.reference, []
-    for entry in ENTRIES:
+    for entry in map(BY_ID.get, STUDIED):
         if not entry.fits(reference):
             continue
         strength = min(entry.start, entry.most)

@@ -83,7 +83,7 @@ def _small():
 
 def _full(random):
     """Strengths, noise kinds and designs in fixed shares, pairs drawn."""
-    ids = [e.id for e in catalogue.ENTRIES]
+    ids = catalogue.STUDIED
     noises = ("white", "white", "white", "ar1", "quantised")
     for name in ids:
         for strength in STRENGTHS:
@@ -109,10 +109,10 @@ def _full(random):
     ):
         for _ in range(count):
             yield "null", design, noise, (), 0.0
-    for entry in foreign.ENTRIES:
+    for name in foreign.STUDIED:
         for strength in (8.0, 12.0, 20.0):
             for _ in range(6):
-                yield "foreign", "traces", "white", (entry.id,), strength
+                yield "foreign", "traces", "white", (name,), strength
     for strength in (10.0, 20.0):
         for _ in range(122):
             pair = random.choice(len(ids), 2, replace=False)

@@ -7,7 +7,6 @@ from itertools import pairwise
 import numpy as np
 
 from sonicvacuum.blas import one_thread
-from sonicvacuum.effects import effect
 from sonicvacuum.files import InputError
 from sonicvacuum.observe.trace import Measured
 from sonicvacuum.study import Study
@@ -86,7 +85,7 @@ def card_rows(study: Study) -> list[Row]:
 
 def _model(study: Study) -> Iterator[Row]:
     """What was simulated: modulus of the beads' surface, effects included; number of effects with losses."""
-    losses = sum(effect(name).dissipative for name in study.card.effects)
+    losses = sum(study.catalogue.effect(name).dissipative for name in study.card.effects)
     yield Row(study.card.name, "modulus", "", float(study.chain.first.surface.modulus[0]) / 1e9, "GPa", 0.0)
     yield Row(study.card.name, "loss_effects", "", float(losses), "1", 0.0)
 

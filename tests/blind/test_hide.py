@@ -1,6 +1,7 @@
 """Records with hidden effects: valid, reproducible, and silent about what is in them."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -138,6 +139,17 @@ def test_studies_cover_what_is_asked(tmp_path):
     assert study.read_cases(tmp_path / "cases.csv") == full
     parts = [study.batch(small, k, 5) for k in range(5)]
     assert sorted((s for p in parts for s in p), key=lambda s: s.id) == small
+
+
+def test_a_longer_catalogue_redraws_no_study(monkeypatch):
+    drawn = {name: study.cases(name) for name in study.SEEDS}
+    for module in (catalogue, foreign):
+        extra = replace(module.ENTRIES[0], id="extra")
+        monkeypatch.setattr(module, "ENTRIES", (extra, *module.ENTRIES))
+        monkeypatch.setitem(module.BY_ID, "extra", extra)
+    for name, cases in drawn.items():
+        # Not by `==` alone: the comparison of two thousand cases would be printed.
+        assert all(a == b for a, b in zip(study.cases(name), cases, strict=True))
 
 
 def test_bad_case_lists_name_the_line(tmp_path):

@@ -9,7 +9,7 @@ import numpy as np
 from sonicvacuum.discover.forward import Forward
 from sonicvacuum.discover.hypothesis import Hypothesis
 from sonicvacuum.discover.problem import experiment
-from sonicvacuum.effects import effect
+from sonicvacuum.effects import CATALOGUE
 from sonicvacuum.records import Record, Signals
 from sonicvacuum.records.reader import parse
 
@@ -44,9 +44,9 @@ def block(speeds, orientation="horizontal", sensors=None):
     }
 
 
-def made(effects=(), seed=0, speeds=(0.3, 0.9), noise=1.0, departures=(), sensors=None):
-    """A record with hidden effects ((id, parameters), ...), nuisances and white noise drawn; the
-    nuisances.
+def made(effects=(), seed=0, speeds=(0.3, 0.9), noise=1.0, departures=(), sensors=None, catalogue=CATALOGUE):
+    """A record with hidden effects ((id, parameters), ...) of a catalogue, nuisances and white noise drawn;
+    the nuisances.
 
     `departures` (what, place, ratio) change stiffness or mass at places, whatever the catalogue says of it.
     """
@@ -60,7 +60,8 @@ def made(effects=(), seed=0, speeds=(0.3, 0.9), noise=1.0, departures=(), sensor
 
     def change(setup, index):
         for name, given in effects:
-            setup = effect(name).apply(setup, **{k: np.full(setup.chain.lanes, v) for k, v in given.items()})
+            given = {k: np.full(setup.chain.lanes, v) for k, v in given.items()}
+            setup = catalogue.effect(name).apply(setup, **given)
         chain = setup.chain
         for what, place, ratio in departures:
             chain = chain.with_departure(what, place, ratio)

@@ -141,6 +141,24 @@ def test_fingerprint_sees_code_constants_closures_and_what_is_called(monkeypatch
     assert fingerprint.__wrapped__(_law) != found[-1]
 
 
+def test_fingerprint_sees_arrays_and_what_stands_in_other_modules(monkeypatch):
+    """A middle number of a long array, which `repr` leaves out, and a constant of an imported module."""
+    here = sys.modules[__name__]
+    monkeypatch.setattr(here, "FACTOR", np.ones(2000))
+    before = fingerprint.__wrapped__(_law)
+    here.FACTOR[1000] = 0.5
+    assert fingerprint.__wrapped__(_law) != before
+
+    def law(delta, stiffness):
+        return compiled.SHARES.factor * stiffness * delta
+
+    monkeypatch.setattr(compiled, "SHARES", sys, raising=False)
+    monkeypatch.setattr(sys, "factor", 1.0, raising=False)
+    before = fingerprint.__wrapped__(law)
+    monkeypatch.setattr(sys, "factor", 2.0)
+    assert fingerprint.__wrapped__(law) != before
+
+
 def test_law_sets_are_told_apart_by_their_formulas_not_their_names():
     one, two = (Term("x", "elastic", f, 1) for f in (lambda d, k: k * d, lambda d, k: k * d * d))
     assert LawSet((one,)) != LawSet((two,))

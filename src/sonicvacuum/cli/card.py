@@ -6,7 +6,7 @@ import click
 
 from sonicvacuum import config as configuration
 from sonicvacuum.card import dump
-from sonicvacuum.cli import existing
+from sonicvacuum.cli import catalogue, existing, own_effects
 from sonicvacuum.files import InputError, replacing
 from sonicvacuum.materials import MATERIALS
 from sonicvacuum.outputs import check_apart
@@ -18,9 +18,10 @@ from sonicvacuum.outputs import check_apart
 @click.option("--variant", default="nominal", show_default=True)
 @click.option("--model", type=existing(), help="model.json of discover, where the case asks for one.")
 @click.option("--out", type=click.Path(dir_okay=False), help="File to write; default: standard output.")
-def card(path, case, variant, model, out):
+@own_effects
+def card(path, case, variant, model, out, own):
     """Resolve one case of the configuration into a card (JSON, SI units)."""
-    check_apart([out], [path, model])
+    check_apart([out], [path, model, *own])
     config = configuration.read(path)
     if case is None:
         click.echo("\n".join(configuration.card_names(config)))
@@ -32,11 +33,11 @@ def card(path, case, variant, model, out):
     if wanted:
         from sonicvacuum.cli.model import with_model
 
-        resolved = with_model(resolved, model, wanted)
+        resolved = with_model(resolved, model, catalogue(own), wanted)
     if resolved.effects:
         from sonicvacuum.study import set_up
 
-        set_up(resolved)  # an effect that does not exist is best known now
+        set_up(resolved, catalogue=catalogue(own))  # an effect that does not exist is best known now
     text = dump(resolved)
     if out is None:
         click.echo(text, nl=False)
@@ -63,18 +64,18 @@ def materials():
 
 @click.command()
 @click.argument("name", required=False)
-def effects(name):
-    """List the catalogue of effects, or tell all about the one with id NAME."""
-    from sonicvacuum.effects import CATALOGUE, IDS
-
+@own_effects
+def effects(name, own):
+    """List the catalogue of effects, or tell all about the one with id NAME; check effects of your own."""
+    known = catalogue(own)
     if name is None:
-        for e in CATALOGUE:
+        for e in known:
             taken = ", ".join([*(p.name for p in e.parameters), *([e.places] if e.places else [])])
             click.echo(f"{e.id:18} {e.missing} ({taken})")
         return
-    if name not in IDS:
-        raise InputError(f"effect {name!r} is not in the catalogue; known: {', '.join(IDS)}")
-    e = CATALOGUE[IDS.index(name)]
+    if name not in known:
+        raise InputError(f"effect {name!r} is not in the catalogue; known: {', '.join(known.ids)}")
+    e = known.effect(name)
     for title in (
         "title",
         "missing",

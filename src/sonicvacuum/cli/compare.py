@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from sonicvacuum.cli import existing
+from sonicvacuum.cli import catalogue, existing, own_effects
 
 
 @click.command()
@@ -12,7 +12,8 @@ from sonicvacuum.cli import existing
 @click.option("--model", required=True, type=existing(), help="model.json of sonicvacuum discover.")
 @click.option("--json", "path", required=True, type=click.Path(dir_okay=False), help="Score (JSON) to write.")
 @click.option("--threads", type=click.IntRange(1), help="Threads; all processors by default.")
-def compare(record, model, path, threads):
+@own_effects
+def compare(record, model, path, threads, own):
     """Score a MODEL on a RECORD; only the record's own nuisances are fitted."""
     from sonicvacuum.discover import compare as scoring
     from sonicvacuum.discover.verdict import write_json
@@ -20,8 +21,10 @@ def compare(record, model, path, threads):
     from sonicvacuum.physics.run import available_threads
     from sonicvacuum.records import read
 
-    check_apart([path], [record, model])
+    check_apart([path], [record, model, *own])
     check_folder(Path(path).parent)
-    score = scoring.compare(scoring.read_model(model), read(record), threads or available_threads())
+    known = catalogue(own)
+    found = scoring.read_model(model, known)
+    score = scoring.compare(found, read(record), threads or available_threads(), known)
     write_json(score, Path(path))
     click.echo(f"{record}: {score.gap.before:.3g} before, {score.gap.after:.3g} after, floor 1")

@@ -5,6 +5,8 @@ from pathlib import Path
 
 import click
 
+from sonicvacuum.cli import catalogue, own_effects
+
 
 @click.command()
 @click.argument("records", nargs=-1, required=True, type=click.Path())
@@ -21,7 +23,8 @@ import click
     type=click.IntRange(1),
     help="Threads; all processors by default. Results do not depend on it.",
 )
-def discover(records, out, together, figures, threads):
+@own_effects
+def discover(records, out, together, figures, threads, own):
     """Find what is missing from the nominal model of measured data in the folders RECORDS.
 
     One record is written to OUT; of several each has its own folder OUT/<folder name>.
@@ -36,15 +39,18 @@ def discover(records, out, together, figures, threads):
     if figures:
         # Where matplotlib is missing, that is said before the search and not after it.
         import_module("sonicvacuum.figures.style")
+    known = catalogue(own)
     groups = {Path(out): records} if together else {f: (p,) for p, f in _folders(records, Path(out)).items()}
     for folder in groups:
         check_out(folder, records)
     for folder, paths in groups.items():
-        result = session.discover(*(read(p) for p in paths), threads=threads or available_threads())
+        result = session.discover(
+            *(read(p) for p in paths), threads=threads or available_threads(), catalogue=known
+        )
         with renewed(folder, last="verdict.json", stale=page_files()) as fresh:
             session.write(result, fresh)
             if figures:
-                illustrate(fresh)
+                illustrate(fresh, known)
         click.echo(f"{', '.join(paths)}: {_sentence(result.verdict)}")
 
 

@@ -4,27 +4,31 @@ from pathlib import Path
 
 import click
 
+from sonicvacuum.cli import catalogue, own_effects
+
 
 @click.command()
 @click.argument("folders", nargs=-1, required=True, type=click.Path(exists=True, file_okay=False))
-def page(folders):
+@own_effects
+def page(folders, own):
     """Draw the pictures of what discover wrote into FOLDERS, and write its page, index.html."""
     from sonicvacuum.records.guard import check_out
     from sonicvacuum.report.record import section
 
+    known = catalogue(own)
     for folder in map(Path, folders):
         check_out(folder)
-        section(folder)  # what is not a discovery's folder is refused before anything is drawn
-        illustrate(folder)
+        section(folder, known)  # what is not a discovery's folder is refused before anything is drawn
+        illustrate(folder, known)
 
 
-def illustrate(folder) -> None:
-    """Draw the pictures and write the page of one folder."""
+def illustrate(folder, known) -> None:
+    """Draw the pictures and write the page of one folder; the catalogue `known` holds its effects."""
     from sonicvacuum.figures.discovery import draw
     from sonicvacuum.report.record import write_page
 
-    draw(folder)
-    write_page(folder)
+    draw(folder, known)
+    write_page(folder, known)
 
 
 def page_files() -> tuple[str, ...]:

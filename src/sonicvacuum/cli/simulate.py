@@ -2,7 +2,7 @@
 
 import click
 
-from sonicvacuum.cli import existing
+from sonicvacuum.cli import catalogue, existing, own_effects
 from sonicvacuum.cli.cards import read_card
 from sonicvacuum.outputs import check_apart
 
@@ -15,14 +15,15 @@ from sonicvacuum.outputs import check_apart
     help="model.json of discover to put into the chain first; to observe the result, put it into the card.",
 )
 @click.option("--out", required=True, type=click.Path(dir_okay=False), help="History (.npz) to write.")
-def simulate(card, model, out):
+@own_effects
+def simulate(card, model, out, own):
     """Integrate the chains of a CARD and keep the contact forces."""
     from sonicvacuum import study
 
-    check_apart([out], [card, model])
-    resolved = read_card(card)
+    check_apart([out], [card, model, *own])
+    resolved, known = read_card(card), catalogue(own)
     if model:
         from sonicvacuum.cli.model import with_model
 
-        resolved = with_model(resolved, model)
-    study.save(study.run(resolved), out)
+        resolved = with_model(resolved, model, known)
+    study.save(study.run(resolved, known), out)

@@ -13,8 +13,8 @@ from sonicvacuum.discover.forward import Forward
 from sonicvacuum.discover.hypothesis import Component, Hypothesis
 from sonicvacuum.discover.problem import experiment
 from sonicvacuum.discover.refit import fit
-from sonicvacuum.discover.verdict import Gap, Model, gap
-from sonicvacuum.effects import IDS, effect
+from sonicvacuum.discover.verdict import Gap, Model, Sources, gap
+from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.files import InputError
 from sonicvacuum.records import Record
 
@@ -39,8 +39,8 @@ class Comparison(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     runs: dict[str, Gap]
 
 
-def read_model(path) -> Model:
-    """The model of a `model.json`; InputError names file and key."""
+def read_model(path, catalogue: Catalogue = CATALOGUE) -> Model:
+    """The model of a `model.json`, whose effects a catalogue holds; InputError names file and key."""
     try:
         text = Path(path).read_bytes()
         found = msgspec.json.decode(text, type=Model)
@@ -49,9 +49,9 @@ def read_model(path) -> Model:
     except (msgspec.DecodeError, msgspec.ValidationError) as error:
         raise InputError(f"{path}: not a model ({error}); sonicvacuum discover writes one") from None
     for name, given in found.effects.items():
-        if name not in IDS:
-            raise InputError(f"{path}: effects.{name}: no such effect; the catalogue holds {', '.join(IDS)}")
-        known = [p.name for p in effect(name).parameters] + [effect(name).places]
+        check_source(path, name, found.sources, catalogue)
+        one = catalogue.effect(name)
+        known = [p.name for p in one.parameters] + [one.places]
         for key in given:
             if key not in known:
                 raise InputError(
@@ -60,11 +60,33 @@ def read_model(path) -> Model:
     return found
 
 
-def hypothesis(model: Model) -> Hypothesis:
+def check_source(path, name: str, sources: Sources, catalogue: Catalogue) -> None:
+    """Refuse (InputError) an effect of a file that the catalogue lacks, or holds from another source than
+    the file says.
+    """
+    told = (sources or {}).get(name)
+    if name not in catalogue and told is None:
+        raise InputError(
+            f"{path}: effects.{name}: no such effect; the catalogue holds {', '.join(catalogue.ids)}"
+        )
+    if name not in catalogue:
+        raise InputError(
+            f"{path}: effects.{name}: comes from {told.name} (SHA-256 {told.sha256[:12]}); "
+            "give that file with --effects"
+        )
+    given = catalogue.effect(name).source
+    if told and given and told.sha256 != given.sha256:
+        raise InputError(
+            f"{path}: effects.{name}: was made with {told.name} of SHA-256 {told.sha256[:12]}, {given.name} "
+            f"given has {given.sha256[:12]}; give the file it was made with, or run discover again"
+        )
+
+
+def hypothesis(model: Model, catalogue: Catalogue = CATALOGUE) -> Hypothesis:
     """The model's effects, nothing free."""
     components = []
     for name, given in model.effects.items():
-        one = effect(name)
+        one = catalogue.effect(name)
         fixed = {k: v for k, v in given.items() if k != one.places}
         place = int(given[one.places]) if one.places else None
         components.append(Component(one, (), fixed, place))
@@ -72,11 +94,11 @@ def hypothesis(model: Model) -> Hypothesis:
 
 
 @one_thread
-def compare(model: Model, record: Record, threads: int = 1) -> Comparison:
-    """The model's score on a record."""
-    forward = Forward(experiment(record), threads)
+def compare(model: Model, record: Record, threads: int = 1, catalogue: Catalogue = CATALOGUE) -> Comparison:
+    """The model's score on a record; the catalogue knows its effects."""
+    forward = Forward(experiment(record, catalogue), threads)
     sizes = np.array([forward.experiment.size(k) for k in range(len(forward.experiment.runs))])
-    nominal, extended = (_fit(forward, h) for h in (Hypothesis(), hypothesis(model)))
+    nominal, extended = (_fit(forward, h) for h in (Hypothesis(), hypothesis(model, catalogue)))
     before, after = nominal.normal.chi2[:, 0], extended.normal.chi2[:, 0]
     runs = {
         run.id: gap(float(before[k] / sizes[k]), float(after[k] / sizes[k]))

@@ -13,7 +13,7 @@ import numpy as np
 from sonicvacuum.discover.evidence import Candidate
 from sonicvacuum.discover.pairs import Pair
 from sonicvacuum.discover.screen import Screen
-from sonicvacuum.effects import Setup, effect
+from sonicvacuum.effects import Setup
 
 # Twice the difference of log evidences, as a χ².
 ALIKE = 9.0
@@ -76,7 +76,7 @@ def limits(scores: Screen, setup: Setup) -> list[Limit]:
 
 
 def _limit(name, reach, estimate, direction, setup):
-    p = effect(name).parameter(direction.strength)
+    p = setup.catalogue.effect(name).parameter(direction.strength)
     off = np.ravel(p.off_in(setup))[0]
     if np.isinf(off):
         value = p.scale / reach if np.isfinite(reach) else 0.0

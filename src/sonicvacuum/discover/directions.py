@@ -13,7 +13,7 @@ import numpy as np
 from sonicvacuum.discover.forward import Forward
 from sonicvacuum.discover.hypothesis import Hypothesis, is_law, with_common_laws
 from sonicvacuum.discover.parameters import coordinate, shape_grid
-from sonicvacuum.effects import CATALOGUE, Effect, Setup
+from sonicvacuum.effects import Effect, Setup
 
 # The first trial strength (typical departures), and the change of all data, in standard errors, that is
 # aimed at.
@@ -41,13 +41,6 @@ class Direction:
     two_sided: bool = False
     unit: float = 1.0
 
-    @property
-    def label(self) -> str:
-        """`mass-defect bead 13`, for tables."""
-        parts = [self.effect, self.strength if self.effect == "striker-error" else ""]
-        parts += [f"{k} {v:.3g}" for k, v in self.shape]
-        return " ".join(p for p in (*parts, "" if self.place is None else str(self.place)) if p)
-
 
 @dataclass(frozen=True)
 class Family:
@@ -59,6 +52,7 @@ class Family:
         trial: strength of the first trial.
         least: smallest strength at which the change is what it is called (a gap opens at once).
         common: whether the change composes the common law set itself.
+        acts_like: the nuisance that the strength moves exactly as, see `effects.Parameter`; None for none.
     """
 
     directions: tuple[Direction, ...]
@@ -66,6 +60,7 @@ class Family:
     trial: float = TRIAL
     least: float = WEAKEST
     common: bool = False
+    acts_like: str | None = None
 
 
 def of_effect(
@@ -82,9 +77,9 @@ def of_effect(
             for place, shape in grid
         )
         if directions:
-            least = strength.low / strength.scale if effect.id == "contact-gap" else WEAKEST
+            least = max(strength.least_strength, WEAKEST)
             change = _change(effect, strength, grid, common, present)
-            families.append(Family(directions, change, TRIAL, least, common))
+            families.append(Family(directions, change, TRIAL, least, common, strength.acts_like))
     return families
 
 
@@ -115,14 +110,12 @@ def _at(parameter, strength, setup):
 
 
 def catalogue(setup: Setup, present: tuple[str, ...] = ()) -> list[Family]:
-    """Families of all effects but those in force; a law joins the common law set where another is in
-    force.
+    """Families of all effects of the setup's catalogue that can act in it, but those in force; a law joins
+    the common law set where another is in force.
     """
     families = []
-    laws = any(is_law(e, setup) for e in CATALOGUE if e.id in present)
-    for effect in CATALOGUE:
-        if effect.id in present:
-            continue
+    laws = any(is_law(e, setup) for e in setup.catalogue if e.id in present)
+    for effect in setup.catalogue.candidates(setup, present):
         common = laws and is_law(effect, setup)
         families += of_effect(effect, setup, common, present)
     return families
@@ -133,17 +126,14 @@ def like_nuisance(forward: Forward, family: Family, base: list[np.ndarray], free
 
     Differences of simulations would leave a trace of such a direction where nothing of it is left.
     """
-    sigma, layout = forward.nuisance_sigma, forward.layout
-    first = family.directions[0]
-    if first.effect == "dynamic-modulus" and sigma[layout.modulus]:
-        return [first.unit / sigma[layout.modulus] * c[:, free + 1] for c in base]
-    speeds = sigma[: layout.runs]
-    if (first.effect, first.strength) == ("striker-error", "speed_ratio") and np.all(speeds > 0.0):
-        return [first.unit / s * c[:, free + 2] for s, c in zip(speeds, base, strict=True)]
-    if first.effect == "sensor-gain" and np.all(sigma[layout.gains] > 0.0):
-        gains = sigma[layout.gains][:, None]
-        return [first.unit / gains * c[0, free + 4 :] for c in base]
-    return None
+    if family.acts_like is None:
+        return None
+    unit = family.directions[0].unit
+    places = np.array([d.place or 0 for d in family.directions])
+    found = [forward.nuisance_column(family.acts_like, run, places) for run in range(len(base))]
+    if any(f is None for f in found):
+        return None
+    return [unit / sigma * c[0, 1 + free + at] for c, (at, sigma) in zip(base, found, strict=True)]
 
 
 def simulate(forward: Forward, hypothesis: Hypothesis, u, nu, family: Family, rough: bool = False):

@@ -96,20 +96,30 @@ def unknown_odds(p: float) -> float:
     return _UNKNOWN_ODDS * bound
 
 
-def log_weights(log_bayes: Mapping[str, float]) -> dict[str, float]:
-    """Log of prior times evidence of none and of every effect in `log_bayes` (natural logs)."""
-    each = math.log((1.0 - PRIOR_NONE - PRIOR_UNKNOWN) / len(IDS))
-    return {"none": math.log(PRIOR_NONE)} | {name: each + value for name, value in log_bayes.items()}
+def log_weights(log_bayes: Mapping[str, float], odds: Mapping[str, float] | None = None) -> dict[str, float]:
+    """Log of prior times evidence of none and of every effect in `log_bayes` (natural logs).
+
+    `odds`: id → prior odds against the catalogue's usual prior, 1 where not given; 0 leaves the effect out.
+    An effect of the user's own has the usual prior of the project's effects, whatever their number.
+    """
+    usual = (1.0 - PRIOR_NONE - PRIOR_UNKNOWN) / len(IDS)
+    prior = {name: usual * (odds or {}).get(name, 1.0) for name in log_bayes}
+    weights = {name: math.log(prior[name]) + value for name, value in log_bayes.items() if prior[name] > 0.0}
+    return {"none": math.log(PRIOR_NONE)} | weights
 
 
 def probabilities(
-    candidates: list[Candidate], alarm_p: float, calibration: Calibration | None = None
+    candidates: list[Candidate],
+    alarm_p: float,
+    calibration: Calibration | None = None,
+    odds: Mapping[str, float] | None = None,
 ) -> dict[str, float]:
     """Probability of none, unknown and every single effect; they sum to 1.
 
     `alarm_p` is the p-value of the residual of the most probable of them; `calibration` that of the package
-    where not given.
+    where not given; `odds` those of `log_weights`.
     """
-    logs = log_weights({c.effect: c.log_bayes for c in candidates})
+    logs = log_weights({c.effect: c.log_bayes for c in candidates}, odds)
     found = (calibration or of_package()).probabilities(logs, math.log(unknown_odds(alarm_p)))
-    return {name: found[name] for name in ("none", "unknown", *IDS) if name in found}
+    own = sorted(name for name in found if name not in ("none", "unknown", *IDS))
+    return {name: found[name] for name in ("none", "unknown", *IDS, *own) if name in found}

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.gauges import Gauge
 from sonicvacuum.laboratory.bodies import Bodies
 from sonicvacuum.physics.chain import Chain
@@ -102,6 +103,7 @@ class Experiment:
         modulus_rel_sigma: of the bead material, relative.
         diameter: of a bead in m, or of each of them.
         record: the record it was made from, None in tests.
+        catalogue: the effects that may be missing.
         excluded: ids of effects that these data cannot be asked about.
         integrated: compare running integrals of the traces instead: a coarse view in which a late pulse is
             still felt, for searches that start far from the data.
@@ -118,6 +120,7 @@ class Experiment:
     modulus_rel_sigma: float
     diameter: Bodies | float
     record: object = None
+    catalogue: Catalogue = CATALOGUE
     excluded: tuple[str, ...] = ()
     integrated: bool = False
 

@@ -10,24 +10,12 @@ from msgspec.structs import replace
 
 from sonicvacuum.card import Card, ModelBlock
 from sonicvacuum.discover.verdict import Model
-from sonicvacuum.effects import effect
-
-# Effects of the contact material, which a bead of another size has too.
-OF_MATERIAL = (
-    "dynamic-modulus",
-    "contact-exponent",
-    "coating-thickness",
-    "plastic-contact",
-    "linear-dashpot",
-    "kuwabara-kono",
-    "tsuji",
-    "hunt-crossley",
-    "velocity-power",
-    "relaxing-contact",
-)
+from sonicvacuum.effects import CATALOGUE, Catalogue
 
 
-def extended(card: Card, model: Model, wanted: ModelBlock | None = None) -> Card:
+def extended(
+    card: Card, model: Model, wanted: ModelBlock | None = None, catalogue: Catalogue = CATALOGUE
+) -> Card:
     """The card with the model's effects and with its modulus of the beads' contact material.
 
     A dynamic modulus becomes the card's modulus, which is all that the effect is: theory and audit of the
@@ -37,21 +25,26 @@ def extended(card: Card, model: Model, wanted: ModelBlock | None = None) -> Card
         card: of the nominal model.
         model: as `sonicvacuum.discover.compare.read_model` gives it.
         wanted: what to take of it; by default all.
+        catalogue: knows the effects.
     """
     wanted = wanted or ModelBlock(record="any")
-    effects = dict(card.effects)
+    effects, ratio = dict(card.effects), model.modulus_ratio
     for name, parameters in model.effects.items():
-        if wanted.specimen == "other" and name not in OF_MATERIAL:
+        one = catalogue.effect(name)
+        if wanted.specimen == "other" and not one.of_material:
             continue
-        if wanted.losses == "left-out" and effect(name).dissipative:
+        if wanted.losses == "left-out" and one.dissipative:
             continue
-        effects[name] = _places_whole(name, parameters)
-    ratio = model.modulus_ratio * effects.pop("dynamic-modulus", {}).get("modulus_ratio", 1.0)
+        effects[name] = _places_whole(one, parameters)
+    for name in list(effects):
+        one = catalogue.effect(name)
+        if all(p.acts_like == "modulus" for p in one.parameters):
+            given = effects.pop(name)
+            ratio *= math.prod(given.get(p.name, 1.0) for p in one.parameters)
     return replace(card, effects=effects).stiffened(card.bead.surface.name, ratio)
 
 
-def _places_whole(name, parameters):
+def _places_whole(one, parameters):
     """Places as whole numbers; values that JSON cannot hold are left out, and so are off."""
-    place = effect(name).places
     kept = {key: value for key, value in parameters.items() if math.isfinite(value)}
-    return {key: int(value) if key == place else value for key, value in kept.items()}
+    return {key: int(value) if key == one.places else value for key, value in kept.items()}

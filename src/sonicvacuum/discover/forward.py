@@ -178,30 +178,44 @@ class Forward:
             speed = (value[:, p + 2 :] - base) * (sigma[run] / h)
             trigger = -rate[:, None] * sigma[self.layout.trigger(run)]
             gains = self._gain_columns(run, base[:, 0])
-            self._like_nuisances(hypothesis, run, places, slopes, young, speed, gains)
-            for columns in (slopes, young, speed):
-                columns[..., self.counts(run)] = 0.0
-            result.append(np.concatenate([base, slopes, young, speed, trigger, gains], axis=1))
+            nuisances = np.concatenate([young, speed, trigger, gains], axis=1)
+            self._like_nuisances(hypothesis, run, places, slopes, nuisances)
+            columns = np.concatenate([base, slopes, nuisances], axis=1)
+            columns[:, 1:, self.counts(run)] = 0.0
+            result.append(columns)
         return result
 
-    def _like_nuisances(self, hypothesis, run, places, slopes, young, speed, gains):
+    def nuisance_column(self, acts_like: str, run: int, place):
+        """Where the nuisance stands that a ratio acts like, and its standard error.
+
+        Args:
+            acts_like: see `effects.Parameter`.
+            run: index of the run.
+            place: (n,) gauges where the effect sits; of no account but for gains.
+
+        Returns:
+            (n,) places in the order of `Layout.local` and (n, 1) standard errors, relative; None where the
+            nuisance is known exactly.
+        """
+        sigma = self.nuisance_sigma
+        if acts_like == "gain":
+            errors = sigma[self.layout.gains]
+            return (3 + place, errors[place][:, None]) if np.all(errors > 0.0) else None
+        at, own = {"modulus": (0, self.layout.modulus), "speed": (1, self.layout.speed(run))}[acts_like]
+        return (np.full(len(place), at), np.full((len(place), 1), sigma[own])) if sigma[own] else None
+
+    def _like_nuisances(self, hypothesis, run, places, slopes, nuisances):
         """Take the slopes of parameters that act exactly as a nuisance does from its column.
 
         Differences of simulations would hide that the two are one direction.
         """
-        sigma, at = self.nuisance_sigma, 0
-        for k, component in enumerate(hypothesis.components):
-            for c in component.free:
-                name = (component.effect.id, c.parameter.name)
-                if name == ("dynamic-modulus", "modulus_ratio") and sigma[self.layout.modulus]:
-                    slopes[:, at] = young[:, 0] / sigma[self.layout.modulus]
-                elif name == ("striker-error", "speed_ratio") and sigma[run]:
-                    slopes[:, at] = speed[:, 0] / sigma[run]
-                elif name[0] == "sensor-gain" and np.all(self.experiment.gain_rel_sigma > 0.0):
-                    own = np.full(len(slopes), component.place) if places is None else places[:, k]
-                    scale = self.experiment.gain_rel_sigma[own][:, None]
-                    slopes[:, at] = gains[np.arange(len(slopes)), own] / scale
-                at += 1
+        lanes = np.arange(len(slopes))
+        for k, (component, own) in enumerate(zip(hypothesis.components, hypothesis.columns, strict=True)):
+            place = np.full(len(slopes), component.place or 0) if places is None else places[:, k]
+            for column, c in enumerate(component.free, start=own.start):
+                like = c.parameter.acts_like
+                if like and (found := self.nuisance_column(like, run, place)):
+                    slopes[:, column] = nuisances[lanes, found[0]] / found[1]
 
     def _gain_columns(self, run, value):
         """(L, S, M) change of the data of a run with the gain of each gauge, times its standard error."""
@@ -263,7 +277,7 @@ class Forward:
         speed = chain.speed * np.exp(nu[:, runs] * sigma[runs]).ravel()
         stiffer = np.repeat(np.exp(nu[:, self.layout.modulus] * sigma[self.layout.modulus]), len(runs))
         chain = replace(chain, speed=speed).stiffened(chain.first.surface.name, stiffer)
-        return Setup(chain, batch.gauges or self.experiment.gauges)
+        return Setup(chain, batch.gauges or self.experiment.gauges, self.experiment.catalogue)
 
     def simulate(self, batch, setup: Setup):
         """Readings (lanes, S, T') on the simulated grid, with what the scalars need besides."""

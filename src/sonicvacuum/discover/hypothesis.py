@@ -8,11 +8,8 @@ import numpy as np
 
 from sonicvacuum.discover import flexible
 from sonicvacuum.discover.parameters import Coordinate, coordinate
-from sonicvacuum.effects import CATALOGUE, Effect, Setup
+from sonicvacuum.effects import Effect, Setup
 
-# Laws with a free power are several times slower than all others; they join the common law set only when
-# needed.
-SLOW_LAWS = ("contact-exponent", "velocity-power")
 FLEXIBLE = "flexible"
 
 
@@ -45,8 +42,8 @@ class Component:
 class Hypothesis:
     """Effects in force together.
 
-    `common` composes the force law of all fast laws of the catalogue, those not in force being off, so that
-    any combination runs in one compiled stepper.
+    `common` composes the force law of all fast laws of the catalogue that can act, those not in force being
+    off, so that any combination runs in one compiled stepper.
     """
 
     components: tuple[Component, ...] = ()
@@ -112,13 +109,14 @@ def is_law(effect: Effect, setup: Setup) -> bool:
 
 
 def with_common_laws(setup: Setup, present: tuple[str, ...]) -> Setup:
-    """The setup with all fast laws of the catalogue in its force law, those not `present` at their off
+    """The setup with all fast laws of its catalogue in its force law, those not `present` at their off
     values.
 
     The flexible law is among them.
     """
-    for effect in CATALOGUE:
-        if effect.places or effect.id in present or effect.id in SLOW_LAWS:
+    for effect in setup.catalogue.candidates(setup, present):
+        # Slow laws join only where they are needed.
+        if effect.places or effect.slow:
             continue
         off = {p.name: p.at(0.0, setup) for p in effect.parameters}
         changed = effect.change(setup, **off)

@@ -33,8 +33,8 @@ def propose(found: Investigation, alike: list[list[str]]) -> Next | None:
     (name, best), others = rivals[0], rivals[1:]
     scored = []
     for change, imagined in changes(forward.experiment):
-        if "chain.orientation" in change and "gravity" in {name for name, _ in rivals}:
-            continue  # records that hang differently say nothing of gravity when taken together
+        if "chain.orientation" in change and any(_depends_on_orientation(fit) for _, fit in rivals):
+            continue  # records that hang differently say nothing of such an effect when taken together
         new = Forward(imagined, forward.threads)
         values = [separation(forward, new, best, fit) for _, fit in others]
         forward.simulations += new.simulations
@@ -43,6 +43,11 @@ def propose(found: Investigation, alike: list[list[str]]) -> Next | None:
         return None
     value, change, separates = max(scored, key=lambda s: s[0])
     return Next(change=change, separates=separates, delta_chi2=float(value))
+
+
+def _depends_on_orientation(fit):
+    """Whether an effect of a fit is off at the recorded orientation."""
+    return any(c.effect.depends_on_orientation for c in fit.hypothesis.components)
 
 
 def _rivals(found: Investigation, alike):

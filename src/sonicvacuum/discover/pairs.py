@@ -15,7 +15,7 @@ from sonicvacuum.discover.evidence import Candidate, log_bayes
 from sonicvacuum.discover.forward import Forward
 from sonicvacuum.discover.hypothesis import Component, Hypothesis, is_law, variants
 from sonicvacuum.discover.refit import Fit, fit, polish
-from sonicvacuum.effects import Setup, effect
+from sonicvacuum.effects import Setup
 
 # Singles that pairs start from.
 BEAM = 4
@@ -157,7 +157,7 @@ def _from_plane(scores, setup, ks, strengths, gain):
     for k, strength in zip(ks, strengths, strict=True):
         d = scores.directions[k]
         free = _variant(d, setup)
-        components.append(Component(effect(d.effect), free))
+        components.append(Component(setup.catalogue.effect(d.effect), free))
         u += [
             float(np.clip(x, c.low + 1e-9, c.high - 1e-9))
             for c, x in zip(free, singles.coordinates(free, d, strength), strict=True)
@@ -170,9 +170,8 @@ def _from_plane(scores, setup, ks, strengths, gain):
 
 def _variant(direction, setup):
     """The free parameters of an effect whose strength is that of a direction."""
-    return next(
-        v for v in variants(effect(direction.effect), setup) if v[0].parameter.name == direction.strength
-    )
+    options = variants(setup.catalogue.effect(direction.effect), setup)
+    return next(v for v in options if v[0].parameter.name == direction.strength)
 
 
 def beside(forward: Forward, null: Fit, first: Fit, setup: Setup) -> list[Start]:
@@ -183,16 +182,17 @@ def beside(forward: Forward, null: Fit, first: Fit, setup: Setup) -> list[Start]
     own = first.hypothesis.components[0].place or 0
     result = []
     for second, k in scores.best().items():
-        finite = secants.search(forward, first, effect(second), setup, 2, sparse=True)
+        effect = setup.catalogue.effect(second)
+        finite = secants.search(forward, first, effect, setup, 2, sparse=True)
         more = max([float(np.square(scores.z[k])), *(one.gain for one in finite)])
         free = _variant(scores.directions[k], setup)
-        u, places, nu = singles.starts(forward, first, scores, effect(second), free, False, finite)
+        u, places, nu = singles.starts(forward, first, scores, effect, free, False, finite)
         if not len(u):
             continue
         u = np.column_stack([np.repeat(first.u[None], len(u), axis=0), u])
         places = np.zeros((len(u), 1), dtype=int) if places is None else places
         places = np.column_stack([np.full(len(u), own), places])
-        hypothesis = joined(first.hypothesis, Component(effect(second), free), setup)
+        hypothesis = joined(first.hypothesis, Component(effect, free), setup)
         result.append(Start(gained + more, hypothesis, u, nu, places))
     return result
 
@@ -222,5 +222,6 @@ def joined(hypothesis: Hypothesis, component: Component, setup: Setup) -> Hypoth
 
 def _places(names, setup):
     """Log of the number of places that both effects could have had."""
-    counts = [len(e.candidates(setup)) for e in map(effect, names) if e.places]
+    effects = [setup.catalogue.effect(name) for name in names]
+    counts = [len(e.candidates(setup)) for e in effects if e.places]
     return float(sum(np.log(max(1, c)) for c in counts))

@@ -86,7 +86,7 @@ def coordinate(parameter: Parameter, setup: Setup) -> Coordinate:
     if math.isinf(off):
         weakest, strongest = math.log(scale / high / TOWARDS_OFF), math.log(scale / low)
         return Coordinate(parameter, "inverse", scale, off, weakest, strongest, False)
-    if off == 0.0 and low >= 0.0 and parameter.name != "fraction":
+    if off == 0.0 and low >= 0.0 and not parameter.linear:
         least = low / TOWARDS_OFF if low > 0.0 else SMALL * scale
         bounds = (math.log(least / scale), math.log(high / scale))
         return Coordinate(parameter, "log", scale, off, *bounds, False)

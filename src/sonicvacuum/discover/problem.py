@@ -20,6 +20,7 @@ from sonicvacuum.discover.experiment import (
     lag_one,
 )
 from sonicvacuum.discover.gains import with_gains
+from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.files import InputError
 from sonicvacuum.records.assemble import assemble, chain_of, duration_of, interval_of
 from sonicvacuum.records.record import Record
@@ -33,12 +34,14 @@ _FEWEST = 40
 _SURE = 4.0
 
 
-def experiment(record: Record) -> Experiment:
-    """The data set of a record; gauges of unknown gain start at that which the data ask for."""
-    return with_gains(_experiment(record))
+def experiment(record: Record, catalogue: Catalogue = CATALOGUE) -> Experiment:
+    """The data set of a record, which may lack effects of a catalogue; gauges of unknown gain start at that
+    which the data ask for.
+    """
+    return with_gains(_experiment(record, catalogue))
 
 
-def _experiment(record):
+def _experiment(record, catalogue):
     runs = tuple(_run(record, run) for run in record.runs)
     sigma, correlation = noise((record,))
     named = record.modulus_rel_sigma(record.specimen.first.surface.name)
@@ -54,26 +57,27 @@ def _experiment(record):
         modulus_rel_sigma=named or MODULUS_REL_SIGMA,
         diameter=record.specimen.diameters,
         record=record,
+        catalogue=catalogue,
     )
 
 
-def together(records: Sequence[Record]) -> Experiment:
+def together(records: Sequence[Record], catalogue: Catalogue = CATALOGUE) -> Experiment:
     """The data set of records of one laboratory: the same beads, materials and gauges with their gains.
 
     Gauges may sit elsewhere, static force and orientation may differ from record to record; where orientation
-    does, nothing can be said of gravity.
+    does, nothing can be said of effects that are off at the recorded one.
 
     Raises:
         InputError: where records have different beads or gauges, or scalars beside the first record's.
     """
-    first, *others = [_experiment(r) for r in records]
+    first, *others = [_experiment(r, catalogue) for r in records]
     for record, other in zip(records[1:], others, strict=True):
         _check_alike(records[0], record, other)
     for record, other in zip(records[1:], others, strict=True):
         first = _joined(first, record, other)
     turned = len({r.specimen.gravity_m_s2 for r in records}) > 1
+    excluded = tuple(e.id for e in catalogue if turned and e.depends_on_orientation)
     sigma, correlation = noise(records)
-    excluded = ("gravity",) if turned else first.excluded
     return with_gains(replace(first, sigma=sigma, correlation=correlation, excluded=excluded))
 
 

@@ -23,8 +23,8 @@ PLACES = ("bead", "contact")
 
 
 def applies(effect: Effect) -> bool:
-    """Whether an effect is tried at finite strength: those at one bead or contact, and the striker's mass."""
-    return effect.places in PLACES or any(p.name == "mass_ratio" for p in effect.parameters)
+    """Whether an effect is tried at finite strength: those at one bead or contact, and those that say so."""
+    return effect.places in PLACES or any(p.tried_at_once for p in effect.parameters)
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,7 @@ def search(
 def _strength(effect):
     """The parameter that is tried."""
     switches = [p for p in effect.parameters if p.switches]
-    return next((p for p in switches if p.name == "mass_ratio"), switches[0])
+    return next((p for p in switches if p.tried_at_once), switches[0])
 
 
 def _screened(forward, fit, effect, c, trials):

@@ -21,6 +21,7 @@ from sonicvacuum.discover import (
 from sonicvacuum.discover.problem import together
 from sonicvacuum.discover.rounds import Investigation, investigate
 from sonicvacuum.discover.verdict import Verdict
+from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.physics.run import available_threads
 from sonicvacuum.records import Record
 
@@ -38,12 +39,13 @@ class Result:
 
 
 @one_thread
-def discover(*records: Record, threads: int | None = None) -> Result:
+def discover(*records: Record, threads: int | None = None, catalogue: Catalogue = CATALOGUE) -> Result:
     """What the nominal model of measured data lacks.
 
     Args:
         *records: one record, or records of one chain and its gauges, which get one verdict.
         threads: of the compiled engine; all processors by default. The result does not depend on it.
+        catalogue: the effects that may be missing, see `sonicvacuum.plugins.catalogue`.
 
     Returns:
         `verdict` (named effects, probabilities, parameters, gap before and after, limits, next run) and all
@@ -53,7 +55,7 @@ def discover(*records: Record, threads: int | None = None) -> Result:
         InputError: for records that cannot be simulated or do not belong together.
     """
     clock = Clock()
-    found = investigate(together(records), threads or available_threads())
+    found = investigate(together(records, catalogue), threads or available_threads())
     clock.mark("search")
     forward = found.forward
     places = locate.locate(forward, found.null)
@@ -89,6 +91,7 @@ def discover(*records: Record, threads: int | None = None) -> Result:
         alarms=found.alarms,
         timing_s=clock.seconds(),
         simulations=forward.chains,
+        sources=verdict.sources(catalogue),
     )
     return Result(records[0], found, places, after, limits, result)
 

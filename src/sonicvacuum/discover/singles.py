@@ -12,7 +12,7 @@ from sonicvacuum.discover.forward import Forward
 from sonicvacuum.discover.hypothesis import Component, Hypothesis, variants
 from sonicvacuum.discover.refit import Fit, fit
 from sonicvacuum.discover.screen import Screen
-from sonicvacuum.effects import CATALOGUE, Effect, Setup
+from sonicvacuum.effects import Effect, Setup
 
 # Beyond this misfit of the nominal model (in χ²) its slopes may point the wrong way: whole ranges are
 # searched.
@@ -45,7 +45,8 @@ def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
     # Few scalars with large errors leave room for large departures, which slopes do not foresee.
     loose = nonlinear or (not traced and largest > CLEAR)
     steps = FIRST if loose else ITERATIONS
-    left = [e for e in CATALOGUE if e.id not in forward.experiment.excluded]
+    setup = setup_of(forward)
+    left = list(setup.catalogue.candidates(setup, forward.experiment.excluded))
     found: list[Candidate] = []
     best_gain = largest
     while left:
@@ -153,8 +154,7 @@ def _kept(effect, free, plan):
 
 def _tried(effect, free):
     """Whether trials of finite strength are starts of this set of parameters."""
-    names = [c.parameter.name for c in free]
-    return len(free) == 1 and (effect.places in secants.PLACES or names == ["mass_ratio"])
+    return len(free) == 1 and (effect.places in secants.PLACES or free[0].parameter.tried_at_once)
 
 
 def _from_screen(scores, effect, free):
@@ -184,7 +184,7 @@ def _start(c, direction, shape, size):
         return 1e-3 if c.kind in ("ratio", "linear") else c.low
     if c.kind in ("log", "inverse"):
         return float(np.log(max(abs(size), 1e-12)))
-    if p.name == "modulus_ratio":
+    if p.acts_like == "modulus":
         # Its slope is that of the modulus as a nuisance, which is log-normal.
         return float(size * p.scale / c.unit)
     if c.kind == "ratio":

@@ -10,13 +10,14 @@ from pathlib import Path
 
 import msgspec
 import numpy as np
-from msgspec import Struct
+from msgspec import UNSET, Struct, UnsetType
 
 from sonicvacuum.discover.degenerate import Limit
 from sonicvacuum.discover.heldout import HeldOut
 from sonicvacuum.discover.locate import Place
 from sonicvacuum.discover.refit import Fit
 from sonicvacuum.discover.rounds import Investigation
+from sonicvacuum.effects import Catalogue
 from sonicvacuum.files import replacing
 
 
@@ -67,6 +68,18 @@ class Next(_Part, kw_only=True):
     delta_chi2: float
 
 
+class Source(_Part, kw_only=True):
+    """Where a law that does not come with the project is from: name of its file or package, and the SHA-256
+    digest of its text.
+    """
+
+    name: str
+    sha256: str
+
+
+Sources = dict[str, Source] | UnsetType
+
+
 class Verdict(_Part, kw_only=True):
     """The verdict on one record, format 1.
 
@@ -87,6 +100,7 @@ class Verdict(_Part, kw_only=True):
         alarms: p-value of what each step leaves.
         timing_s: seconds by step.
         simulations: chains simulated.
+        sources: id → source of the effects of the user's own that were searched; absent without any.
     """
 
     format: int = 1
@@ -104,6 +118,7 @@ class Verdict(_Part, kw_only=True):
     alarms: dict[str, float]
     timing_s: dict[str, float]
     simulations: int
+    sources: Sources = UNSET
 
     @property
     def sees_nothing(self) -> bool:
@@ -121,6 +136,7 @@ class Model(_Part, kw_only=True):
         trigger_us: run → trigger shift.
         gain: gauge → gain over the stated one.
         modulus_ratio: bead material's modulus over the recorded one, as far as its stated error goes.
+        sources: id → source of those effects that are the user's own; absent without any.
     """
 
     format: int = 1
@@ -130,6 +146,13 @@ class Model(_Part, kw_only=True):
     trigger_us: dict[str, float]
     gain: dict[str, float]
     modulus_ratio: float
+    sources: Sources = UNSET
+
+
+def sources(catalogue: Catalogue, ids=None) -> Sources:
+    """Sources of the effects of the user's own, of all of them or of those with some ids."""
+    own = {e.id: e.source for e in catalogue if e.source and (ids is None or e.id in ids)}
+    return {id: Source(name=s.name, sha256=s.sha256) for id, s in own.items()} or UNSET
 
 
 def parameters(fit: Fit) -> dict[str, dict[str, Value]]:
@@ -174,6 +197,7 @@ def model(found: Investigation) -> Model:
         trigger_us={r.id: float(shift[layout.trigger(k)] * 1e6) for k, r in enumerate(e.runs)},
         gain={g.id: float(np.exp(shift[at])) for g, at in zip(e.gauges, layout.gains, strict=True)},
         modulus_ratio=float(np.exp(shift[layout.modulus])),
+        sources=sources(e.catalogue, fit.hypothesis.ids),
     )
 
 

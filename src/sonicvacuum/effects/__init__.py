@@ -32,7 +32,10 @@ F = K delta^{3/2} + b delta v. Write `deep_damping.py`:
 
     EFFECT = Effect(id="deep-damping", title="Deep damping", ..., change=change)
 
-with the whole header filled in, then add `deep_damping` to the import and to `CATALOGUE` below. The contract
+with the whole header filled in. A file of your own may be used at once: `sonicvacuum effects --effects
+deep_damping.py` checks it, `sonicvacuum discover ... --effects deep_damping.py` searches for it; a package
+offers it under the entry-point group `sonicvacuum.effects` (see `sonicvacuum.plugins`). To make it part of
+the project, put the file here and add `deep_damping` to the import and to `CATALOGUE` below. The contract
 tests run over the catalogue; they ask for one thing more, the law written a second time in
 `tests/effects/reference.py`. What needs no new force is shorter: change masses, stiffnesses, loads or sensors
 with `dataclasses.replace`, as `mass_defect.py`, `static_preload.py` and `sensor_gain.py` do. The order of the
@@ -63,48 +66,44 @@ from sonicvacuum.effects import (
     viscous_drag,
     wall_compliance,
 )
-from sonicvacuum.effects.base import Effect, Parameter, Setup
+from sonicvacuum.effects.base import Effect, Parameter, Setup, Source
+from sonicvacuum.effects.catalogue import Catalogue
 
-CATALOGUE: tuple[Effect, ...] = tuple(
-    module.EFFECT
-    for module in (
-        dynamic_modulus,
-        contact_exponent,
-        coating_thickness,
-        plastic_contact,
-        linear_dashpot,
-        kuwabara_kono,
-        tsuji,
-        hunt_crossley,
-        velocity_power,
-        relaxing_contact,
-        viscous_drag,
-        guide_friction,
-        static_preload,
-        gravity,
-        contact_gap,
-        mass_defect,
-        wall_compliance,
-        striker_error,
-        sensor_lowpass,
-        sensor_droop,
-        sensor_gain,
-        sensor_offset,
+CATALOGUE = Catalogue(
+    tuple(
+        module.EFFECT
+        for module in (
+            dynamic_modulus,
+            contact_exponent,
+            coating_thickness,
+            plastic_contact,
+            linear_dashpot,
+            kuwabara_kono,
+            tsuji,
+            hunt_crossley,
+            velocity_power,
+            relaxing_contact,
+            viscous_drag,
+            guide_friction,
+            static_preload,
+            gravity,
+            contact_gap,
+            mass_defect,
+            wall_compliance,
+            striker_error,
+            sensor_lowpass,
+            sensor_droop,
+            sensor_gain,
+            sensor_offset,
+        )
     )
 )
-IDS: tuple[str, ...] = tuple(e.id for e in CATALOGUE)
+IDS: tuple[str, ...] = CATALOGUE.ids
 
 
 def effect(id: str) -> Effect:
-    """The effect of that id.
-
-    Raises:
-        ValueError: for an id that the catalogue does not hold; the message lists those it does.
-    """
-    for one in CATALOGUE:
-        if one.id == id:
-            return one
-    raise ValueError(f"no effect is called {id!r}; the catalogue holds {', '.join(IDS)}")
+    """The effect of the project with that id; ValueError where there is none."""
+    return CATALOGUE.effect(id)
 
 
-__all__ = ["CATALOGUE", "IDS", "Effect", "Parameter", "Setup", "effect"]
+__all__ = ["CATALOGUE", "IDS", "Catalogue", "Effect", "Parameter", "Setup", "Source", "effect"]

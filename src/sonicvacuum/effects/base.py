@@ -10,12 +10,15 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from sonicvacuum.effects.catalogue import EMPTY, Catalogue
 from sonicvacuum.physics.chain import Chain
 from sonicvacuum.physics.laws import Term
 
 MICRO = 1e-6
 PLACES = (None, "bead", "contact", "sensor")
 PRIORS = ("log-uniform", "uniform", "log-normal", "normal")
+# What a record states with an error, and a parameter may do as well.
+NUISANCES = (None, "modulus", "speed", "gain")
 
 
 @dataclass(frozen=True)
@@ -25,10 +28,12 @@ class Setup:
     Attributes:
         chain: (lanes) chains.
         sensors: the gauges (`gauges.Gauge`); their electronics are floats or (lanes,) arrays.
+        catalogue: the effects that the setup may lack; empty where nothing is searched for.
     """
 
     chain: Chain
     sensors: tuple = ()
+    catalogue: Catalogue = EMPTY
 
 
 @dataclass(frozen=True)
@@ -47,6 +52,13 @@ class Parameter:
         scale: typical departure from `off`; typical value where `off` is None or infinite.
         help: one line.
         least, most: values outside [least, most] have no meaning and are refused.
+        acts_like: the nuisance of a record that this parameter, a ratio, moves exactly as: "modulus" of the
+            beads' material, "speed" of the striker, "gain" of the gauge where the effect sits; None for none.
+        least_strength: departure over `scale` below which the effect is not what it is called (a gap opens at
+            once), so that slopes are taken from there on; 0 where it sets in smoothly.
+        tried_at_once: whether slopes at off mislead, so that finite values are tried as well; so it always is
+            for effects at one bead or contact.
+        linear: whether a positive parameter that is off at 0 is searched evenly, not by its logarithm.
     """
 
     name: str
@@ -59,6 +71,10 @@ class Parameter:
     help: str
     least: float = -math.inf
     most: float = math.inf
+    acts_like: str | None = None
+    least_strength: float = 0.0
+    tried_at_once: bool = False
+    linear: bool = False
 
     @property
     def switches(self) -> bool:
@@ -95,6 +111,16 @@ class Parameter:
 
 
 @dataclass(frozen=True)
+class Source:
+    """Where an effect that does not come with the project is from: name of its file or package, and the
+    SHA-256 digest of the source text.
+    """
+
+    name: str
+    sha256: str
+
+
+@dataclass(frozen=True)
 class Effect:
     """One effect of the catalogue: the header that every effect fills in, and the change it makes.
 
@@ -115,6 +141,13 @@ class Effect:
         dissipative: whether it takes mechanical energy.
         change: (setup, **parameters) → setup; parameters arrive checked and are not all off.
         choices: (setup) → possible places, in order.
+        lacks: (setup) → what the setup lacks for the effect, a few words ("no coating is stated"), or None
+            where the effect may act; not given: it may act everywhere.
+        of_material: whether it belongs to the contact material, so that beads of another size have it too.
+        depends_on_orientation: whether its off value is the chain's recorded orientation, so that records
+            that hang differently cannot be asked about it together.
+        slow: whether its law costs several times as much as others, and is compiled only where it is needed.
+        source: where it is from, None for the effects of the project.
     """
 
     id: str
@@ -131,6 +164,11 @@ class Effect:
     change: Callable[..., Setup] = field(repr=False)
     places: str | None = None
     choices: Callable[[Setup], tuple[int, ...]] | None = field(default=None, repr=False)
+    lacks: Callable[[Setup], str | None] | None = field(default=None, repr=False)
+    of_material: bool = False
+    depends_on_orientation: bool = False
+    slow: bool = False
+    source: Source | None = None
 
     def parameter(self, name: str) -> Parameter:
         """The continuous parameter of that name (KeyError if there is none)."""
@@ -139,6 +177,12 @@ class Effect:
     def candidates(self, setup: Setup) -> tuple[int, ...]:
         """Places at which the effect can sit in this setup; empty for an effect without place."""
         return self.choices(setup) if self.choices else ()
+
+    def why_not(self, setup: Setup) -> str | None:
+        """Why the effect cannot act in this setup, in a few words; None where it can."""
+        if self.places and not self.candidates(setup):
+            return f"there is no {self.places} where it could sit"
+        return self.lacks(setup) if self.lacks else None
 
     def is_off(self, setup: Setup, **parameters) -> bool:
         """Whether every parameter that switches is at its off value in all lanes (absent ones are off)."""
@@ -232,6 +276,16 @@ def plain(value):
 def beads_of(setup: Setup) -> tuple[int, ...]:
     """All beads of the chain, 1 … beads."""
     return tuple(range(1, setup.chain.beads + 1))
+
+
+def no_beads(setup: Setup) -> str | None:
+    """What one ball on a wall lacks for effects that act on beads."""
+    return None if setup.chain.beads else "there are no beads"
+
+
+def no_gauges(setup: Setup) -> str | None:
+    """What a record without gauges lacks for effects on all of them."""
+    return None if setup.sensors else "there are no gauges"
 
 
 def reduced_mass(chain: Chain, mass: np.ndarray) -> np.ndarray:

@@ -90,6 +90,12 @@ def change(setup: Setup, layer_thickness_um) -> Setup:
     return add_term(setup, TERM, coefficients, thickness=np.multiply(layer_thickness_um, MICRO))
 
 
+def no_coating(setup: Setup) -> str | None:
+    """What solid beads lack."""
+    coated = any(np.isfinite(body.coating) for body in setup.chain.bodies.kinds)
+    return None if coated else "no coating is stated"
+
+
 EFFECT = Effect(
     id="coating-thickness",
     title="Bonded coating on its core",
@@ -121,4 +127,6 @@ EFFECT = Effect(
     when_not="solid beads; stiffening that does not depend on load: dynamic-modulus",
     dissipative=False,
     change=change,
+    lacks=no_coating,
+    of_material=True,
 )

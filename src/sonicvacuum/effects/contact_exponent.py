@@ -48,4 +48,6 @@ EFFECT = Effect(
     "small load: coating-thickness",
     dissipative=False,
     change=change,
+    of_material=True,
+    slow=True,
 )

@@ -17,7 +17,11 @@ EFFECT = Effect(
     equation="delta_j -> delta_j - gap at contact j, which bears no load at rest",
     energy="none of its own",
     reference="Lydon, Jayaprakash, Ngo, Starosvetsky, Vakakis & Daraio, Phys. Rev. E 88, 012206 (2013)",
-    parameters=(Parameter("gap_um", "um", 0.0, 1e-2, 100.0, "log-uniform", 1.0, "opening at rest", 0.0),),
+    parameters=(
+        Parameter(
+            "gap_um", "um", 0.0, 1e-2, 100.0, "log-uniform", 1.0, "opening at rest", 0.0, least_strength=1e-2
+        ),
+    ),
     places="contact",
     choices=beads_of,
     signature="everything behind the gap comes later by gap over bead speed; a reflected pulse in "

@@ -21,7 +21,16 @@ EFFECT = Effect(
     "Heterogeneous Materials (Springer, 2001), ch. 1",
     parameters=(
         Parameter(
-            "modulus_ratio", "1", 1.0, 0.1, 30.0, "log-uniform", 0.5, "modulus over handbook value", 1e-6
+            "modulus_ratio",
+            "1",
+            1.0,
+            0.1,
+            30.0,
+            "log-uniform",
+            0.5,
+            "modulus over handbook value",
+            1e-6,
+            acts_like="modulus",
         ),
     ),
     signature="speed as s^{1/3} at given force, forces as s^{2/5} at given striker; no decay, 1/6 "
@@ -31,4 +40,5 @@ EFFECT = Effect(
     "contact-exponent, coating-thickness, relaxing-contact",
     dissipative=False,
     change=change,
+    of_material=True,
 )

@@ -41,6 +41,7 @@ EFFECT = Effect(
             1.0,
             "cosine of the inclination to the vertical",
             0.0,
+            linear=True,
         ),
     ),
     signature="weak pulses speed up towards the bottom; oscillations in front of and behind them",
@@ -48,4 +49,5 @@ EFFECT = Effect(
     when_not="a preload that is the same everywhere: static-preload",
     dissipative=False,
     change=change,
+    depends_on_orientation=True,
 )

@@ -1,6 +1,6 @@
 """Dry friction of the beads on their holder."""
 
-from sonicvacuum.effects.base import Effect, Parameter, Setup, add_term
+from sonicvacuum.effects.base import Effect, Parameter, Setup, add_term, no_beads
 from sonicvacuum.physics.lanes import absolute, select
 from sonicvacuum.physics.laws import Term
 
@@ -43,4 +43,5 @@ EFFECT = Effect(
     when_not="losses that grow with amplitude; loss in proportion to velocity: viscous-drag",
     dissipative=True,
     change=change,
+    lacks=no_beads,
 )

@@ -38,4 +38,5 @@ EFFECT = Effect(
     when_not="restitution or decay that depends little on speed: tsuji, kuwabara-kono",
     dissipative=True,
     change=change,
+    of_material=True,
 )

@@ -40,4 +40,5 @@ EFFECT = Effect(
     when_not="loss independent of amplitude: tsuji, viscous-drag; delayed stiffness: relaxing-contact",
     dissipative=True,
     change=change,
+    of_material=True,
 )

@@ -40,4 +40,5 @@ EFFECT = Effect(
     when_not="loss per bead that grows with amplitude: kuwabara-kono, hunt-crossley, velocity-power",
     dissipative=True,
     change=change,
+    of_material=True,
 )

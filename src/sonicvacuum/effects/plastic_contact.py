@@ -63,4 +63,5 @@ EFFECT = Effect(
     "at every speed",
     dissipative=True,
     change=change,
+    of_material=True,
 )

@@ -64,4 +64,5 @@ EFFECT = Effect(
     when_not="stiffening without decay: dynamic-modulus; decay without stiffening: kuwabara-kono",
     dissipative=True,
     change=change,
+    of_material=True,
 )

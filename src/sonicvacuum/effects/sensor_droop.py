@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from sonicvacuum.effects.base import MICRO, Effect, Parameter, Setup, change_sensors, plain
+from sonicvacuum.effects.base import MICRO, Effect, Parameter, Setup, change_sensors, no_gauges, plain
 
 
 def change(setup: Setup, tau_us) -> Setup:
@@ -36,4 +36,5 @@ EFFECT = Effect(
     when_not="charge amplifiers with time constants far above the record",
     dissipative=False,
     change=change,
+    lacks=no_gauges,
 )

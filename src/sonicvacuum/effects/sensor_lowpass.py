@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from sonicvacuum.effects.base import MICRO, Effect, Parameter, Setup, change_sensors, plain
+from sonicvacuum.effects.base import MICRO, Effect, Parameter, Setup, change_sensors, no_gauges, plain
 
 
 def change(setup: Setup, tau_us) -> Setup:
@@ -31,4 +31,5 @@ EFFECT = Effect(
     when_not="widening that grows along the chain: dashpots",
     dissipative=False,
     change=change,
+    lacks=no_gauges,
 )

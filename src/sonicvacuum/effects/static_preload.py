@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from sonicvacuum.effects.base import Effect, Parameter, Setup
+from sonicvacuum.effects.base import Effect, Parameter, Setup, no_beads
 
 
 def change(setup: Setup, force_N) -> Setup:
@@ -29,4 +29,5 @@ EFFECT = Effect(
     when_not="preload that grows along the chain: gravity",
     dissipative=False,
     change=change,
+    lacks=no_beads,
 )

@@ -22,9 +22,29 @@ EFFECT = Effect(
     reference="conservation of momentum; no particular source",
     parameters=(
         Parameter(
-            "speed_ratio", "1", 1.0, 0.3, 3.0, "log-uniform", 0.05, "speed over the recorded one", 1e-3
+            "speed_ratio",
+            "1",
+            1.0,
+            0.3,
+            3.0,
+            "log-uniform",
+            0.05,
+            "speed over the recorded one",
+            1e-3,
+            acts_like="speed",
         ),
-        Parameter("mass_ratio", "1", 1.0, 0.2, 5.0, "log-uniform", 0.1, "mass over the recorded one", 1e-3),
+        Parameter(
+            "mass_ratio",
+            "1",
+            1.0,
+            0.2,
+            5.0,
+            "log-uniform",
+            0.1,
+            "mass over the recorded one",
+            1e-3,
+            tried_at_once=True,
+        ),
     ),
     signature="speed: all forces as v^{6/5}, all times as v^{-1/5}; mass: number and weight of the "
     "pulses in the train",

@@ -42,4 +42,5 @@ EFFECT = Effect(
     "amplitude: the other dashpots",
     dissipative=True,
     change=change,
+    of_material=True,
 )

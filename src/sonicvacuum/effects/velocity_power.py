@@ -41,4 +41,6 @@ EFFECT = Effect(
     when_not="few amplitudes: alpha is then free and linear-dashpot, kuwabara-kono explain the same",
     dissipative=True,
     change=change,
+    of_material=True,
+    slow=True,
 )

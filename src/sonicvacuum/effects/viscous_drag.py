@@ -1,6 +1,6 @@
 """Each bead is slowed by the medium or the holder in proportion to its velocity."""
 
-from sonicvacuum.effects.base import Effect, Parameter, Setup, add_term
+from sonicvacuum.effects.base import Effect, Parameter, Setup, add_term, no_beads
 from sonicvacuum.physics.laws import Term
 
 
@@ -38,4 +38,5 @@ EFFECT = Effect(
     "amplitude: tsuji",
     dissipative=True,
     change=change,
+    lacks=no_beads,
 )

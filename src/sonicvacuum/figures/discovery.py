@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
+from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.figures import disagreement, posterior
 from sonicvacuum.figures.style import BAND, DOUBLE, GREY, SINGLE, canvas, context, panel, save
 
@@ -19,13 +20,15 @@ BLUE, ORANGE, GREEN = "#0072B2", "#D55E00", "#009E73"
 _MOST = 8
 
 
-def draw(folder: Path) -> list[Path]:
+def draw(folder: Path, catalogue: Catalogue = CATALOGUE) -> list[Path]:
     """Draw all pictures that the tables in the folder give; the files written (SVG, each with its PNG).
+
+    The catalogue knows the effects that are named.
 
     Those of an earlier verdict that this one does not have are removed.
     """
     folder = Path(folder)
-    posterior.write_table(folder)
+    posterior.write_table(folder, catalogue)
     verdict = json.loads((folder / "verdict.json").read_text(encoding="utf-8"))
     pictures = {
         "where": lambda: disagreement.where(rows(folder / "where.csv")),

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from sonicvacuum.effects import effect
+from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.figures.style import BAND, DOUBLE, GREY, canvas, panel
 from sonicvacuum.files import replacing
 
@@ -21,7 +21,7 @@ NINETY = 1.645
 _HIGH = 24.0
 
 
-def write_table(folder: Path) -> Path:
+def write_table(folder: Path, catalogue: Catalogue = CATALOGUE) -> Path:
     """Write `parameters.csv` beside a verdict: one row for each continuous parameter; `off` empty without."""
     verdict = json.loads((folder / "verdict.json").read_text(encoding="utf-8"))
     path = folder / "parameters.csv"
@@ -29,9 +29,10 @@ def write_table(folder: Path) -> Path:
         table = csv.writer(stream, lineterminator="\n")
         table.writerow(COLUMNS)
         for name, given in verdict["parameters"].items():
+            one = catalogue.effect(name)
             for key, found in given.items():
-                if key != effect(name).places:
-                    table.writerow([name, key, *_row(effect(name).parameter(key), found)])
+                if key != one.places:
+                    table.writerow([name, key, *_row(one.parameter(key), found)])
     return path
 
 

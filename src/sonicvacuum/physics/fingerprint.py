@@ -4,12 +4,15 @@ import hashlib
 from functools import lru_cache
 from types import CodeType, FunctionType, ModuleType
 
+import numpy as np
+
 
 @lru_cache(maxsize=4096)
 def fingerprint(function: FunctionType) -> str:
     """Hexadecimal digest of a function's code, constants and everything of Python's that it calls.
 
-    Comments and places do not count. Objects of other kinds count by their `repr`.
+    Constants count wherever they stand, arrays by all their bytes, containers by what they hold, other
+    objects by their `repr`; comments and places do not.
     """
     digest = hashlib.sha256()
     _feed(digest, function, set())
@@ -29,6 +32,12 @@ def _feed(digest, value, seen):
             _feed(digest, constant, seen)
     elif isinstance(value, ModuleType):
         digest.update(value.__name__.encode())
+    elif isinstance(value, np.ndarray):
+        digest.update(f"array {value.dtype} {value.shape}".encode() + value.tobytes())
+    elif isinstance(value, tuple | list | dict):
+        digest.update(f"{type(value).__name__} {len(value)}".encode())
+        for part in value.items() if isinstance(value, dict) else value:
+            _feed(digest, part, seen)
     else:
         digest.update(f"{type(value).__name__} {value!r}".encode())
 
@@ -40,13 +49,17 @@ def _feed_function(digest, function, seen):
         _feed(digest, cell.cell_contents, seen)
     _feed(digest, (function.__defaults__, function.__kwdefaults__), seen)
     names = _names(code)
-    modules = [m for n in names if isinstance(m := function.__globals__.get(n), ModuleType)]
     for name in names:
         if name in function.__globals__:
             _feed(digest, function.__globals__[name], seen)
-        for module in modules:
-            if isinstance(called := getattr(module, name, None), FunctionType):
-                _feed(digest, called, seen)
+    modules = [m for n in names if isinstance(m := function.__globals__.get(n), ModuleType)]
+    for module in modules:
+        # Grows while it is read: what a name means in a module may be a module again.
+        for used in (getattr(module, n) for n in names if hasattr(module, n)):
+            if not isinstance(used, ModuleType):
+                _feed(digest, used, seen)
+            elif used not in modules:
+                modules.append(used)
 
 
 def _names(code):

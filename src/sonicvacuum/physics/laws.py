@@ -15,6 +15,7 @@ A contact never pulls: the sum is cut at zero, and is zero where delta <= 0. Eac
 number per contact (or body) and chain, worked out beforehand from the chain and the parameters.
 """
 
+import inspect
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -25,7 +26,8 @@ import numpy as np
 from sonicvacuum.physics.fingerprint import fingerprint
 from sonicvacuum.physics.lanes import power_3_2
 
-SLOTS = ("elastic", "factor", "path", "force", "memory", "body")
+# Slot → arguments of its formula besides the coefficients.
+SLOTS = {"elastic": 1, "factor": 1, "path": 3, "force": 3, "memory": 2, "body": 1}
 
 
 @dataclass(frozen=True)
@@ -55,6 +57,24 @@ class Term:
     def __post_init__(self):
         if self.slot not in SLOTS:
             raise ValueError(f"term {self.name}: slot is {self.slot!r}; use one of {', '.join(SLOTS)}")
+        for what, own in (("formula", SLOTS[self.slot]), ("growth", 2), ("start", 2), ("energy", 1)):
+            self._check_arguments(what, own)
+        if (self.growth is None) != (self.slot != "memory"):
+            raise ValueError(f"term {self.name}: slot {self.slot}: growth belongs to the slot memory alone")
+
+    def _check_arguments(self, what, own):
+        """Refuse a formula that does not take its slot's arguments and the coefficients."""
+        formula = getattr(self, what)
+        if formula is None:
+            return
+        wanted = own + self.coefficients
+        try:
+            inspect.signature(formula).bind(*[None] * wanted)
+        except TypeError:
+            raise ValueError(
+                f"term {self.name}: {what} {formula.__name__} must take {wanted} arguments: {own} of the "
+                f"slot {self.slot} and {self.coefficients} coefficients"
+            ) from None
 
     @cached_property
     def key(self) -> str:
@@ -81,7 +101,7 @@ def _place(term):
 
     Sums and products do not care but for rounding; of two path terms the second acts on the first.
     """
-    return SLOTS.index(term.slot), "" if term.slot == "path" else term.name
+    return list(SLOTS).index(term.slot), "" if term.slot == "path" else term.name
 
 
 @dataclass(frozen=True, eq=False)

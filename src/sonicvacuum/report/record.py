@@ -9,8 +9,9 @@ from pathlib import Path
 
 import msgspec
 
+from sonicvacuum.discover.compare import check_source
 from sonicvacuum.discover.verdict import Model, Verdict
-from sonicvacuum.effects import IDS, effect
+from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.files import InputError, read_text, replacing
 from sonicvacuum.report import inline, words
 from sonicvacuum.report.tables import number
@@ -34,9 +35,9 @@ PAGE = ("index.html", "parameters.csv", *(f"{name}.{kind}" for name in PICTURES 
 _PAIRS = 6
 
 
-def write_page(folder) -> Path:
+def write_page(folder, catalogue: Catalogue = CATALOGUE) -> Path:
     """Write `index.html` into a folder of discover; its path."""
-    found = section(folder)
+    found = section(folder, catalogue)
     text = inline.environment().get_template("discovery.html.j2").render(one=found)
     path = Path(folder) / "index.html"
     with replacing(path) as stream:
@@ -44,21 +45,24 @@ def write_page(folder) -> Path:
     return path
 
 
-def section(folder) -> dict:
-    """All that the template of a record needs.
+def section(folder, catalogue: Catalogue = CATALOGUE) -> dict:
+    """All that the template of a record needs; the catalogue knows the effects of the verdict.
 
     Raises:
-        InputError: where the folder does not hold what discover writes.
+        InputError: where the folder does not hold what discover writes, or names an effect whose file is
+            needed.
     """
     folder = Path(folder)
     verdict, model = _json(folder / "verdict.json", Verdict), _json(folder / "model.json", Model)
+    for name in verdict.parameters:
+        check_source(folder / "verdict.json", name, verdict.sources, catalogue)
     tables = {name: _rows(folder / f"{name}.csv") for name in ("where", "candidates", "gap", "limits")}
     name = verdict.record
     return {
         "name": name,
-        "headline": words.headline(verdict) + words.moved_modulus(verdict, model),
+        "headline": words.headline(verdict, catalogue) + words.moved_modulus(verdict, model),
         "where": words.where(verdict, tables["where"]),
-        "parameters": _parameters(verdict),
+        "parameters": _parameters(verdict, catalogue),
         "nuisances": words.nuisances(model),
         "alternatives": words.alternatives(verdict),
         "pairs": [r for r in tables["candidates"] if "+" in r["effects"]][:_PAIRS],
@@ -66,7 +70,7 @@ def section(folder) -> dict:
         "gap": words.gap(verdict),
         "runs": [r for r in tables["gap"] if not r["run"].startswith("round ")],
         "added": bool(words.effects_of(verdict)),
-        "limits": [_limit(r) for r in tables["limits"] if r["testable"] == "1"],
+        "limits": [_limit(r, catalogue) for r in tables["limits"] if r["testable"] == "1"],
         "not_testable": [n for n in verdict.not_testable if n not in verdict.named],
         "experiment": words.experiment(verdict.next_experiment, tables["where"]),
         "decided": words.decided(verdict),
@@ -97,11 +101,11 @@ def _pictures(folder, name):
     return found
 
 
-def _parameters(verdict):
+def _parameters(verdict, catalogue):
     """Rows of the table: what, value with its error, 90 % interval, range searched, off value."""
     rows = []
     for name, given in verdict.parameters.items():
-        one = effect(name)
+        one = catalogue.effect(name)
         for key, found in given.items():
             if key == one.places:
                 at = {"parameter": f"sits at {key}", "value": f"{found.value:g}"}
@@ -141,8 +145,9 @@ def _off(parameter):
     return "∞" if math.isinf(parameter.off) else f"{parameter.off:g}"
 
 
-def _limit(row):
-    p = effect(row["effect"]).parameter(row["parameter"]) if row["effect"] in IDS else None
+def _limit(row, catalogue):
+    known = row["effect"] in catalogue
+    p = catalogue.effect(row["effect"]).parameter(row["parameter"]) if known else None
     return {
         "effect": row["effect"],
         "parameter": row["parameter"],

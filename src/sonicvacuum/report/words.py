@@ -8,7 +8,7 @@ from collections import Counter
 
 from sonicvacuum.discover.locate import DISCOVERY_RATE
 from sonicvacuum.discover.verdict import Gap, Model, Next, Verdict
-from sonicvacuum.effects import effect
+from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.report.tables import number
 
 # Probability from which on each wording is used.
@@ -63,8 +63,8 @@ def effects_of(verdict: Verdict) -> list[str]:
     return [name for name in verdict.named if name != "unknown"]
 
 
-def headline(verdict: Verdict) -> str:
-    """What is missing, and how sure that is."""
+def headline(verdict: Verdict, catalogue: Catalogue = CATALOGUE) -> str:
+    """What is missing, and how sure that is; the catalogue knows what is named."""
     found, odds = effects_of(verdict), verdict.probabilities
     unknown = "unknown" in verdict.named
     if not found and not unknown:
@@ -75,7 +75,7 @@ def headline(verdict: Verdict) -> str:
             f"nor any pair that was tried, explains. That it is none of the single effects is "
             f"{in_words(odds.get('unknown', 0.0))}."
         )
-    told = [f"{effect(name).title} ({name}): {effect(name).missing}" for name in found]
+    told = [f"{e.title} ({e.id}): {e.missing}" for e in map(catalogue.effect, found)]
     if len(found) == 1 and verdict.confusable:
         text = _one_of(verdict, told[0])
     elif len(found) == 1:

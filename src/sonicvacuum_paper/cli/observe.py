@@ -3,7 +3,7 @@
 import click
 import numpy as np
 
-from sonicvacuum.cli import existing
+from sonicvacuum.cli import catalogue, existing, own_effects
 from sonicvacuum.cli.cards import read_card
 from sonicvacuum.files import replacing
 from sonicvacuum.outputs import check_apart
@@ -16,14 +16,15 @@ from sonicvacuum.outputs import check_apart
     "--signals", required=True, type=click.Path(dir_okay=False), help="Gauge readings (CSV) to write."
 )
 @click.option("--metrics", required=True, type=click.Path(dir_okay=False), help="Metrics (CSV) to write.")
-def observe(card, history, signals, metrics):
+@own_effects
+def observe(card, history, signals, metrics, own):
     """Read the gauges of a simulated CARD's HISTORY and measure the pulses."""
     from sonicvacuum import study
     from sonicvacuum_paper.metrics import card_rows
     from sonicvacuum_paper.rows import write_rows
 
     check_apart([signals, metrics], [card, history])
-    simulated = study.load(read_card(card), history)
+    simulated = study.load(read_card(card), history, catalogue(own))
     write_signals(simulated, signals)
     write_rows(card_rows(simulated), metrics)
 

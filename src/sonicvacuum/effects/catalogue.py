@@ -1,0 +1,77 @@
+"""A catalogue: effects in a fixed order, each found by its id.
+
+Catalogues are values: a longer one is made from a shorter one and handed to what uses it, so that two records
+of one process never share what was added for one of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from sonicvacuum.effects.base import Effect, Setup
+
+# Verdicts that are no effects.
+VERDICTS = ("none", "unknown")
+
+
+@dataclass(frozen=True)
+class Catalogue:
+    """Effects that a model may lack; their order is the order of reports and of ties."""
+
+    effects: tuple[Effect, ...] = ()
+
+    def __iter__(self) -> Iterator[Effect]:
+        return iter(self.effects)
+
+    def __len__(self) -> int:
+        return len(self.effects)
+
+    def __contains__(self, id: str) -> bool:
+        return id in self.ids
+
+    @property
+    def ids(self) -> tuple[str, ...]:
+        """Ids in order."""
+        return tuple(e.id for e in self.effects)
+
+    def effect(self, id: str) -> Effect:
+        """The effect of that id.
+
+        Raises:
+            ValueError: for an id that the catalogue does not hold; the message lists those it does.
+        """
+        for one in self.effects:
+            if one.id == id:
+                return one
+        raise ValueError(
+            f"no effect is called {id!r}; the catalogue holds {', '.join(self.ids)}; "
+            "an effect of your own needs its file, --effects FILE"
+        )
+
+    def extended(self, more: Iterable[Effect]) -> Catalogue:
+        """A catalogue with further effects behind these.
+
+        Raises:
+            ValueError: where an id is taken, by an effect or by a verdict.
+        """
+        result = self.effects
+        for one in more:
+            if one.id in (*VERDICTS, *(e.id for e in result)):
+                raise ValueError(f"the id {one.id!r} is taken; give your effect another id")
+            result = (*result, one)
+        return Catalogue(result)
+
+    def candidates(self, setup: Setup, without: Iterable[str] = ()) -> tuple[Effect, ...]:
+        """The effects that can act in a setup, but for the ids `without`."""
+        left = set(without)
+        return tuple(e for e in self.effects if e.id not in left and e.why_not(setup) is None)
+
+    def left_out(self, setup: Setup) -> dict[str, str]:
+        """Id → why, of the effects that cannot act in a setup."""
+        return {e.id: why for e in self.effects if (why := e.why_not(setup)) is not None}
+
+
+EMPTY = Catalogue()

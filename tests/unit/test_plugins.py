@@ -1,0 +1,177 @@
+"""Effects of the user's own: read from files, checked, tried, kept apart; and nobody else knows an id."""
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+import sonicvacuum
+from sonicvacuum import plugins
+from sonicvacuum.cli import main
+from sonicvacuum.cli.card import effects
+from sonicvacuum.effects import CATALOGUE, IDS, Catalogue, trial
+from sonicvacuum.files import InputError
+from sonicvacuum.physics.run import simulate
+
+LAW = Path(__file__).parents[1] / "discover" / "deep_damping.py"
+TEXT = LAW.read_text(encoding="utf-8")
+PACKAGE = Path(sonicvacuum.__file__).parent
+# Rooms outside the library: the paper's cases and the blind study name what they speak of.
+OUTSIDE = ("blind", "baselines", "paper")
+
+
+def written(folder, old="", new="", name="law.py"):
+    """The example's file with a change in it."""
+    assert old in TEXT
+    (folder / name).write_text(TEXT.replace(old, new, 1), encoding="utf-8")
+    return folder / name
+
+
+def test_no_id_stands_outside_its_own_file():
+    """Words of the language aside (gravity), no other module of the library names an effect."""
+    pattern = re.compile(rf"[\"']({'|'.join(IDS)})[\"']")
+    for path in sorted(PACKAGE.rglob("*.py")):
+        room, *_ = path.relative_to(PACKAGE).parts
+        if room in OUTSIDE:
+            continue
+        text = re.sub(r'""".*?"""', "", path.read_text(encoding="utf-8"), flags=re.DOTALL)
+        own = path.stem.replace("_", "-") if room == "effects" else None
+        # "gravity" is also a field of a chain, and an orientation's name on a page.
+        found = {m[1] for m in pattern.finditer(text)} - {own, "gravity"}
+        assert not found, f"{path}: {found}"
+
+
+def test_a_file_extends_the_catalogue_and_nothing_else():
+    known = plugins.catalogue([LAW])
+    assert known.ids == (*IDS, "deep-damping")
+    assert known.effects[:-1] == CATALOGUE.effects
+    assert known.effect("deep-damping").source.name == "deep_damping.py"
+    assert plugins.catalogue().ids == IDS
+
+
+def test_several_effects_come_from_one_file(tmp_path):
+    path = written(tmp_path, "EFFECT = Effect(", "ONE = Effect(")
+    more = "\nfrom dataclasses import replace\nEFFECTS = [ONE, replace(ONE, id='deeper')]\n"
+    path.write_text(path.read_text() + more)
+    assert [e.id for e in plugins.read(path)] == ["deep-damping", "deeper"]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("def change(setup", "def change(setup,,", r"law.py, line \d+: not Python"),
+        ('    energy="takes b delta v^2 per time and contact",\n', "", r"line \d+: .*missing.*'energy'"),
+        ("deep_force, 1)", "deep_force, 2)", r"line \d+: .*deep_force must take 5 arguments"),
+        ('"force", deep_force', '"push", deep_force', r"line \d+: .*slot is 'push'; use one of"),
+        ("import Term", "import Terms", r"line \d+: ImportError"),
+        ('id="deep-damping"', 'id="tsuji"', "'tsuji' is taken"),
+        ('id="deep-damping"', 'id="unknown"', "'unknown' is taken"),
+        ('id="deep-damping"', 'id="Deep Damping"', "id: use small letters"),
+        ('title="Deep damping"', 'title=""', "title: is ''"),
+        ('"log-uniform"', '"flat"', "prior is 'flat'; use one of"),
+        ("0.0, 1e2, 1e7", "0.0, 1e7, 1e2", "low below high"),
+        ("0.0, 1e2, 1e7", "None, 1e2, 1e7", "one needs an off value"),
+        (
+            "def change(setup, damping_kg_s_m)",
+            "def change(setup, b)",
+            r"change: must take \(setup, damping_kg",
+        ),
+        ("EFFECT = Effect(", "LAW = Effect(", "needs EFFECT = "),
+        ("return [damping]", "return [damping, damping]", "trial with damping_kg_s_m"),
+        ("return [damping]", "return [damping + 1e4]", "it must fade there"),
+        ("return damping * delta * rate", "return -1e12 * damping * rate", "do not stay finite"),
+        ("return damping * delta * rate", "return str(rate)", "cannot be compiled"),
+        ("return add_term(", "return id(", "trial with damping_kg_s_m"),
+    ],
+)
+def test_a_bad_file_is_refused_in_one_line(tmp_path, old, new, message):
+    path = written(tmp_path, old, new)
+    with pytest.raises(InputError, match=message) as error:
+        plugins.catalogue([path])
+    assert str(path) in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+def test_the_command_ends_with_two(tmp_path, monkeypatch, capsys):
+    path = written(tmp_path, "EFFECT = Effect(", "EFFECT = Effekt(")
+    monkeypatch.setattr("sys.argv", ["sonicvacuum", "effects", "--effects", str(path)])
+    with pytest.raises(SystemExit) as end:
+        main()
+    assert end.value.code == 2
+    assert "NameError" in capsys.readouterr().err
+
+
+def test_an_own_effect_is_listed_behind_the_others():
+    shown = CliRunner().invoke(effects, ["--effects", str(LAW)]).output.splitlines()
+    assert [line.split()[0] for line in shown] == [*IDS, "deep-damping"]
+
+
+def force(path):
+    """Largest force of the trial's chain with the law of a file, and the key of its compiled code."""
+    (one,) = plugins.read(path)
+    chain = one.apply(trial.sample(), damping_kg_s_m=1e5).chain
+    return simulate(chain, [4], 2e-4, 1e-6).force.max(), chain.actions[0].term.key
+
+
+def test_an_edited_file_never_runs_stale_code(tmp_path):
+    """Saved twice within one second, under one name and of one length."""
+    path = written(tmp_path, "damping * delta * rate", "1.0 * damping * delta * rate")
+    before, key = force(path)
+    path.write_text(path.read_text().replace("1.0 * damping", "0.5 * damping"))
+    after, other = force(path)
+    assert key != other
+    assert after > before  # half the damping leaves a larger force
+
+
+def installed(folder, monkeypatch, text):
+    """A package `laws` 1.2 whose module of a name of its own offers an effect, as pip would leave it."""
+    name = f"laws_of_{folder.name}"
+    (folder / f"{name}.py").write_text(text)
+    about = folder / "laws-1.2.dist-info"
+    about.mkdir()
+    (about / "METADATA").write_text("Metadata-Version: 2.1\nName: laws\nVersion: 1.2\n")
+    (about / "entry_points.txt").write_text(f"[{plugins.GROUP}]\ndeep = {name}:EFFECT\n")
+    monkeypatch.syspath_prepend(str(folder))
+
+
+def test_an_installed_package_may_offer_effects(tmp_path, monkeypatch):
+    installed(tmp_path, monkeypatch, TEXT)
+    known = plugins.catalogue()
+    assert known.ids == (*IDS, "deep-damping")
+    assert known.effect("deep-damping").source.name == "laws 1.2"
+
+
+def test_a_broken_package_is_named(tmp_path, monkeypatch):
+    installed(tmp_path, monkeypatch, "EFFECT = 1 / 0\n")
+    with pytest.raises(InputError, match=r"entry point deep = .*:EFFECT of laws 1.2: ZeroDivisionError"):
+        plugins.catalogue()
+
+
+def test_a_catalogue_is_never_changed():
+    one = CATALOGUE.effect("tsuji")
+    longer = CATALOGUE.extended([replace(one, id="other")])
+    assert "other" in longer
+    assert "other" not in CATALOGUE
+    with pytest.raises(ValueError, match="'tsuji' is taken"):
+        longer.extended([one])
+
+
+@pytest.mark.parametrize("one", CATALOGUE, ids=IDS)
+def test_the_catalogue_passes_the_trial_of_own_effects(one):
+    trial.check(one)
+
+
+def test_effects_are_no_candidates_where_they_cannot_act():
+    chain, ball = trial.sample(), trial.sample()
+    ball = replace(ball, sensors=(), chain=replace(ball.chain, beads=0))
+    assert CATALOGUE.left_out(chain) == {"coating-thickness": "no coating is stated"}
+    assert CATALOGUE.left_out(trial.sample(coated=True)) == {}
+    without = CATALOGUE.left_out(ball)
+    assert without["contact-gap"] == "there is no contact where it could sit"
+    assert without["viscous-drag"] == "there are no beads"
+    assert without["sensor-droop"] == "there are no gauges"
+    left = [e.id for e in CATALOGUE.candidates(ball, without=("tsuji",))]
+    assert left == [i for i in IDS if i not in {*without, "tsuji"}]
+    assert Catalogue().candidates(chain) == ()
