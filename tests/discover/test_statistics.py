@@ -45,36 +45,6 @@ def test_correlation_of_neighbours_is_found():
     assert lag_one(noise) == pytest.approx(0.6, abs=0.03)  # five standard errors of √(1 − ρ²)/√n
 
 
-def linear_problem(runs=3, size=40, free=1, nuisances=4, seed=3):
-    """A random linear model with one parameter and some nuisances, as normal equations at zero."""
-    rng = np.random.default_rng(np.random.SeedSequence(seed))
-    columns = rng.normal(size=(runs, size, free + nuisances))
-    data = columns @ np.r_[0.8, rng.normal(size=nuisances)] + rng.normal(size=(runs, size))
-    normal = Normal(
-        np.zeros((1, free)),
-        np.zeros((1, nuisances)),
-        np.einsum("rs,rs->r", data, data)[:, None],
-        np.einsum("rsn,rs->rn", columns, data)[:, None],
-        np.einsum("rsn,rsm->rnm", columns, columns)[:, None],
-    )
-    return columns, data, normal
-
-
-def test_leaving_a_run_out_is_what_a_fit_without_it_leaves():
-    columns, data, normal = linear_problem(nuisances=1)
-    # Without nuisance data of its own the run left out keeps what the others say: make the nuisance's column
-    # zero there.
-    columns[0, :, 1] = 0.0
-    normal.gradient[0, 0, 1] = 0.0
-    normal.hessian[0, 0, 1, :] = normal.hessian[0, 0, :, 1] = 0.0
-    others = np.concatenate([columns[1], columns[2], [[0.0, 1.0]]])
-    known = np.r_[data[1], data[2], 0.0]
-    solved = np.linalg.lstsq(others, known, rcond=None)[0]
-    expected = np.sum((data[0] - columns[0] @ solved) ** 2)
-    found = heldout.held_out(Fit(Hypothesis(), normal), np.array([40, 40, 40]))
-    assert found.chi2[0] == pytest.approx(expected, rel=1e-9)  # algebra, rounding only
-
-
 def test_a_run_that_alone_shows_an_effect_is_not_predicted_by_the_others(setup):
     """Slope 10 in the first run, 0.1 in the second: without the first, the departure is below its error."""
     drag = effect("viscous-drag")
@@ -92,12 +62,6 @@ def test_a_run_that_alone_shows_an_effect_is_not_predicted_by_the_others(setup):
     nominal = heldout.HeldOut(np.array([150.0, 40.01]), np.array([50, 40]))
     found = heldout.held_out(Fit(hypothesis, normal), nominal.size, nominal)
     assert found.chi2 == pytest.approx([150.0, 40.0], abs=1e-9)  # the nominal model's, the fit's own
-
-
-def test_marquardt_and_linear_algebra_agree_on_the_objective():
-    _, _, normal = linear_problem()
-    assert normal.objective == pytest.approx(normal.chi2.sum())
-    assert normal.weighted(np.array([3.0])) == pytest.approx(normal.chi2.sum())
 
 
 @given(st.floats(1e-12, 0.3), st.floats(1e-12, 0.3))

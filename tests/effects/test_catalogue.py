@@ -62,10 +62,6 @@ def test_the_header_is_complete_and_closed(one):
     assert one.places in KINDS_OF_PLACE
     assert (one.places is None) == (one.choices is None)
     assert any(p.switches for p in one.parameters)
-    with pytest.raises(dataclasses.FrozenInstanceError):
-        one.title = "another"
-    with pytest.raises(TypeError, match="remark"):
-        dataclasses.replace(one, remark="no such field")
 
 
 @every_effect

@@ -1,0 +1,270 @@
+"""Statistics of inference against closed forms: linear models, Gaussian noise, Gaussian priors."""
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from linear_models import Imagined, Linear, drawn, of_drag, screened
+from scipy import integrate, stats
+
+from sonicvacuum.discover import calibration, degenerate, evidence, heldout, next_experiment, rounds
+from sonicvacuum.discover.calibration import Calibration
+from sonicvacuum.discover.directions import Direction
+from sonicvacuum.discover.evidence import Candidate
+from sonicvacuum.discover.experiment import Experiment, Gauge, RunData
+from sonicvacuum.discover.hypothesis import Hypothesis
+from sonicvacuum.discover.problem import noise
+from sonicvacuum.records import Record, Signals
+
+
+def test_the_normal_equations_lead_to_the_least_squares_solution_from_anywhere():
+    model = drawn()
+    at = np.random.default_rng(np.random.SeedSequence(5)).normal(size=5)
+    normal = model.normal(at)
+    gradient, hessian = normal.total()
+    best = model.solved(range(3))
+    np.testing.assert_allclose(at + np.linalg.solve(hessian[0], gradient[0]), best, rtol=1e-9)  # rounding
+    left = model.data - model.columns @ at
+    assert normal.objective[0] == pytest.approx(np.sum(left**2) + np.sum(at[1:] ** 2), rel=1e-12)
+    assert normal.weighted(np.array([3.0]))[0] == pytest.approx(np.sum(left**2) + 3.0 * np.sum(at[1:] ** 2))
+
+
+# --- evidence
+
+
+@pytest.mark.parametrize("two_sided", [False, True])
+@pytest.mark.parametrize("z", [6.0, 12.0, 30.0])
+def test_evidence_of_a_strength_is_the_integral_over_its_prior(z, two_sided):
+    """Likelihood exp(−(d − z)²/2) of a strength d in standard errors, prior flat in log |d| from 1 to 100."""
+    span = math.log(evidence.STRONG / evidence.WEAK) * (2.0 if two_sided else 1.0)
+
+    def integrand(d):
+        return math.exp(-0.5 * (d - z) ** 2) / (d * span)
+
+    exact, _ = integrate.quad(integrand, evidence.WEAK, evidence.STRONG, points=[z], limit=200)
+    # Laplace's approximation takes the prior as flat over the peak: its next term is 1/z².
+    assert evidence.occam_strength(z * z, two_sided) == pytest.approx(math.log(exact), abs=1.5 / z**2)
+
+
+def test_evidence_of_a_gaussian_shape_is_exact():
+    """A flat prior over 4 whose peak is Gaussian with σ = 0.1: the share √(2π) σ/4."""
+    c = SimpleNamespace(low=-2.0, high=2.0, two_sided=True, parameter=SimpleNamespace(switches=False))
+    fit = SimpleNamespace(hypothesis=SimpleNamespace(coordinates=(c,)), sigma=np.array([0.1]))
+    exact, _ = integrate.quad(lambda x: math.exp(-0.5 * (x / 0.1) ** 2) / 4.0, -2.0, 2.0, points=[0.0])
+    assert evidence.log_bayes(fit, 50.0) == pytest.approx(25.0 + math.log(exact), abs=1e-9)  # both exact
+
+
+def test_the_bayes_factor_of_an_effect_holds_gain_and_occam_factor(setup):
+    model = drawn(free=1, nuisances=0, strength=0.8)
+    one, null = model.fit(of_drag(setup)), float(np.sum(model.data**2))
+    z2 = null - one.objective
+    column = model.columns[..., 0].ravel()
+    assert z2 == pytest.approx((column @ model.data.ravel()) ** 2 / (column @ column), rel=1e-9)  # projection
+    expected = 0.5 * z2 + evidence.occam_strength(z2, False)
+    assert evidence.log_bayes(one, z2) == pytest.approx(expected, rel=1e-12)
+    assert evidence.log_bayes(one, z2) < 0.5 * z2 - 2.0  # the factor is e^−2 and less beyond d′ of 5
+
+
+# --- probabilities
+
+
+def candidates(**log_bayes):
+    """Candidates with these log Bayes factors; underscores stand for hyphens."""
+    return [Candidate(k.replace("_", "-"), None, 2.0 * v, v) for k, v in log_bayes.items()]
+
+
+def test_probabilities_without_calibration_are_bayes_theorem():
+    found = evidence.probabilities(candidates(tsuji=3.0, gravity=1.0), 1.0, Calibration())
+    each = (1.0 - evidence.PRIOR_NONE - evidence.PRIOR_UNKNOWN) / 22
+    weights = {"none": 0.3, "tsuji": each * math.exp(3.0), "gravity": each * math.exp(1.0)}
+    for a in weights:
+        for b in weights:
+            assert found[a] / found[b] == pytest.approx(weights[a] / weights[b], rel=1e-12)
+    assert sum(found.values()) == pytest.approx(1.0, abs=1e-12)
+
+
+def test_tempering_takes_log_odds_in_proportion():
+    """And the package's own calibration does, which was found on the training study and is no identity."""
+    own = calibration.of_package()
+    assert own.cases > 100
+    assert abs(own.temper - 1.0) > 0.01
+    for temper, given in ((0.5, Calibration(temper=0.5)), (own.temper, None)):
+        found = evidence.probabilities(candidates(tsuji=9.0, gravity=3.0), 1.0, given)
+        assert math.log(found["tsuji"] / found["gravity"]) == pytest.approx(temper * 6.0, rel=1e-9)
+
+
+def test_prior_odds_of_a_user_multiply_the_usual_prior():
+    both = candidates(tsuji=3.0, gravity=3.0)
+    found = evidence.probabilities(both, 1.0, Calibration(), {"tsuji": 10.0})
+    assert found["tsuji"] / found["gravity"] == pytest.approx(10.0, rel=1e-9)
+    assert "gravity" not in evidence.probabilities(both, 1.0, Calibration(), {"gravity": 0.0})
+
+
+def test_an_effect_of_ones_own_has_the_usual_prior_and_stands_last():
+    found = evidence.probabilities(candidates(my_law=3.0, tsuji=3.0), 1.0, Calibration())
+    assert found["my-law"] == pytest.approx(found["tsuji"], rel=1e-12)
+    assert list(found) == ["none", "unknown", "tsuji", "my-law"]
+
+
+# --- thresholds
+
+
+def test_the_threshold_lets_pure_noise_pass_once_in_a_hundred():
+    """Twenty orthogonal two-sided directions: P(max z² < t) = (1 − p)^20 with p of a χ² of one degree."""
+    directions = tuple(Direction(f"e{k}", "s", two_sided=True) for k in range(20))
+    seen = screened(np.eye(20), np.zeros(20), directions)
+    passed = 1.0 - stats.chi2.cdf(seen.threshold(rounds.FALSE_ALARM), 1) ** 20
+    assert passed == pytest.approx(0.01, abs=0.0065)  # five standard errors of 60 among 6000 draws
+
+
+@pytest.mark.parametrize(("p", "named"), [(5e-4, ["unknown"]), (2e-3, [])])
+def test_a_misfit_without_a_name_is_called_unknown_below_one_in_a_thousand(monkeypatch, p, named):
+    monkeypatch.setattr(rounds.unknown, "alarm", lambda forward, fit: SimpleNamespace(p=p))
+    assert rounds._nothing(None, None).named == named
+
+
+# --- limits
+
+
+def limit(effect, parameter, scale, two_sided, setup, seed=4):
+    """The limit of one effect, with estimate and error of its strength."""
+    rng = np.random.default_rng(np.random.SeedSequence(seed))
+    column, data = rng.normal(size=(1, 60)), rng.normal(size=60)
+    data += 2.0 * column[0]
+    (one,) = degenerate.limits(
+        screened(column, data, (Direction(effect, parameter, two_sided=two_sided, unit=scale),)), setup
+    )
+    size = np.linalg.norm(column)
+    return one, float(column[0] @ data / size**2), 1.0 / size
+
+
+def test_a_one_sided_limit_is_the_gaussian_one(setup):
+    """Estimate + 1.645 σ, the 95 % quantile of a Gaussian, times the typical departure of 200 per s."""
+    one, estimate, sigma = limit("viscous-drag", "rate_per_s", 200.0, False, setup)
+    expected = 200.0 * (estimate + stats.norm.ppf(0.95) * sigma)
+    assert one.value == pytest.approx(expected, rel=1e-4)  # 1.645 has four digits
+    assert one.estimate == pytest.approx(200.0 * estimate, rel=1e-9)
+
+
+def test_a_two_sided_limit_is_the_gaussian_one(setup):
+    one, estimate, sigma = limit("dynamic-modulus", "modulus_ratio", 0.5, True, setup)
+    expected = 1.0 + 0.5 * (estimate + stats.norm.ppf(0.975) * sigma)
+    assert one.value == pytest.approx(expected, rel=1e-4)  # 1.96 has three digits
+
+
+# --- runs held out
+
+
+def left_out(model: Linear, run: int) -> float:
+    """χ² of a run by explicit fits: without it; then with it, the parameters held, nuisances following."""
+    free, others = model.free, [k for k in range(len(model.data)) if k != run]
+    parameters = model.solved(others)[:free]
+    rest = Linear(model.columns[..., free:], model.data - model.columns[..., :free] @ parameters, 0)
+    nuisances = rest.solved(range(len(model.data)))
+    return float(np.sum((rest.data[run] - rest.columns[run] @ nuisances) ** 2))
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_held_out_runs_are_what_explicit_refits_leave(setup, seed):
+    model = drawn(seed=seed)
+    found = heldout.held_out(model.fit(of_drag(setup)), np.full(3, 40))
+    assert found.chi2 == pytest.approx([left_out(model, run) for run in range(3)], rel=1e-9)  # algebra
+
+
+def evidence_of(model: Linear, runs, centre, width) -> float:
+    """Log density of the data of some runs, parameters having the prior N(centre, width²)."""
+    rows, known = np.concatenate(model.columns[runs]), np.concatenate(model.data[runs])
+    spread = np.r_[np.square(width), np.ones(rows.shape[1] - len(width))]
+    mean = rows[:, : len(width)] @ centre
+    return float(stats.multivariate_normal.logpdf(known, mean, np.eye(len(rows)) + rows * spread @ rows.T))
+
+
+def test_the_predictive_density_is_that_of_the_gaussian_model(setup):
+    """log p(run | others) = log p(all) − log p(others), but for the constant of the run's 40 data."""
+    model = drawn()
+    fit = model.fit(of_drag(setup))
+    centre, width = fit.u, heldout._width(fit)
+    whole = evidence_of(model, [0, 1, 2], centre, width)
+    exact = [whole - evidence_of(model, [k for k in range(3) if k != run], centre, width) for run in range(3)]
+    found = heldout.predictive(fit) - 20.0 * math.log(2.0 * math.pi)
+    assert found == pytest.approx(exact, rel=1e-9)  # two ways of one algebra
+
+
+def contradicting(sign: float) -> Linear:
+    """Two runs that show an effect of one size, with the same sign or with opposite ones."""
+    rng = np.random.default_rng(np.random.SeedSequence(8))
+    columns = rng.normal(size=(2, 50, 1))
+    data = columns[..., 0] * np.array([[1.0], [sign]]) + rng.normal(size=(2, 50))
+    return Linear(columns, data, 1)
+
+
+def test_what_one_run_alone_supports_predicts_no_better(setup):
+    """A free parameter that one run wants positive and the other negative predicts neither."""
+    agreed = {}
+    for sign in (1.0, -1.0):
+        model = contradicting(sign)
+        null = Linear(model.columns[..., :0], model.data, 0).fit(Hypothesis())
+        agreed[sign] = heldout.better(null, model.fit(of_drag(setup)))
+    assert agreed == {1.0: True, -1.0: False}
+
+
+# --- a further run
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_separation_is_the_expected_misfit_in_closed_form(setup, seed):
+    """missᵀ (1 + A P Aᵀ)⁻¹ miss with P what the data at hand leave of the rival and of shared nuisances."""
+    rng = np.random.default_rng(np.random.SeedSequence(seed))
+    gauges, samples = 2, 30
+    layout_columns = 1 + 3 + gauges  # parameter; modulus, speed, trigger, gains
+    old = drawn(runs=1, nuisances=2 + gauges + 1, seed=seed)
+    rival, best = old.fit(of_drag(setup)), drawn(runs=1, free=0, nuisances=5, seed=seed).fit(Hypothesis())
+    slopes, miss = rng.normal(size=(layout_columns, samples)), 3.0 * rng.normal(size=samples)
+    new = Imagined({"viscous-drag": np.vstack([np.zeros(samples), slopes]), "": miss[None]}, gauges)
+    found = next_experiment.separation(new, new, best, rival)
+    known = np.linalg.inv(rival.normal.total()[1][0])
+    # Columns: parameter, modulus, gains as the old data leave them; speed and trigger of the new run afresh.
+    # Unknowns of the old fit: parameter, speed, trigger, gains, modulus.
+    shared, where = [0, 1, 4, 5], [0, 5, 3, 4]
+    spread = np.eye(layout_columns)
+    spread[np.ix_(shared, shared)] = known[np.ix_(where, where)]
+    exact = miss @ np.linalg.solve(np.eye(samples) + slopes.T @ spread @ slopes, miss)
+    assert found == pytest.approx(exact, rel=1e-9)  # Woodbury's identity
+    assert 0.0 < found < miss @ miss
+
+
+# --- noise
+
+
+def correlated(rho: float, sigma: float, shape, seed=6) -> np.ndarray:
+    """Stationary AR(1) noise along the last axis."""
+    white = np.random.default_rng(np.random.SeedSequence(seed)).normal(size=shape)
+    result = white.copy()
+    for k in range(1, shape[-1]):
+        result[..., k] = rho * result[..., k - 1] + math.sqrt(1.0 - rho**2) * white[..., k]
+    return sigma * result
+
+
+def test_whitening_turns_the_covariance_of_correlated_noise_into_unity():
+    rho, sigma, count = 0.7, 0.3, 25
+    run = RunData("r", 1e-6 * np.arange(count), np.zeros((1, count)))
+    one = Experiment(
+        *("e", (run,), (), (Gauge("g", "wall"),), np.array([sigma]), np.array([rho])),
+        *(np.zeros(1), 0.0, 0.0, 1e-3),
+    )
+    matrix = one.whiten(0, np.eye(count)[:, None], np.zeros((count, 0))).T
+    lags = np.abs(np.subtract.outer(np.arange(count), np.arange(count)))
+    covariance = sigma**2 * rho**lags
+    np.testing.assert_allclose(matrix @ covariance @ matrix.T, np.eye(count), atol=1e-12)  # rounding
+
+
+@pytest.mark.parametrize("rho", [0.0, 0.6])
+def test_correlation_of_the_quiet_stretch_is_taken(empty, rho):
+    signals = {}
+    for k, (run, given) in enumerate(empty.signals.items()):
+        drawn_ = correlated(rho, 0.02, (len(given.readings), len(given.time_s)), seed=k)
+        signals[run] = Signals(given.time_s, dict(zip(given.readings, drawn_, strict=True)))
+    _, correlation = noise((Record(empty.block, signals, "noise"),))
+    # Two runs of three gauges with 490 quiet samples each: four standard errors of √(1 − ρ²)/√2940.
+    assert correlation == pytest.approx(np.full(3, rho), abs=0.075)
