@@ -10,9 +10,9 @@ from sonicvacuum import config, study
 from sonicvacuum.card import ModelBlock, load
 from sonicvacuum.cli.card import card as card_command
 from sonicvacuum.cli.simulate import simulate
-from sonicvacuum.discover.extended import OF_MATERIAL, extended
+from sonicvacuum.discover.extended import extended
 from sonicvacuum.discover.verdict import Model
-from sonicvacuum.effects import CATALOGUE
+from sonicvacuum.effects import CATALOGUE, trial
 from sonicvacuum.files import InputError
 
 
@@ -80,9 +80,14 @@ def test_the_lossless_twin_keeps_what_takes_no_energy(base):
     assert list(found.effects) == ["mass-defect", "static-preload"]
 
 
-def test_effects_of_the_material_are_in_the_catalogue_and_sit_nowhere():
-    known = {e.id: e for e in CATALOGUE}
-    assert all(known[name].places is None for name in OF_MATERIAL)
+def test_effects_of_the_material_sit_nowhere_and_touch_no_gauge():
+    of_material = [e for e in CATALOGUE if e.of_material]
+    assert {e.places for e in of_material} == {None}
+    assert len(of_material) == 10
+    setup = trial.sample(coated=True)
+    for one in of_material:
+        given = {p.name: p.at(1.0, setup) for p in one.parameters}
+        assert one.apply(setup, **given).sensors is setup.sensors
 
 
 def test_every_case_has_a_named_variant_of_a_known_record(cases):
