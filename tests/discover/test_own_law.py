@@ -1,4 +1,4 @@
-"""A law of the user's own from its file to verdict.json, model.json, a score on a new run and a simulation."""
+"""A law of the user's own, from its file to verdict.json, model.json and its score on a further run."""
 
 import json
 from pathlib import Path
