@@ -8,7 +8,8 @@ from click.testing import CliRunner
 from made_records import made
 
 from sonicvacuum import plugins, records
-from sonicvacuum.cli.discover import compare, discover
+from sonicvacuum.cli.compare import compare
+from sonicvacuum.cli.discover import discover
 from sonicvacuum.files import InputError
 
 LAW = Path(__file__).with_name("deep_damping.py")
