@@ -1,13 +1,11 @@
 """What the tests of inference share: one setup, and records that are made once."""
 
 import pytest
-from made_records import made
+from made_records import DAMPING, made
 
 from sonicvacuum.discover import session, singles
 from sonicvacuum.discover.forward import Forward
 from sonicvacuum.discover.problem import experiment
-
-DAMPING = 0.3
 
 
 @pytest.fixture(scope="session")

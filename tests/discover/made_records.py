@@ -14,6 +14,8 @@ from sonicvacuum.records import Record, Signals
 from sonicvacuum.records.reader import parse
 
 SIGMA = 0.02
+# us, of the contacts in the record with hidden Kuwabara–Kono damping.
+DAMPING = 0.3
 BEADS = 10
 
 

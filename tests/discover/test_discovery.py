@@ -6,7 +6,7 @@ import msgspec
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from made_records import made
+from made_records import DAMPING, made
 from scipy.optimize import least_squares
 
 from sonicvacuum import records
@@ -55,12 +55,11 @@ def test_a_direction_like_a_nuisance_keeps_what_the_prior_leaves(empty, setup):
 
 def test_hidden_damping_is_named_and_measured(verdict):
     v = verdict.verdict
-    family = {"kuwabara-kono", *(name for names in v.confusable for name in names)}
-    assert set(v.named) <= family
-    assert "kuwabara-kono" in family
-    kuwabara = next(c for c in verdict.found.candidates if c.effect == "kuwabara-kono")
-    value, sigma = float(np.exp(kuwabara.fit.u[0])), kuwabara.fit.sigma[0]
-    assert abs(np.log(value / 0.3)) < 4.0 * sigma
+    assert v.named == ["kuwabara-kono"]
+    assert max(v.probabilities, key=v.probabilities.get) == "kuwabara-kono"
+    found = v.parameters["kuwabara-kono"]["time_us"]
+    assert abs(found.value - DAMPING) < 4.0 * found.sigma
+    assert found.sigma < 0.2 * DAMPING  # it is measured, not merely allowed
     assert v.gap.fitted.after == pytest.approx(1.0, abs=4.0 * np.sqrt(2.0 / verdict.found.sizes.sum()))
     assert v.gap.held_out.after < v.gap.held_out.before
     assert v.where

@@ -19,7 +19,7 @@ from sonicvacuum.physics.run import simulate
 _ID = re.compile(r"[a-z][a-z0-9]*(-[a-z0-9]+)*")
 # The lanes of the trial, in typical departures: off, hardly there, typical.
 STRENGTHS = (0.0, 1e-6, 1.0)
-# What is hardly there may change forces by so much of the largest one.
+# What is off or hardly there may change forces by so much of the largest one.
 FAINT = 1e-3
 DURATION, INTERVAL = 2e-4, 1e-6
 
@@ -115,6 +115,7 @@ def _try(effect):
     setup = next((s for s in (sample(), sample(coated=True)) if effect.why_not(s) is None), None)
     if setup is None:
         return
+    nominal = _simulated(setup.chain)
     for p in (p for p in effect.parameters if p.switches):
         try:
             force = _forces(effect, p, setup)
@@ -126,7 +127,7 @@ def _try(effect):
         except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
             told = " ".join(str(error).split())
             raise ValueError(f"trial with {p.name}: {type(error).__name__}: {told}") from None
-        faint = np.abs(force[..., 1] - force[..., 0]).max() / np.abs(force[..., 0]).max()
+        faint = np.abs(force[..., :-1] - nominal).max() / np.abs(nominal).max()
         _need(
             faint < FAINT,
             f"{p.name}: next to its off value forces change by {faint:.2g} of their peak; it must fade there",
@@ -142,4 +143,9 @@ def _forces(effect, p, setup):
     if not isinstance(changed, Setup):
         raise TypeError(f"change returns {type(changed).__name__}; return the changed setup")
     chain = changed.chain if changed.chain.lanes == 3 else changed.chain.take(np.zeros(3, dtype=int))
+    return _simulated(chain)
+
+
+def _simulated(chain):
+    """(samples, contacts, lanes) forces of all contacts."""
     return simulate(chain, range(chain.beads + 1), DURATION, INTERVAL).force
