@@ -7,13 +7,14 @@ message before a search stumbles over it.
 import inspect
 import math
 import re
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numba.core.errors import NumbaError
 
 from sonicvacuum.effects.base import NUISANCES, PLACES, PRIORS, Effect, Parameter, Setup
-from sonicvacuum.physics.chain import Chain, Elastic
+from sonicvacuum.physics.bodies import Body, Elastic
+from sonicvacuum.physics.chain import Chain
 from sonicvacuum.physics.run import simulate
 
 _ID = re.compile(r"[a-z][a-z0-9]*(-[a-z0-9]+)*")
@@ -105,9 +106,10 @@ def _places(effect):
 def sample(coated: bool = False) -> Setup:
     """A short horizontal chain with a gauge in a bead and one at the wall."""
     soft, hard = Elastic("soft", 3e9, 0.4), Elastic("hard", 2e11, 0.3)
-    chain = Chain(4, soft, hard, hard, 2.5e-3, math.inf, 4.5e-4, 4.5e-4, 0.5)
+    body = Body(soft, 4.5e-4, 2.5e-3, coating=5e-5 if coated else math.inf)
+    chain = Chain(4, body, hard, hard, math.inf, 4.5e-4, 0.5)
     gauges = (_Gauge("inside", "embedded", 2), _Gauge("wall", "wall", None))
-    return Setup(replace(chain, coating=5e-5) if coated else chain, gauges)
+    return Setup(chain, gauges)
 
 
 def _try(effect):
