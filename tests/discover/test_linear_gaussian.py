@@ -12,9 +12,10 @@ from sonicvacuum.discover import calibration, degenerate, evidence, heldout, nex
 from sonicvacuum.discover.calibration import Calibration
 from sonicvacuum.discover.directions import Direction
 from sonicvacuum.discover.evidence import Candidate
-from sonicvacuum.discover.experiment import Experiment, Gauge, RunData
+from sonicvacuum.discover.experiment import Experiment, RunData
 from sonicvacuum.discover.hypothesis import Hypothesis
 from sonicvacuum.discover.problem import noise
+from sonicvacuum.gauges import Gauge
 from sonicvacuum.records import Record, Signals
 
 

@@ -21,7 +21,7 @@ MUTATIONS = (
         "np.array(sigma), _correlations(quiet)",
         "np.array(sigma), 0.0 * _correlations(quiet)",
     ),
-    ("no whitening", "experiment.py", "if np.any(self.correlation):", "if False:"),
+    ("no whitening", "experiment.py", "if not np.any(correlation):", "if True:"),
     (
         "one-sided 1.645 is 0",
         "degenerate.py",

@@ -7,12 +7,13 @@ message before a search stumbles over it.
 import inspect
 import math
 import re
-from dataclasses import dataclass, fields
+from dataclasses import fields
 
 import numpy as np
 from numba.core.errors import NumbaError
 
 from sonicvacuum.effects.base import NUISANCES, PLACES, PRIORS, Effect, Parameter, Setup
+from sonicvacuum.gauges import Gauge
 from sonicvacuum.physics.bodies import Body, Elastic
 from sonicvacuum.physics.chain import Chain
 from sonicvacuum.physics.run import simulate
@@ -23,19 +24,6 @@ STRENGTHS = (0.0, 1e-6, 1.0)
 # What is off or hardly there may change forces by so much of the largest one.
 FAINT = 1e-3
 DURATION, INTERVAL = 2e-4, 1e-6
-
-
-@dataclass(frozen=True)
-class _Gauge:
-    """An ideal gauge, as effects see it."""
-
-    id: str
-    kind: str
-    bead: int | None
-    droop_s: float = math.inf
-    lowpass_s: float = 0.0
-    offset_fraction: float = 0.0
-    gain: float = 1.0
 
 
 def check(effect: Effect) -> None:
@@ -108,7 +96,7 @@ def sample(coated: bool = False) -> Setup:
     soft, hard = Elastic("soft", 3e9, 0.4), Elastic("hard", 2e11, 0.3)
     body = Body(soft, 4.5e-4, 2.5e-3, coating=5e-5 if coated else math.inf)
     chain = Chain(4, body, hard, hard, math.inf, 4.5e-4, 0.5)
-    gauges = (_Gauge("inside", "embedded", 2), _Gauge("wall", "wall", None))
+    gauges = (Gauge("inside", "embedded", 2), Gauge("wall", "wall"))
     return Setup(chain, gauges)
 
 
