@@ -6,12 +6,13 @@ that 95 % confidence leaves; where that lies beyond the bounds of the search the
 this data.
 """
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from sonicvacuum.discover.evidence import Candidate
-from sonicvacuum.discover.pairs import Pair
+from sonicvacuum.discover.evidence import Candidate, Combination
 from sonicvacuum.discover.screen import Screen
 from sonicvacuum.effects import Setup
 
@@ -40,30 +41,38 @@ class Limit:
     place: int | None
 
 
-def confusable(named: list[str], candidates: list[Candidate], tried: list[Pair]) -> list[list[str]]:
-    """Sets of effects, the named one first, between which the data do not decide."""
-    if not named or named[-1] == "unknown":
+def confusable(
+    named: list[str], candidates: list[Candidate], tried: list[Combination], alike: Sequence[str] = ()
+) -> list[list[str]]:
+    """Sets of effects, the named one first, between which the data do not decide; `alike` act as one."""
+    found = [n for n in named if n != "unknown"]
+    if not found:
         return []
-    if len(named) == 1:
-        own = next(c.log_bayes for c in candidates if c.effect == named[0])
-        near = [c.effect for c in candidates if c.effect != named[0] and 2.0 * (own - c.log_bayes) < ALIKE]
-        return [[named[0], *near]] if near else []
-    own = next(p.log_bayes for p in tried if set(p.effects) == set(named))
-    sets = {name: [name] for name in named}
-    for pair in tried:
-        shared, other = set(named) & set(pair.effects), set(pair.effects) - set(named)
-        if len(shared) == 1 and 2.0 * (own - pair.log_bayes) < ALIKE:
-            (lost,) = set(named) - shared
-            sets[lost].extend(other - set(sets[lost]))
+    sets = {name: [name] for name in found}
+    if len(found) == 1:
+        own = next((c.log_bayes for c in candidates if c.effect == found[0]), math.inf)
+        near = [c.effect for c in candidates if 2.0 * (own - c.log_bayes) < ALIKE]
+        near += [n for n in alike if n not in near] if found[0] in alike else []
+        sets[found[0]] += [n for n in near if n != found[0]]
+        return [members for members in sets.values() if len(members) > 1]
+    own = next((c.log_bayes for c in tried if set(c.effects) == set(found)), math.inf)
+    for one in tried:
+        lost, other = set(found) - set(one.effects), set(one.effects) - set(found)
+        if len(lost) == len(other) == 1 and 2.0 * (own - one.log_bayes) < ALIKE:
+            members = sets[lost.pop()]
+            members.extend(other - set(members))
     return [members for members in sets.values() if len(members) > 1]
 
 
-def limits(scores: Screen, setup: Setup) -> list[Limit]:
-    """One limit for every strength that was screened."""
+def limits(scores: Screen, setup: Setup, wider: float = 1.0) -> list[Limit]:
+    """One limit for every strength that was screened.
+
+    Errors are `wider` times the noise's where a misfit is left that nothing counts as noise.
+    """
     worst: dict[tuple[str, str], tuple[float, float, int]] = {}
     for k, d in enumerate(scores.directions):
         length = scores.length[k]
-        error = 1.0 / length if length > 0.0 else np.inf
+        error = wider / length if length > 0.0 else np.inf
         estimate = scores.strength[k]
         reach = abs(estimate) + (_TWO_SIDED if d.two_sided else _ONE_SIDED) * error
         key = (d.effect, d.strength)

@@ -48,6 +48,23 @@ class Candidate:
     flags: tuple[str, ...] = ()
 
 
+@dataclass(frozen=True)
+class Combination:
+    """Several effects as fitted together.
+
+    Attributes:
+        effects: ids, in the order in which they were added.
+        fit: the best of its fits.
+        gain: Δχ² (nuisance penalties included) against the nominal model.
+        log_bayes: natural log of the Bayes factor against it.
+    """
+
+    effects: tuple[str, ...]
+    fit: Fit
+    gain: float
+    log_bayes: float
+
+
 def occam_strength(gain: float, two_sided: bool) -> float:
     """Log of the Occam factor of a strength whose d′ is √Δχ²: √(2π) σ times the prior density."""
     size = math.sqrt(max(gain, WEAK))

@@ -88,6 +88,30 @@ class Batch:
 
 
 @dataclass(frozen=True)
+class Smooth:
+    """A smooth discrepancy between model and data, counted as noise (`smooth`).
+
+    Attributes:
+        size: its standard deviation as a share of each trace's peak.
+        variance: that of the weights of its directions, in squared peaks.
+        blocks: for each run and gauge, orthonormal directions (T, r) of the whitened trace and their variances
+            (r,) for weights of one squared peak.
+    """
+
+    size: float
+    variance: float
+    blocks: tuple
+
+    def whiten(self, run: int, white: np.ndarray) -> np.ndarray:
+        """(L, S, T) traces of a run, noise white, with the discrepancy divided out as well."""
+        result = white.copy()
+        for s, (directions, variances) in enumerate(self.blocks[run]):
+            less = 1.0 - 1.0 / np.sqrt(1.0 + self.variance * variances)
+            result[:, s] -= ((white[:, s] @ directions) * less) @ directions.T
+        return result
+
+
+@dataclass(frozen=True)
 class Experiment:
     """A data set.
 
@@ -107,6 +131,8 @@ class Experiment:
         excluded: ids of effects that these data cannot be asked about.
         integrated: compare running integrals of the traces instead: a coarse view in which a late pulse is
             still felt, for searches that start far from the data.
+        smooth: the smooth discrepancy that counts as noise; None: none.
+        model_floor_rel: its size as the record states it; None: to be inferred.
     """
 
     name: str
@@ -123,6 +149,8 @@ class Experiment:
     catalogue: Catalogue = CATALOGUE
     excluded: tuple[str, ...] = ()
     integrated: bool = False
+    smooth: Smooth | None = None
+    model_floor_rel: float | None = None
 
     @property
     def beads(self) -> int:
@@ -147,6 +175,8 @@ class Experiment:
         if self.integrated:
             white = np.cumsum(white, axis=-1) / math.sqrt(white.shape[-1])
             white = white if data.present is None else white * data.present
+        elif self.smooth:
+            white = self.smooth.whiten(run, white)
         return np.concatenate([white.reshape(lanes, -1), scalars / errors], axis=1)
 
     def length(self, run: int) -> int:

@@ -52,8 +52,10 @@ def _depends_on_orientation(fit):
 
 def _rivals(found: Investigation, alike):
     """(name, fit) of the best explanation and the nearest rivals."""
-    if found.pairs and len(found.named) == 2 and "unknown" not in found.named:
-        ranked = [("+".join(p.effects), p.fit) for p in found.pairs]
+    if len(found.named) > 1 and "unknown" not in found.named:
+        own = set(found.named)
+        ranked = [("+".join(c.effects), c.fit) for c in found.combinations]
+        ranked = sorted(ranked, key=lambda r: set(r[0].split("+")) != own)
         return ranked[: 1 + _RIVALS]
     ranked = [(c.effect, c.fit) for c in found.candidates if c.gain > 0.0]
     if len(found.named) == 1 and found.named[0] != "unknown":
@@ -117,7 +119,7 @@ def _with(experiment, batch, run, chain, faster: float = 1.0):
     time = run.time[0] + step * np.arange(samples)
     data = RunData("next", time, np.zeros((len(experiment.gauges), samples)), (), run.speed_rel_sigma)
     new = Batch(chain, (0,), batch.interval, batch.duration + step * (samples - len(run.time)))
-    return replace(experiment, runs=(data,), batches=(new,))
+    return replace(experiment, runs=(data,), batches=(new,), smooth=None)
 
 
 def separation(old: Forward, new: Forward, best, rival) -> float:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sonicvacuum.discover import directions, places, screen, secants, singles
-from sonicvacuum.discover.evidence import Candidate, log_bayes
+from sonicvacuum.discover.evidence import Candidate, Combination, log_bayes
 from sonicvacuum.discover.forward import Forward
 from sonicvacuum.discover.hypothesis import Component, Hypothesis, is_law, variants
 from sonicvacuum.discover.refit import Fit, fit, polish
@@ -29,20 +29,10 @@ _PARALLEL = 1e-3
 
 
 @dataclass(frozen=True)
-class Pair:
-    """Two effects as fitted: `gain` is Δχ² against the nominal model."""
-
-    effects: tuple[str, str]
-    fit: Fit
-    gain: float
-    log_bayes: float
-
-
-@dataclass(frozen=True)
 class Start:
-    """Where the joint fit of two effects starts, and the Δχ² that it should gain.
+    """Where the joint fit of several effects starts, and the Δχ² that it should gain.
 
-    `u` (L, p), `nu` (L, q) and `places` (L, 2) are L starts.
+    `u` (L, p), `nu` (L, q) and `places` (L, effects) are L starts.
     """
 
     gain: float
@@ -53,16 +43,18 @@ class Start:
 
     @property
     def effects(self) -> frozenset:
-        """Ids of both."""
+        """Ids of all."""
         return frozenset(self.hypothesis.ids)
 
 
-def search(forward: Forward, null: Fit, scores: screen.Screen, candidates: list[Candidate]) -> list[Pair]:
+def search(
+    forward: Forward, null: Fit, scores: screen.Screen, candidates: list[Candidate]
+) -> list[Combination]:
     """The best pairs, best first; `scores` is the screen of the nominal model, `candidates` the singles."""
     setup = singles.setup_of(forward)
     seen = linear(scores, setup)
     asked = [s for c in candidates[:BEAM] if c.gain > 0.0 for s in beside(forward, null, c.fit, setup)]
-    found: dict[frozenset, Pair] = {}
+    found: dict[frozenset, Combination] = {}
     _refit(forward, null, setup, _best(asked, found, BESIDE), found)
     _refit(forward, null, setup, _best(seen, found, LINEAR), found)
     tried: set[tuple] = set()
@@ -81,7 +73,7 @@ def search(forward: Forward, null: Fit, scores: screen.Screen, candidates: list[
     return sorted(found.values(), key=lambda p: -p.log_bayes)
 
 
-def _key(start: Start, best: Pair) -> tuple:
+def _key(start: Start, best: Combination) -> tuple:
     """What a borrowed start shares with the best pair, coarsely: much the same need not be fitted twice."""
     (name,) = start.effects & set(best.effects)
     k = start.hypothesis.ids.index(name)
@@ -89,7 +81,7 @@ def _key(start: Start, best: Pair) -> tuple:
     return (start.hypothesis.ids, name, int(start.places[0, k]), *np.round(values, 2).tolist())
 
 
-def _borrowed(start: Start, best: Pair) -> Start | None:
+def _borrowed(start: Start, best: Combination) -> Start | None:
     """The start with the effect that it shares with the best pair as it is there; None where that has other
     parameters.
 
@@ -174,12 +166,19 @@ def _variant(direction, setup):
     return next(v for v in options if v[0].parameter.name == direction.strength)
 
 
-def beside(forward: Forward, null: Fit, first: Fit, setup: Setup) -> list[Start]:
-    """Every effect beside a first one as fitted."""
+def screened(forward: Forward, first: Fit, setup: Setup) -> screen.Screen:
+    """Roughly what the residual of a fit says of every effect that is not in it."""
     present = (*first.hypothesis.ids, *forward.experiment.excluded)
-    scores = screen.screen(forward, first, directions.catalogue(setup, present), rough=True)
+    return screen.screen(forward, first, directions.catalogue(setup, present), rough=True)
+
+
+def beside(
+    forward: Forward, null: Fit, first: Fit, setup: Setup, scores: screen.Screen | None = None
+) -> list[Start]:
+    """Every effect beside those of a first fit; `scores` is its screen, where at hand."""
+    scores = scores or screened(forward, first, setup)
     gained = null.objective - first.objective
-    own = first.hypothesis.components[0].place or 0
+    own = [c.place or 0 for c in first.hypothesis.components]
     result = []
     for second, k in scores.best().items():
         effect = setup.catalogue.effect(second)
@@ -191,26 +190,34 @@ def beside(forward: Forward, null: Fit, first: Fit, setup: Setup) -> list[Start]
             continue
         u = np.column_stack([np.repeat(first.u[None], len(u), axis=0), u])
         places = np.zeros((len(u), 1), dtype=int) if places is None else places
-        places = np.column_stack([np.full(len(u), own), places])
+        places = np.column_stack([np.tile(own, (len(u), 1)), places])
         hypothesis = joined(first.hypothesis, Component(effect, free), setup)
         result.append(Start(gained + more, hypothesis, u, nu, places))
     return result
 
 
-def _refit(forward, null: Fit, setup: Setup, starts: list[Start], found: dict[frozenset, Pair]):
+def _refit(forward, null: Fit, setup: Setup, starts: list[Start], found: dict[frozenset, Combination]):
     """Fit pairs and add them to `found`."""
     for s in starts:
-        one = fit(forward, s.hypothesis, s.u, s.nu, s.places, keep=3, iterations=ITERATIONS)
-        one = one if one.settled else polish(forward, one, ITERATIONS)
         least = min((p.fit.objective for p in found.values()), default=np.inf)
-        if places.placed(one) and one.objective < least + BEHIND:
-            one = places.settled(forward, one, setup)
+        one = fitted(forward, s, setup, least + BEHIND)
         if np.isfinite(one.objective):
-            gain = null.objective - one.objective
-            names = s.hypothesis.ids
-            if s.effects in found and found[s.effects].gain >= gain:
-                continue
-            found[s.effects] = Pair(names, one, gain, log_bayes(one, gain) - _places(names, setup))
+            new = combination(null, one, setup)
+            if s.effects not in found or found[s.effects].gain < new.gain:
+                found[s.effects] = new
+
+
+def fitted(forward, start: Start, setup: Setup, below: float) -> Fit:
+    """The joint fit from a start, followed along the chain where its objective is low enough."""
+    one = fit(forward, start.hypothesis, start.u, start.nu, start.places, keep=3, iterations=ITERATIONS)
+    one = one if one.settled else polish(forward, one, ITERATIONS)
+    return places.settled(forward, one, setup) if places.placed(one) and one.objective < below else one
+
+
+def combination(null: Fit, one: Fit, setup: Setup) -> Combination:
+    """A fit of several effects with its evidence against the nominal model."""
+    gain, names = null.objective - one.objective, one.hypothesis.ids
+    return Combination(names, one, gain, log_bayes(one, gain) - _places(names, setup))
 
 
 def joined(hypothesis: Hypothesis, component: Component, setup: Setup) -> Hypothesis:
@@ -221,7 +228,7 @@ def joined(hypothesis: Hypothesis, component: Component, setup: Setup) -> Hypoth
 
 
 def _places(names, setup):
-    """Log of the number of places that both effects could have had."""
+    """Log of the number of places that all effects could have had."""
     effects = [setup.catalogue.effect(name) for name in names]
     counts = [len(e.candidates(setup)) for e in effects if e.places]
     return float(sum(np.log(max(1, c)) for c in counts))

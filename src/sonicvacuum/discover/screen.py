@@ -126,7 +126,12 @@ def screen(forward: Forward, fit: Fit, families: list[ways.Family], rough: bool 
 
 
 def from_columns(forward, fit, directions, base, slopes) -> Screen:
-    """A screen from the model's columns (1, c, M) and the slopes (K, M) of each run."""
+    """A screen from the model's columns (1, c, M) and the slopes (K, M) of each run.
+
+    A parameter that stands at its bound is not free to take up what is left.
+    """
+    held = 1 + np.flatnonzero(fit.at_bound())
+    base = [_without(c, held) for c in base] if len(held) else base
     free, unknowns = fit.normal.free, fit.normal.gradient.shape[2]
     runs, count = len(base), len(directions)
     score, cross = np.empty((runs, count)), np.zeros((runs, unknowns, count))
@@ -138,3 +143,10 @@ def from_columns(forward, fit, directions, base, slopes) -> Screen:
         cross[run, where] = columns[0, 1:] @ slope.T
         products[run] = slope @ slope.T
     return Screen(directions, score, cross, products, normal, fit)
+
+
+def _without(columns, held):
+    """Columns of one run with some at zero."""
+    columns = columns.copy()
+    columns[:, held] = 0.0
+    return columns

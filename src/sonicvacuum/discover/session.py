@@ -11,6 +11,8 @@ from sonicvacuum.blas import one_thread
 from sonicvacuum.discover import (
     degenerate,
     directions,
+    explanations,
+    goodness,
     heldout,
     locate,
     next_experiment,
@@ -62,14 +64,9 @@ def discover(*records: Record, threads: int | None = None, catalogue: Catalogue 
     final = found.final
     after = locate.locate(forward, final) if final is not found.null else places
     clock.mark("locate")
-    setup = singles.setup_of(forward)
-    if final is found.null:
-        scores = found.scores
-    else:
-        present = (*final.hypothesis.ids, *forward.experiment.excluded)
-        scores = screen.screen(forward, final, directions.catalogue(setup, present))
-    limits = degenerate.limits(scores, setup)
-    alike = degenerate.confusable(found.named, found.candidates, found.pairs)
+    fits = [goodness.goodness(forward, one) for one in (found.null, final)]
+    limits, wider = _limits(found, fits[1])
+    alike = degenerate.confusable(found.named, found.candidates, found.combinations, found.alike)
     before = heldout.held_out(found.null, found.sizes)
     left = heldout.held_out(final, found.sizes, before)
     clock.mark("limits")
@@ -81,7 +78,7 @@ def discover(*records: Record, threads: int | None = None, catalogue: Catalogue 
         named=found.named,
         probabilities=found.probabilities,
         confusable=alike,
-        parameters=verdict.parameters(final) if named else {},
+        parameters=verdict.parameters(found.counted.final if found.counted else final) if named else {},
         gap=verdict.gaps(found.null, final, found.sizes, before, left),
         where=verdict.where(places),
         upper_limits=verdict.upper_limits(limits),
@@ -90,10 +87,31 @@ def discover(*records: Record, threads: int | None = None, catalogue: Catalogue 
         reasons=found.reasons,
         alarms=found.alarms,
         timing_s=clock.seconds(),
-        simulations=forward.chains,
+        simulations=forward.chains + (found.counted.forward.chains if found.counted else 0),
+        fit=verdict.goodness_of_fit(*fits, found.smooth or forward.experiment.model_floor_rel or 0.0, wider),
         sources=verdict.sources(catalogue),
     )
     return Result(records[0], found, places, after, limits, result)
+
+
+def _limits(found: Investigation, fit: goodness.Goodness) -> tuple[list[degenerate.Limit], float]:
+    """Upper limits of all effects that are not named, what is left counted as noise, and the factor on errors.
+
+    What is smooth is in the noise already; for the rest errors grow with the residual (Birge, Phys. Rev. 40,
+    207, 1932).
+    """
+    forward, final = found.forward, found.final
+    if found.counted is not None:
+        forward, final = found.counted.forward, found.counted.final
+    setup = singles.setup_of(forward)
+    if final is found.null:
+        scores = found.scores
+    else:
+        present = (*final.hypothesis.ids, *forward.experiment.excluded)
+        scores = screen.screen(forward, final, directions.catalogue(setup, present))
+    excess = float(final.normal.chi2.sum() / found.sizes.sum())
+    wider = max(1.0, excess**0.5) if fit.failed else 1.0
+    return degenerate.limits(scores, setup, wider), wider
 
 
 class Clock:
@@ -148,7 +166,7 @@ def write(result: Result, folder: Path) -> None:
 
 
 def candidates(result: Result):
-    """Header and rows: singles, then pairs.
+    """Header and rows: singles, then combinations.
 
     `cosine` is that between the residual of the nominal model and the effect's signature (singles).
     """
@@ -160,7 +178,9 @@ def candidates(result: Result):
         p = result.verdict.probabilities.get(c.effect, nan)
         cosine = abs(float(found.scores.z[best[c.effect]])) / size if c.effect in best else nan
         rows.append((c.effect, *_evidence(c), p, _values(c.fit), " ".join(c.flags), cosine))
-    rows += [("+".join(p.effects), *_evidence(p), nan, _values(p.fit), "", nan) for p in found.pairs]
+    for c in found.combinations:
+        p = result.verdict.probabilities.get(explanations.key(c.effects), nan)
+        rows.append(("+".join(c.effects), *_evidence(c), p, _values(c.fit), "", nan))
     return header, rows
 
 
@@ -203,8 +223,8 @@ def rounds_of(found: Investigation) -> list[tuple[str, float]]:
     if found.candidates:
         best = found.candidates[0]
         result.append((best.effect, float(best.fit.normal.chi2.sum())))
-    if found.pairs:
-        best = found.pairs[0]
+    if found.combinations:
+        best = found.combinations[0]
         result.append(("+".join(best.effects), float(best.fit.normal.chi2.sum())))
     return result
 

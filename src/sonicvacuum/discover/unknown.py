@@ -14,15 +14,12 @@ import numpy as np
 from scipy import stats
 
 from sonicvacuum.discover import directions as ways
-from sonicvacuum.discover import flexible, screen
+from sonicvacuum.discover import flexible, policy, screen
 from sonicvacuum.discover.directions import Direction, Family
 from sonicvacuum.discover.forward import Forward
 from sonicvacuum.discover.hypothesis import FLEXIBLE, with_common_laws
 from sonicvacuum.discover.refit import Fit
 
-# The residual of a model counts as explained while the alarm's p is above this; `unknown` is then the
-# likelier.
-ALARM = 4e-3
 # Cosines between signatures that are resolved as different.
 _RANK = 1e-3
 _BINS = np.arange(-2.0, 9.0, 1.0)
@@ -47,7 +44,13 @@ class Alarm:
     @property
     def raised(self) -> bool:
         """Whether a real misfit is left."""
-        return self.p < ALARM
+        return self.p < policy.ALARM
+
+    @property
+    def raising(self) -> np.ndarray:
+        """(K',) places in the screen of the directions of all groups that are surely not empty."""
+        sure = [g for g, (_, _, p) in self.groups.items() if p * len(self.groups) < policy.ALARM]
+        return np.flatnonzero([d.effect in sure for d in self.screen.directions])
 
 
 def alarm(forward: Forward, fit: Fit, catalogue: screen.Screen | None = None) -> Alarm:
@@ -278,7 +281,8 @@ def raw(forward: Forward, fit: Fit) -> list[np.ndarray]:
     """For each run the predicted readings (S, T) at the recorded times."""
     e = forward.experiment
     whole = tuple(replace(run, present=None) for run in e.runs)
-    white = Forward(replace(e, runs=whole, correlation=np.zeros(len(e.gauges))), forward.threads)
+    plain = replace(e, runs=whole, correlation=np.zeros(len(e.gauges)), smooth=None)
+    white = Forward(plain, forward.threads)
     found = white.sampled(fit.hypothesis, fit.u[None], fit.nu[None])
     forward.simulations += white.simulations
     return [

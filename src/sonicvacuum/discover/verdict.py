@@ -13,6 +13,7 @@ import numpy as np
 from msgspec import UNSET, Struct, UnsetType
 
 from sonicvacuum.discover.degenerate import Limit
+from sonicvacuum.discover.goodness import Goodness
 from sonicvacuum.discover.heldout import HeldOut
 from sonicvacuum.discover.locate import Place
 from sonicvacuum.discover.refit import Fit
@@ -60,6 +61,34 @@ class Where(_Part, kw_only=True):
     p: float
 
 
+class CellFit(_Part, kw_only=True):
+    """Residual of one run at one gauge: χ² per datum with its p, p of its whiteness."""
+
+    run: str
+    sensor: str
+    chi2: float
+    p: float
+    whiteness: float
+
+
+class GoodnessOfFit(_Part, kw_only=True):
+    """Of the nominal and of the extended model, by run and gauge.
+
+    Attributes:
+        nominal, extended: cells.
+        p: test → p of what the extended model leaves, over all runs and gauges.
+        smooth_rel: standard deviation of the smooth misfit that is left, as a share of the peak, stated or
+            inferred; upper limits count it as noise. 0 where there is none.
+        wider: factor on the errors behind the upper limits, for what else is left.
+    """
+
+    nominal: list[CellFit]
+    extended: list[CellFit]
+    p: dict[str, float]
+    smooth_rel: float
+    wider: float
+
+
 class Next(_Part, kw_only=True):
     """The change of the experiment that best separates rivals; `delta_chi2` as predicted."""
 
@@ -87,7 +116,8 @@ class Verdict(_Part, kw_only=True):
         record: name of the record.
         named: ids of the effects, `unknown` last where a misfit is left that nothing of the catalogue
             explains.
-        probabilities: over none, unknown and single effects.
+        probabilities: over explanations: none, unknown, an id, or several joined by ` + ` in alphabetical
+            order, `unknown` last where a misfit is left beside them.
         confusable: sets of effects between which this data do not decide, the named one first.
         parameters: effect → parameter → value.
         gap: before and after.
@@ -101,6 +131,7 @@ class Verdict(_Part, kw_only=True):
         timing_s: seconds by step.
         simulations: chains simulated.
         sources: id → source of the effects of the user's own that were searched; absent without any.
+        fit: goodness of fit; None in verdicts written before it was tested.
     """
 
     format: int = 1
@@ -119,6 +150,7 @@ class Verdict(_Part, kw_only=True):
     timing_s: dict[str, float]
     simulations: int
     sources: Sources = UNSET
+    fit: GoodnessOfFit | None = None
 
     @property
     def sees_nothing(self) -> bool:
@@ -204,6 +236,15 @@ def model(found: Investigation) -> Model:
 def named_effects(found: Investigation) -> list[str]:
     """What was named, without `unknown`."""
     return [n for n in found.named if n != "unknown"]
+
+
+def goodness_of_fit(nominal: Goodness, extended: Goodness, smooth_rel: float, wider: float) -> GoodnessOfFit:
+    """Of both models."""
+    before, after = (
+        [CellFit(run=c.run, sensor=c.sensor, chi2=c.chi2, p=c.p, whiteness=c.whiteness) for c in one.cells]
+        for one in (nominal, extended)
+    )
+    return GoodnessOfFit(nominal=before, extended=after, p=extended.tests, smooth_rel=smooth_rel, wider=wider)
 
 
 def where(places: list[Place], most: int = 40) -> list[Where]:

@@ -1,0 +1,221 @@
+"""What is named, once single effects are fitted: one, several, or unknown, by what each leaves."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from sonicvacuum.discover import (
+    directions,
+    explanations,
+    heldout,
+    pairs,
+    policy,
+    screen,
+    several,
+    smooth,
+    unknown,
+)
+from sonicvacuum.discover.evidence import Candidate, Combination
+from sonicvacuum.discover.forward import Forward
+from sonicvacuum.discover.left import Left, left, sure
+from sonicvacuum.discover.normal import linearise
+from sonicvacuum.discover.refit import Fit, polish
+from sonicvacuum.effects import Setup
+
+# Pairs that are asked what they leave.
+ASKED = 2
+UNKNOWN = explanations.UNKNOWN
+
+
+@dataclass(frozen=True)
+class View:
+    """A model in one view of the data: `smooth` counts a discrepancy as noise, so that errors and limits allow
+    for it.
+    """
+
+    forward: Forward
+    null: Fit
+    final: Fit
+
+
+@dataclass(frozen=True)
+class Decision:
+    """What is named, and why; attributes as those of `Investigation`.
+
+    Attributes:
+        left: p-value of what the best explanation without anything unknown leaves.
+        beside: explanation → log weight with a smooth discrepancy counted as noise.
+    """
+
+    named: list[str]
+    final: Fit
+    alarms: dict[str, float]
+    reasons: list[str]
+    left: float
+    combinations: list[Combination] = field(default_factory=list)
+    smooth: float = 0.0
+    counted: View | None = None
+    beside: dict[str, float] | None = None
+
+
+@dataclass(frozen=True)
+class Case:
+    """A data set and its single effects, best first."""
+
+    forward: Forward
+    null: Fit
+    scores: screen.Screen
+    found: list[Candidate]
+    known: tuple | None
+    setup: Setup
+
+    def nothing(self) -> Decision:
+        """No effect can be named: none, or unknown where the nominal model leaves a sure misfit."""
+        seen = left(self.forward, self.null, self.known)
+        reasons = ["no single effect passes the threshold"]
+        if not sure(seen):
+            return Decision([], self.null, {"none": seen.p}, reasons, seen.p)
+        return self._unknown({"none": seen.p}, [*reasons, f"{seen.where} is left"], seen)
+
+    def _unknown(self, alarms, reasons, seen: Left, tried=()) -> Decision:
+        """Something is missing, and nothing can be said of it."""
+        size = seen.size.size if seen.size.found else 0.0
+        view = self._view(size, self.null) if size else None
+        return Decision([UNKNOWN], self.null, alarms, reasons, seen.p, list(tried), size, view)
+
+    def _view(self, size, final: Fit) -> View:
+        counted = smooth.with_size(self.forward.experiment, size, self.known)
+        forward = Forward(counted, self.forward.threads)
+        null = several.moved(forward, self.null)
+        return View(forward, null, null if final is self.null else several.moved(forward, final))
+
+    def decide(self) -> Decision:
+        """Name the best single, a pair, more, or unknown."""
+        best = self.found[0]
+        beside = directions.catalogue(self.setup, (best.effect, *self.forward.experiment.excluded))
+        scores = screen.screen(self.forward, best.fit, beside)
+        shape, most = unknown.simplest(self.forward, self.null)
+        seen = left(self.forward, best.fit, self.known, scores, _behind(best.gain, most))
+        alarms = {"single": seen.p}
+        instead = self._smooth_instead(best, seen)
+        if instead is not None:
+            return instead
+        if seen.alarm.raised or seen.fit.failed or seen.size.found:
+            return self._more(scores.threshold(policy.FALSE_ALARM), most, shape, alarms, seen)
+        if seen.behind > 0.0:
+            return self._unknown(alarms, [f"{shape} explains more than {best.effect}"], seen)
+        if heldout.better(self.null, best.fit):
+            reason = f"{best.effect} leaves nothing significant"
+            return Decision([best.effect], best.fit, alarms, [reason], seen.p)
+        reason = f"{best.effect} does not predict unseen runs better"
+        return Decision([], self.null, alarms, [reason], seen.p)
+
+    def _smooth_instead(self, best: Candidate, seen: Left) -> Decision | None:
+        """Unknown where a smooth misfit of the nominal model is the better explanation than any effect."""
+        if self.known is None:
+            return None
+        alone = smooth.infer(self.forward, self.null, self.known)
+        with_effect = best.log_bayes + max(0.0, seen.size.log_bayes)
+        if alone.log_bayes <= with_effect:
+            return None
+        reason = (
+            f"a smooth misfit of {100.0 * alone.size:.2g} % of the peak explains the data better than "
+            f"{best.effect}"
+        )
+        without = left(self.forward, self.null, self.known)
+        return self._unknown({"none": without.p, "single": seen.p}, [reason], without)
+
+    def _more(self, needed, most, shape, alarms, seen: Left) -> Decision:
+        """Name the first pair that leaves nothing and gains enough over the best single; else go on."""
+        tried = pairs.search(self.forward, self.null, self.scores, self.found)
+        best = self.found[0]
+        single = max(c.gain for c in self.found)
+        rival = best.log_bayes + max(0.0, seen.size.log_bayes)
+        start, lowest = best.fit, seen
+        for pair in tried[:ASKED]:
+            if pair.gain - single <= needed:
+                continue
+            after = left(self.forward, pair.fit, self.known, behind=_behind(pair.gain, most))
+            alarms.setdefault("pair", after.p)
+            if pair.log_bayes + max(0.0, after.size.log_bayes) <= rival:
+                continue
+            if not after.raised:
+                alarms["pair"] = after.p
+                reason = "a pair leaves nothing significant"
+                return Decision(list(pair.effects), pair.fit, alarms, [reason], after.p, tried)
+            if start is best.fit:
+                start, lowest = pair.fit, after
+        return self._set(needed, most, shape, alarms, start, lowest, tried)
+
+    def _set(self, needed, most, shape, alarms, start: Fit, seen: Left, tried) -> Decision:
+        """Effects added and taken away; what is found is kept, and said beside what is left."""
+        turns = several.Turns(self.forward, self.known, needed, self.setup, self.known is not None)
+        grown = turns.grow(self.null, start)
+        effects = list(grown.best.effects)
+        final = several.moved(self.forward, grown.best.fit) if grown.size.size else grown.best.fit
+        gain = self.null.objective - final.objective
+        behind = _behind(gain, most)
+        after = left(self.forward, final, self.known, behind=behind) if effects else seen
+        alarms["set"] = after.p
+        if len(effects) > 1:
+            own = pairs.combination(self.null, final, self.setup)
+            tried = [own, *(c for c in tried if set(c.effects) != set(effects))]
+            tried = sorted(tried, key=lambda c: -c.log_bayes)
+        if effects and not after.raised:
+            reason = f"{len(effects)} effects together leave nothing significant"
+            return Decision(effects, final, alarms, [reason], after.p, tried)
+        if behind > 0.0:
+            return self._unknown(alarms, [f"{shape} explains more than any effect or set"], after, tried)
+        return self._beside(grown, needed, alarms, after, tried)
+
+    def _beside(self, grown: several.Grown, needed, alarms, after: Left, tried) -> Decision:
+        """What stays named beside something unknown."""
+        fit_, reasons = grown.best.fit, [f"{after.where} is left"]
+        counted = unknown.alarm(grown.forward, fit_)
+        if counted.raised and fit_.hypothesis.components:
+            kept = several.irreplaceable(counted, fit_, needed)
+            for k in reversed(range(len(fit_.hypothesis.components))):
+                if k not in kept:
+                    name = fit_.hypothesis.ids[k]
+                    reasons.append(
+                        f"{name} may be no more than the nearest to what is left in {counted.group}"
+                    )
+                    fit_ = _reduced(grown, fit_, k, self.setup)
+        weights = explanations.log_weights((), [*grown.tried.values(), *self._rivals(grown)], [])
+        named = list(fit_.hypothesis.ids)
+        if named and not _clear(weights, named):
+            reasons.append(f"{' + '.join(named)}: not clearly the best beside what is left")
+            named, fit_ = [], grown.null
+        final = several.moved(self.forward, fit_) if named else self.null
+        view = View(grown.forward, grown.null, fit_) if grown.size.size else None
+        return Decision(
+            [*named, UNKNOWN], final, alarms, reasons, after.p, tried, grown.size.size, view, weights
+        )
+
+    def _rivals(self, grown: several.Grown) -> list[Combination]:
+        """Single effects that were near the best, with the discrepancy counted as noise."""
+        most = max(c.gain for c in self.found)
+        near = [c for c in self.found if c.gain > 0.5 * most and frozenset((c.effect,)) not in grown.tried]
+        fits = [several.moved(grown.forward, c.fit) for c in near[:4]]
+        return [pairs.combination(grown.null, f, self.setup) for f in fits]
+
+
+def _reduced(grown, fit_, k, setup):
+    """A fit without effect k."""
+    hypothesis, u = several.without(fit_.hypothesis, fit_.u, k, setup)
+    if not hypothesis.components:
+        return grown.null
+    here = linearise(grown.forward, hypothesis, u[None], fit_.nu[None])
+    return polish(grown.forward, Fit(hypothesis, here))
+
+
+def _clear(weights, named) -> bool:
+    """Whether a set of effects is nine times likelier than all others beside what is left."""
+    own = weights.get(explanations.key(named), -np.inf)
+    others = [w for name, w in weights.items() if name != explanations.key(named)]
+    return own - np.logaddexp.reduce(others) > np.log(policy.CLEAR) if others else True
+
+
+def _behind(gain: float, most: float) -> float:
+    """By how much an explanation's Δχ² falls short of that of the simplest shape outside the catalogue."""
+    return max(0.0, most - gain - policy.MARGIN - policy.SHARE * gain)

@@ -1,0 +1,120 @@
+"""Probabilities over explanations: none, effects, sets of effects, each with or without something unknown
+beside them.
+
+Evidence weighs what explains the data as it stands; what is left gives the odds that something unknown is
+there as well (`evidence`, `calibration`). That share goes to the explanations that count a smooth discrepancy
+as noise, by their evidence there, where they were worked out, else to `unknown` alone. Effects that act alike
+are one explanation with several names, and share its weight.
+"""
+
+import math
+from collections.abc import Iterable, Mapping
+
+import numpy as np
+
+from sonicvacuum.discover import evidence, policy
+from sonicvacuum.discover.calibration import Calibration, of_package
+from sonicvacuum.discover.evidence import Candidate, Combination
+from sonicvacuum.discover.forward import Forward
+from sonicvacuum.discover.refit import Fit
+from sonicvacuum.effects import IDS
+
+NONE, UNKNOWN = "none", "unknown"
+
+
+def key(effects: Iterable[str]) -> str:
+    """Of an explanation: its effects in alphabetical order, `unknown` last; `none` where there is nothing."""
+    names = list(effects)
+    known = sorted(n for n in names if n != UNKNOWN)
+    return " + ".join([*known, *([UNKNOWN] if UNKNOWN in names else [])]) or NONE
+
+
+def effects(name: str) -> list[str]:
+    """Effects of an explanation, `unknown` included."""
+    return [] if name == NONE else name.split(" + ")
+
+
+def aliases(forward: Forward, null: Fit, found: list[Candidate]) -> list[str]:
+    """Effects that change these data as the best one does, it included; one name where it is alone."""
+    if not found:
+        return []
+    best, *others = found
+    near = [c for c in others if abs(c.gain - best.gain) < policy.ALIAS_GAIN]
+    if not near or best.gain < 1.0:
+        return [best.effect]
+    base = _predicted(forward, null)
+    own = _predicted(forward, best.fit) - base
+    alike = [best.effect]
+    for c in near:
+        change = _predicted(forward, c.fit) - base
+        if change @ own > policy.ALIAS_COSINE * np.linalg.norm(change) * np.linalg.norm(own):
+            alike.append(c.effect)
+    return alike
+
+
+def _predicted(forward, fit):
+    """Whitened predictions of all data, with what nuisances take up."""
+    found = forward.sampled(fit.hypothesis, fit.u[None], fit.nu[None])
+    return np.concatenate([value[0] for value, _ in found])
+
+
+def log_weights(
+    singles: Iterable[Candidate], combinations: Iterable[Combination], alike: list[str]
+) -> dict[str, float]:
+    """Explanation → log of prior times evidence; those in `alike` share theirs."""
+    logs = evidence.log_weights({c.effect: c.log_bayes for c in singles})
+    each = math.log((1.0 - evidence.PRIOR_NONE - evidence.PRIOR_UNKNOWN) / len(IDS))
+    logs |= {key(c.effects): len(c.effects) * each + c.log_bayes for c in combinations if c.effects}
+    shared = [logs[name] for name in alike if name in logs]
+    if len(shared) > 1:
+        mean = float(np.logaddexp.reduce(shared)) - math.log(len(shared))
+        logs |= {name: mean for name in alike if name in logs}
+    return logs
+
+
+def probabilities(
+    logs: Mapping[str, float],
+    left: float,
+    beside: Mapping[str, float] | None = None,
+    calibration: Calibration | None = None,
+) -> dict[str, float]:
+    """Probability of every explanation; they sum to 1.
+
+    Args:
+        logs: explanation → log weight, `none` among them (`log_weights`).
+        left: p-value of what the best of them leaves.
+        beside: explanation → log weight with a smooth discrepancy counted as noise; `none` stands for
+            `unknown` alone.
+        calibration: that of the package where not given.
+    """
+    calibration = calibration or of_package()
+    found = calibration.probabilities(logs, math.log(evidence.unknown_odds(left)))
+    share = found.pop(UNKNOWN)
+    result = {
+        name: found.get(name, 0.0) for name in (NONE, UNKNOWN, *IDS) if name in found or name == UNKNOWN
+    }
+    result |= {name: value for name, value in found.items() if name not in result}
+    top = max(beside.values()) if beside else 0.0
+    weights = {k: math.exp(calibration.temper * (v - top)) for k, v in (beside or {NONE: 0.0}).items()}
+    total = sum(weights.values())
+    for name, weight in weights.items():
+        whole = key([*effects(name), UNKNOWN])
+        result[whole] = result.get(whole, 0.0) + share * weight / total
+    return result
+
+
+def consistent(found: Mapping[str, float], named: Iterable[str]) -> tuple[dict[str, float], str]:
+    """Probabilities in which what is named is the likeliest, and what was likelier ("" where nothing was).
+
+    What failed a test is no longer worth its evidence.
+    """
+    own = key(named)
+    best = max(found, key=found.get)
+    mine = found.get(own, 0.0)
+    if best == own or mine >= found[best]:
+        return dict(found), ""
+    most = policy.REFUSED * max(mine, 1e-12)
+    held = {name: value if name == own else min(value, most) for name, value in found.items()}
+    held[own] = max(mine, 1e-12)
+    total = sum(held.values())
+    return {name: value / total for name, value in held.items()}, best

@@ -1,0 +1,216 @@
+"""Goodness of fit: does what a model leaves look like noise, whatever its shape may be?
+
+The alarm (`unknown`) looks along chosen directions. Here nothing is chosen: for each run and gauge the whitened
+residual is asked for its total χ², its whiteness (Ljung & Box, Biometrika 65, 297, 1978), outliers, and for
+oscillations of any frequency that set in anywhere and die away at any rate, or not at all (a bank of damped
+sinusoids; the same summed over the runs of a gauge, setting in with the pulse). The smallest p counts, times
+the number of independent tests; that of the bank is taken from simulated noise.
+"""
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from scipy import stats
+
+from sonicvacuum.discover import policy
+from sonicvacuum.discover.forward import Forward
+from sonicvacuum.discover.refit import Fit
+from sonicvacuum.discover.smooth import width
+
+LAGS = 20
+# Decay times of the bank, in widths of the pulse, and how often in one of them an oscillation may set in.
+DECAYS, STARTS = (0.5, 1.0, 2.0, 4.0), 2
+# Where an oscillation that all runs share sets in, in widths from the peak.
+TOGETHER = (-1.0, 0.0, 1.0)
+# Noise simulated to find how many independent tests a bank is.
+NULLS, SEED = 200, 20064
+# Sine and cosine of an oscillation are told apart where the determinant of their products is this share of the
+# largest possible.
+_APART = 0.2
+_FAR = 4.0
+
+
+@dataclass(frozen=True)
+class Cell:
+    """Residual of one run at one gauge: χ² per datum, its p, p of the whiteness."""
+
+    run: str
+    sensor: str
+    chi2: float
+    p: float
+    whiteness: float
+
+
+@dataclass(frozen=True)
+class Goodness:
+    """What a model leaves.
+
+    Attributes:
+        cells: by run and gauge.
+        tests: name of a test → p over all runs and gauges.
+        p: of the whole.
+        worst: the test of the smallest p.
+    """
+
+    cells: tuple[Cell, ...]
+    tests: dict[str, float]
+    p: float
+    worst: str
+
+    @property
+    def failed(self) -> bool:
+        """Whether a real misfit is left."""
+        return self.p < policy.MISFIT
+
+
+def goodness(forward: Forward, fit: Fit) -> Goodness:
+    """All tests of a fitted model's residual."""
+    left = residuals(forward, fit)
+    found: dict[str, list[float]] = {"chi2": [], "whiteness": [], "outliers": [], "oscillation": []}
+    cells = []
+    for run, s, r in left:
+        data = forward.experiment.runs[run]
+        chi2, white = _chi2(r), _whiteness(r)
+        cells.append(Cell(data.id, forward.experiment.gauges[s].id, float(r @ r) / len(r), chi2, white))
+        wide = width(np.abs(data.readings[s]))
+        for name, p in zip(found, (chi2, white, _outliers(r), _oscillation(r, wide)), strict=True):
+            found[name].append(p)
+    total = sum(r @ r for *_, r in left) + _scalars(forward, fit)
+    size = sum(forward.experiment.size(k) for k in range(len(forward.experiment.runs)))
+    tests = {name: min(1.0, len(ps) * min(ps)) for name, ps in found.items() if ps}
+    tests["total"] = _chi2_of(float(total), size - fit.normal.free)
+    tests |= _shared(forward, left)
+    worst = min(tests, key=tests.get)
+    return Goodness(tuple(cells), tests, min(1.0, len(tests) * tests[worst]), worst)
+
+
+def residuals(forward: Forward, fit: Fit) -> list[tuple[int, int, np.ndarray]]:
+    """(run, gauge, (T,) whitened residual) of every trace."""
+    found = forward.sampled(fit.hypothesis, fit.u[None], fit.nu[None])
+    result = []
+    for run, (value, _) in enumerate(found):
+        samples = len(forward.experiment.runs[run].time)
+        left = forward.data(run) - value[0]
+        for s in range(len(forward.experiment.gauges) if samples else 0):
+            part = left[s * samples : (s + 1) * samples]
+            if np.any(part):
+                result.append((run, s, part))
+    return result
+
+
+def _scalars(forward, fit):
+    """χ² of all scalars."""
+    found = forward.sampled(fit.hypothesis, fit.u[None], fit.nu[None])
+    total = 0.0
+    for run, (value, _) in enumerate(found):
+        count = len(forward.experiment.runs[run].scalars)
+        if count:
+            total += float(np.square(forward.data(run) - value[0])[-count:].sum())
+    return total
+
+
+def _chi2(r):
+    return _chi2_of(float(r @ r), len(r))
+
+
+def _chi2_of(value, size):
+    """p of a χ² of so many data, the noise's standard deviation known to `policy.SIGMA_REL`."""
+    size = max(size, 1)
+    # By the spread of both: a χ² of fewer degrees of freedom that varies as much.
+    spread = 1.0 / (1.0 + 2.0 * policy.SIGMA_REL**2 * size)
+    return float(stats.chi2.sf(value * spread, size * spread))
+
+
+def _whiteness(r):
+    """p of the portmanteau test, correlation of neighbours taken out: noise may have some."""
+    count, lags = len(r), min(LAGS, len(r) // 4)
+    if lags < 3:
+        return 1.0
+    r = r - r.mean()
+    first = (r[1:] @ r[:-1]) / (r @ r)
+    r = r[1:] - first * r[:-1]
+    shifts = np.arange(1, lags + 1)
+    rho = np.array([r[k:] @ r[:-k] for k in shifts]) / (r @ r)
+    q = count * (count + 2.0) * np.sum(np.square(rho) / (count - shifts))
+    return float(stats.chi2.sf(q, lags - 1))
+
+
+def _outliers(r):
+    """p of the largest sample and of the number of large ones."""
+    largest = -np.expm1(len(r) * np.log1p(-2.0 * stats.norm.sf(np.abs(r).max())))
+    expected = len(r) * 2.0 * stats.norm.sf(_FAR)
+    many = stats.poisson.sf(np.count_nonzero(np.abs(r) > _FAR) - 1, expected)
+    return float(min(1.0, 2.0 * min(largest, many)))
+
+
+def _oscillation(r, wide):
+    """p of the best damped or lasting sinusoid in one trace."""
+    highest = max(float(_bank(r[None], *one).max()) for one in _plan(len(r), wide))
+    return float(-np.expm1(_trials(len(r), wide) * np.log1p(-np.exp(-0.5 * highest))))
+
+
+def _plan(samples, wide):
+    """(start, decay) of every window of the bank, in samples; a decay of infinity is the whole trace."""
+    windows = [(0, np.inf)]
+    for decay in DECAYS:
+        length = decay * wide
+        windows += [(int(t), length) for t in np.arange(0.0, samples - length, length / STARTS)]
+    return windows
+
+
+@lru_cache(maxsize=256)
+def _trials(samples, wide):
+    """So many independent tests the bank is, by the median of its largest value in noise."""
+    noise = np.random.default_rng(np.random.SeedSequence(SEED)).standard_normal((NULLS, samples))
+    highest = np.max([_bank(noise, *one).max(axis=1) for one in _plan(samples, wide)], axis=0)
+    return float(np.log(2.0) / -np.log1p(-np.exp(-0.5 * np.median(highest))))
+
+
+def _bank(r, start, decay):
+    """(L, F) χ² (two degrees of freedom) of oscillations of all frequencies in (L, T) residuals."""
+    window, norm = _window(r.shape[1], start, decay)
+    cosine, sine, both = norm
+    transformed = np.fft.rfft(r * window, axis=1)[:, 1:]
+    b, c = transformed.real, -transformed.imag
+    determinant = cosine * sine - both**2
+    good = determinant > _APART * 0.25 * (window @ window) ** 2
+    value = (sine * b**2 - 2.0 * both * b * c + cosine * c**2) / np.where(good, determinant, np.inf)
+    return value
+
+
+@lru_cache(maxsize=4096)
+def _window(samples, start, decay):
+    """(T,) window and products (F,) of cosine with itself, sine with itself, and both under it."""
+    time = np.arange(samples) - start
+    window = np.where(time >= 0, np.exp(-np.maximum(time, 0) / decay), 0.0)
+    square = window**2
+    doubled = np.fft.fft(square)[2 * np.arange(1, samples // 2 + 1) % samples]
+    whole = square.sum()
+    norm = (0.5 * (whole + doubled.real), 0.5 * (whole - doubled.real), -0.5 * doubled.imag)
+    return window, norm
+
+
+def _shared(forward, left):
+    """p of oscillations that all runs of a gauge share, setting in with the pulse: gauge by gauge."""
+    result = []
+    for s in range(len(forward.experiment.gauges)):
+        own = [(forward.experiment.runs[run], r) for run, g, r in left if g == s]
+        lengths = {(len(r), round(data.interval, 12)) for data, r in own}
+        if len(own) > 1 and len(lengths) == 1:
+            result.append(_together(own, s))
+    return {"oscillation of a gauge": min(1.0, len(result) * min(result))} if result else {}
+
+
+def _together(own, s):
+    """p of the best oscillation of one gauge's runs, their χ² added."""
+    traces = [np.abs(data.readings[s]) for data, _ in own]
+    wide = int(np.median([width(t) for t in traces]))
+    highest, count = 0.0, 0
+    for after in TOGETHER:
+        for decay in (*DECAYS, np.inf):
+            starts = [max(0, int(t.argmax() + after * wide)) for t in traces]
+            total = sum(_bank(r[None], t, decay * wide)[0] for (_, r), t in zip(own, starts, strict=True))
+            highest, count = max(highest, float(total.max())), count + len(total)
+    # Neighbouring members of the bank are alike; counting each errs on the safe side.
+    return float(min(1.0, count * stats.chi2.sf(highest, 2 * len(own))))

@@ -1,0 +1,74 @@
+"""What a model leaves, asked three ways: along chosen shapes, in any shape, and as a smooth discrepancy."""
+
+import math
+from dataclasses import dataclass
+
+from scipy import stats
+
+from sonicvacuum.discover import goodness, policy, screen, smooth, unknown
+from sonicvacuum.discover.forward import Forward
+from sonicvacuum.discover.goodness import Goodness
+from sonicvacuum.discover.refit import Fit
+from sonicvacuum.discover.unknown import Alarm
+
+
+@dataclass(frozen=True)
+class Left:
+    """What a model leaves.
+
+    Attributes:
+        alarm: along chosen shapes.
+        fit: in any shape.
+        size: the smooth discrepancy.
+        behind: Δχ² by which the model falls short of one shape outside the catalogue.
+    """
+
+    alarm: Alarm
+    fit: Goodness
+    size: smooth.Size
+    behind: float = 0.0
+
+    @property
+    def raised(self) -> bool:
+        """Whether a real misfit is left."""
+        return self.alarm.raised or self.fit.failed or self.size.found or self.behind > 0.0
+
+    @property
+    def p(self) -> float:
+        """p-value of what is left; goodness of fit, which asks for more, counts only where it fails."""
+        found = [self.alarm.p, math.exp(-0.5 * self.behind)]
+        found += [self.fit.p] if self.fit.failed else []
+        found += [float(0.5 * stats.chi2.sf(self.size.drop, 1))] if self.size.found else []
+        return min(found)
+
+    @property
+    def where(self) -> str:
+        """In words."""
+        if self.size.found:
+            return f"a smooth misfit of {100.0 * self.size.size:.2g} % of the peak"
+        if self.fit.failed and self.fit.p < self.alarm.p:
+            return _WORDS.get(self.fit.worst, self.fit.worst)
+        return f"a misfit in {self.alarm.group}"
+
+
+_WORDS = {
+    "chi2": "more scatter in a trace than its noise",
+    "total": "more scatter than the noise",
+    "whiteness": "a residual that is correlated from sample to sample",
+    "outliers": "single samples far off",
+    "oscillation": "an oscillation in a trace",
+    "oscillation of a gauge": "an oscillation in all runs of a gauge",
+}
+
+
+def left(forward: Forward, fit: Fit, known, scores: screen.Screen | None = None, behind: float = 0.0) -> Left:
+    """All three; `known` are the `smooth.blocks`, None where no discrepancy is to be inferred; `scores` is the
+    catalogue's screen at the fit, where at hand.
+    """
+    size = smooth.Size(0.0, 0.0) if known is None else smooth.infer(forward, fit, known)
+    return Left(unknown.alarm(forward, fit, scores), goodness.goodness(forward, fit), size, behind)
+
+
+def sure(found: Left) -> bool:
+    """Whether the nominal model leaves a misfit beyond doubt: nothing is named then but that."""
+    return found.p < policy.NULL_ALARM

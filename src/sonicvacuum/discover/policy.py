@@ -1,0 +1,49 @@
+"""Numbers that decide, each with its reason: where `discover` draws its lines.
+
+Fixed here, on other data than those it is tested on, and nowhere else; what only steers a search (how many
+starts, how many steps) stands beside the search.
+"""
+
+# Of the largest score of the whole catalogue in pure noise: one null in a hundred would pass it, and an
+# effect has to pass other tests besides.
+FALSE_ALARM = 0.01
+# An effect is ten times likelier than none before it is named: at less, one null in six names a spurious
+# component; at this, 1.6 % (the comparison of evidences of Nelson et al., Astron. J. 159, 73, 2020).
+LEAST_LOG10_BAYES = 1.0
+# p below which the nominal model leaves a sure misfit: with nothing to name, only that is called unknown.
+NULL_ALARM = 1e-3
+# p below which shapes outside the catalogue are left beside what is named. Below it `unknown` is the likelier.
+ALARM = 4e-3
+# p below which goodness of fit fails: its tests know no shape, so that they are asked for more than the alarm.
+MISFIT = 1e-3
+# What is named must gain as much as the simplest shape outside the catalogue, within a χ² of noise and the
+# share by which linear predictions err.
+MARGIN, SHARE = 6.0, 0.05
+# Beside what is left, a set of effects is named where it is so many times likelier than all others together.
+CLEAR = 9.0
+# No more effects than this are named together: a set of more is not looked through in any sense.
+MOST_EFFECTS = 6
+
+# Smooth misfit. Its correlation in time, over the pulse's width at half height: less would be a ripple on the
+# pulse, more a change of its height.
+SMOOTH_LENGTH = 0.5
+# Knots per trace at most; longer traces are given a longer correlation.
+SMOOTH_KNOTS = 48
+# Sizes tried, as shares of the peak: from what the simulation itself errs by to where no model is left.
+SMOOTH_LEAST, SMOOTH_MOST, SMOOTH_SIZES = 2e-4, 0.5, 34
+# A systematic error tends to be the same in every run, so that runs do not average it away: of its variance
+# this share is taken as common to all.
+SMOOTH_SHARED = 0.5
+# Log prior odds of a smooth misfit against none, and its Occam factor: one size, known to a fifth, out of
+# three decades.
+SMOOTH_LOG_PRIOR = -5.0
+
+# Standard error of the noise's own standard deviation, relative: a quiet stretch of a thousand samples.
+SIGMA_REL = 0.02
+
+# Two effects whose changes of all data have this cosine are one explanation with two names ...
+ALIAS_COSINE = 0.999
+# ... unless the data tell them apart by more than this Δχ².
+ALIAS_GAIN = 4.0
+# What failed a test may be at most this share as probable as what is named.
+REFUSED = 0.5

@@ -1,0 +1,208 @@
+"""More effects than one, while something smooth may be left: added and taken away one at a time.
+
+At each turn the size of the smooth discrepancy is inferred at the model so far and counted as noise
+(`smooth`). An effect is added while it passes the noise of the whole catalogue under that, is ten times
+likelier than without, and predicts unseen runs no worse; one that no longer does is taken away; each is held
+against those that might stand in its place. A misfit in one direction leaves room for the effect that makes
+it, one that is spread over many does not: a systematic error names nothing.
+"""
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from sonicvacuum.discover import heldout, pairs, policy, smooth
+from sonicvacuum.discover.evidence import Combination
+from sonicvacuum.discover.forward import Forward
+from sonicvacuum.discover.hypothesis import Hypothesis, is_law
+from sonicvacuum.discover.normal import linearise
+from sonicvacuum.discover.refit import Fit, polish
+from sonicvacuum.discover.unknown import Alarm
+from sonicvacuum.effects import Setup
+
+# Starts that are fitted jointly at each turn, by what they should gain.
+TRIED = 3
+# What slopes promise may fall short of what a fit gains by this share.
+PROMISE = 0.6
+TURNS = 2 * policy.MOST_EFFECTS
+
+
+@dataclass(frozen=True)
+class Grown:
+    """Where adding and taking away came to an end.
+
+    Attributes:
+        forward: the predictor with the smooth discrepancy in its noise.
+        null: the nominal model there.
+        best: effects and fit there; no effects where none is left.
+        size: the discrepancy.
+        tried: other combinations there, the best one and none included.
+    """
+
+    forward: Forward
+    null: Fit
+    best: Combination
+    size: smooth.Size
+    tried: dict[frozenset, Combination] = field(default_factory=dict)
+
+
+def moved(forward: Forward, fit: Fit) -> Fit:
+    """A fit followed to its minimum in another view of the same data."""
+    here = Fit(fit.hypothesis, linearise(forward, fit.hypothesis, fit.u[None], fit.nu[None]))
+    return polish(forward, here, pairs.ITERATIONS)
+
+
+def without(hypothesis: Hypothesis, u: np.ndarray, k: int, setup: Setup) -> tuple[Hypothesis, np.ndarray]:
+    """A hypothesis and its coordinates with effect k taken away."""
+    left = tuple(c for j, c in enumerate(hypothesis.components) if j != k)
+    laws = sum(is_law(c.effect, setup) for c in left)
+    return replace(hypothesis, components=left, common=hypothesis.common and laws > 1), np.delete(
+        u, np.arange(*hypothesis.columns[k].indices(len(u)))
+    )
+
+
+class Turns:
+    """One search; `forward` has no discrepancy, `known` are its `smooth.blocks`, `needed` is the Δχ² that an
+    effect has to gain.
+    """
+
+    def __init__(self, forward: Forward, known, needed: float, setup: Setup, infer: bool = True):
+        self.plain, self.known, self.needed, self.setup, self.infer = forward, known, needed, setup, infer
+        self.forward, self.null, self.tried = forward, None, {}
+        self.size = smooth.Size(0.0, 0.0)
+
+    def grow(self, null: Fit, start: Fit) -> Grown:
+        """From a start to where nothing more is added, taken away or exchanged."""
+        plain_null, fit = null, start
+        for _ in range(TURNS):
+            fit = self._counted(plain_null, fit)
+            fit = self._pruned(fit)
+            more = self._added(fit)
+            if more is None:
+                more = self._exchanged(fit)
+            if more is None:
+                break
+            fit = more
+        fit = self._pruned(self._counted(plain_null, fit))
+        return Grown(self.forward, self.null, self._noted(fit), self.size, self.tried)
+
+    def _counted(self, plain_null, fit):
+        """The fit with the discrepancy at it counted as noise; what was tried under another is forgotten."""
+        size = smooth.infer(self.plain, fit, self.known) if self.infer else smooth.Size(0.0, 0.0)
+        size = size if size.found else smooth.Size(0.0, size.drop)
+        if self.null is None or size.size != self.size.size:
+            self.forward = self.plain
+            if size.size:
+                counted = smooth.with_size(self.plain.experiment, size.size, self.known)
+                self.forward = Forward(counted, self.plain.threads)
+            self.null = moved(self.forward, plain_null) if size.size else plain_null
+            self.tried = {}
+        self.size = size
+        fit = moved(self.forward, fit)
+        self._noted(fit)
+        return fit
+
+    def _noted(self, fit) -> Combination:
+        """The evidence of a fit, kept."""
+        new = pairs.combination(self.null, fit, self.setup)
+        key = frozenset(new.effects)
+        if key not in self.tried or self.tried[key].gain < new.gain:
+            self.tried[key] = new
+        return self.tried[key]
+
+    def _pruned(self, fit):
+        """Without effects that do not earn their evidence beside the others."""
+        while fit.hypothesis.components:
+            less = [self._less(fit, k) for k in range(len(fit.hypothesis.components))]
+            weakest = min(less, key=lambda one: one.objective)
+            if self._earned(weakest, fit):
+                return fit
+            fit = weakest
+        return fit
+
+    def _less(self, fit, k):
+        """The best fit without effect k."""
+        hypothesis, u = without(fit.hypothesis, fit.u, k, self.setup)
+        if not hypothesis.components:
+            return self.null
+        here = Fit(hypothesis, linearise(self.forward, hypothesis, u[None], fit.nu[None]))
+        found = polish(self.forward, here, pairs.ITERATIONS)
+        self._noted(found)
+        return found
+
+    def _earned(self, before: Fit, after: Fit) -> bool:
+        """Whether one more effect is worth it."""
+        gain = before.objective - after.objective
+        ratio = self._evidence(after) - self._evidence(before)
+        return (
+            gain > self.needed
+            and ratio > policy.LEAST_LOG10_BAYES * np.log(10.0)
+            and heldout.better(before, after)
+        )
+
+    def _evidence(self, fit):
+        return pairs.combination(self.null, fit, self.setup).log_bayes if fit.hypothesis.components else 0.0
+
+    def _added(self, fit):
+        """The fit with the effect that earns most, None where none does."""
+        if len(fit.hypothesis.components) >= policy.MOST_EFFECTS:
+            return None
+        scores = pairs.screened(self.forward, fit, self.setup)
+        promised = pairs.beside(self.forward, self.null, fit, self.setup, scores)
+        enough = self.null.objective - fit.objective + PROMISE * self.needed
+        found = self._fitted(promised, enough, fit)
+        best = max(found, key=self._evidence, default=None)
+        return best if best is not None and self._earned(fit, best) else None
+
+    def _fitted(self, starts, enough, fit):
+        """The most promising starts, fitted; effects already tried together are not tried again."""
+        chosen = [s for s in starts if s.gain > enough and s.effects not in self.tried]
+        chosen = sorted(chosen, key=lambda s: -s.gain)[:TRIED]
+        found = [pairs.fitted(self.forward, s, self.setup, fit.objective + pairs.BEHIND) for s in chosen]
+        found = [one for one in found if np.isfinite(one.objective)]
+        for one in found:
+            self._noted(one)
+        return found
+
+    def _exchanged(self, fit):
+        """The fit with one effect exchanged for a likelier one, None where there is none."""
+        own = self._evidence(fit)
+        for k in range(len(fit.hypothesis.components)):
+            less = self._less(fit, k)
+            starts = pairs.beside(self.forward, self.null, less, self.setup)
+            enough = PROMISE * (self.null.objective - fit.objective)
+            found = self._fitted(starts, enough, fit)
+            best = max(found, key=self._evidence, default=None)
+            if best is not None and self._evidence(best) > own + 0.5:
+                return best
+        return None
+
+
+def irreplaceable(alarm: Alarm, fit: Fit, needed: float) -> list[int]:
+    """Effects of a fit that are still seen when the shapes which raise an alarm may take what they like.
+
+    Where a shape outside the catalogue is left beside an effect, the effect may be no more than what comes
+    nearest to it. In the linearised model with those shapes free, its strength has to stand off from zero by
+    as much as an effect needs to be named.
+    """
+    scores, free = alarm.screen, fit.normal.free
+    at = alarm.raising
+    gradient, hessian = (part[0] for part in scores.normal.total())
+    cross, products = scores.cross.sum(axis=0)[:, at], scores.products.sum(axis=0)[np.ix_(at, at)]
+    length = np.sqrt(np.maximum(np.diag(products), 1e-300))
+    cross, products = cross / length, products / np.outer(length, length)
+    whole = np.block([[hessian, cross], [cross.T, products]])
+    whole += 1e-9 * np.diag(np.maximum(np.diag(whole), 1e-9))
+    right = np.concatenate([gradient, scores.score.sum(axis=0)[at] / length])
+    covariance = np.linalg.pinv(whole, rcond=1e-11, hermitian=True)
+    step, error = (covariance @ right)[:free], np.sqrt(np.maximum(np.diag(covariance)[:free], 1e-300))
+    kept = []
+    for k, (component, own) in enumerate(zip(fit.hypothesis.components, fit.hypothesis.columns, strict=True)):
+        z = [
+            (1.0 + d if c.kind in ("log", "inverse") else u + d) / e
+            for c, u, d, e in zip(component.free, fit.u[own], step[own], error[own], strict=True)
+            if c.parameter.switches
+        ]
+        if max((abs(x) for x in z), default=0.0) ** 2 > needed:
+            kept.append(k)
+    return kept
