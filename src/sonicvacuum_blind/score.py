@@ -129,14 +129,14 @@ def _row(truth, verdict):
         nearest=truth["nearest"]["id"],
         ideal=truth["ideal"].get("+".join(effects), 0.0) if truth["ideal"] else math.nan,
         named="+".join(named),
-        top=top,
+        top=top.replace(" + ", "+"),
         confidence=probabilities[top],
         exact=int(set(named) == ({UNKNOWN} if truth["kind"] == "foreign" else set(effects))),
         class_level=int(_class_level(effects, named, verdict["confusable"])),
         false_alarm=int(bool(wrong)),
         says_unknown=int(UNKNOWN in named),
         confident_wrong=int(
-            UNKNOWN not in named and any(probabilities.get(n, 0.0) >= CONFIDENT for n in wrong)
+            UNKNOWN not in named and any(_marginal(probabilities, n) >= CONFIDENT for n in wrong)
         ),
         closed=_number(held_out.get("closed")),
         before=_over_floor(held_out, "before"),
@@ -146,6 +146,11 @@ def _row(truth, verdict):
         seconds=_number((verdict.get("timing_s") or {}).get("total")),
         simulations=int(verdict.get("simulations") or 0),
     )
+
+
+def _marginal(probabilities, effect):
+    """Probability of an effect, alone or among others (keys join several by ` + `)."""
+    return sum(p for name, p in probabilities.items() if effect in name.split(" + "))
 
 
 def _reached(truth):

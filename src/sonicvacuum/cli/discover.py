@@ -73,7 +73,7 @@ def _sentence(verdict):
     if not verdict.named and verdict.sees_nothing:
         return "none, but no effect of the catalogue would show in these data"
     named = verdict.named or ["none"]
-    sure = verdict.probabilities.get(named[0], 0.0) if len(named) == 1 else None
+    sure = verdict.probability
     text = " + ".join(named) + (f" (probability {sure:.2f})" if sure is not None else "")
     alike = "; ".join(", ".join(c[1:]) for c in verdict.confusable)
     return text + (f"; could also be {alike}" if alike else "")

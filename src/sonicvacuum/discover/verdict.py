@@ -13,6 +13,7 @@ import numpy as np
 from msgspec import UNSET, Struct, UnsetType
 
 from sonicvacuum.discover.degenerate import Limit
+from sonicvacuum.discover.explanations import key
 from sonicvacuum.discover.goodness import Goodness
 from sonicvacuum.discover.heldout import HeldOut
 from sonicvacuum.discover.locate import Place
@@ -151,6 +152,11 @@ class Verdict(_Part, kw_only=True):
     simulations: int
     sources: Sources = UNSET
     fit: GoodnessOfFit | None = None
+
+    @property
+    def probability(self) -> float | None:
+        """Of what is named; None in verdicts on sets written before those had probabilities."""
+        return self.probabilities.get(key(self.named))
 
     @property
     def sees_nothing(self) -> bool:

@@ -67,7 +67,7 @@ def section(folder, catalogue: Catalogue = CATALOGUE) -> dict:
         "alternatives": words.alternatives(verdict),
         "pairs": [r for r in tables["candidates"] if "+" in r["effects"]][:_PAIRS],
         "singles": [r for r in tables["candidates"] if "+" not in r["effects"]],
-        "gap": words.gap(verdict),
+        "gap": " ".join(filter(None, (words.gap(verdict), words.goodness(verdict)))),
         "runs": [r for r in tables["gap"] if not r["run"].startswith("round ")],
         "added": bool(words.effects_of(verdict)),
         "limits": [_limit(r, catalogue) for r in tables["limits"] if r["testable"] == "1"],

@@ -6,6 +6,7 @@ Every sentence is made from `verdict.json`, `model.json` and the tables beside t
 import math
 from collections import Counter
 
+from sonicvacuum.discover.explanations import key
 from sonicvacuum.discover.locate import DISCOVERY_RATE
 from sonicvacuum.discover.verdict import Gap, Model, Next, Verdict
 from sonicvacuum.effects import CATALOGUE, Catalogue
@@ -72,27 +73,32 @@ def headline(verdict: Verdict, catalogue: Catalogue = CATALOGUE) -> str:
     if not found:
         return (
             "Something is missing, and it is unknown: a real misfit is left that no effect of the catalogue, "
-            f"nor any pair that was tried, explains. That it is none of the single effects is "
+            f"nor any set of them that was tried, explains. That it is none of them is "
             f"{in_words(odds.get('unknown', 0.0))}."
         )
     told = [f"{e.title} ({e.id}): {e.missing}" for e in map(catalogue.effect, found)]
     if len(found) == 1 and verdict.confusable:
         text = _one_of(verdict, told[0])
     elif len(found) == 1:
-        text = f"What is missing: {told[0]}. That is {in_words(odds.get(found[0], 0.0))}."
+        text = f"What is missing: {told[0]}. That is {in_words(verdict.probability or 0.0)}."
     else:
-        text = f"Two effects are missing: {'; '.join(told)}."
-        text += f" No single effect does: {_singles(odds)}."
+        text = f"{_COUNTS.get(len(found), str(len(found)))} effects are missing: {'; '.join(told)}."
+        sure = verdict.probability
+        text += f" No single effect does: {_singles(odds)}." if sure is None else f" That is {in_words(sure)}."
     return text + (" Even so, a misfit is left that nothing of the catalogue explains." if unknown else "")
+
+
+_COUNTS = {2: "Two", 3: "Three", 4: "Four", 5: "Five", 6: "Six"}
 
 
 def _one_of(verdict, told):
     """A single effect with others that these data cannot tell from it."""
     members, odds = verdict.confusable[0], verdict.probabilities
-    together = in_words(sum(odds.get(name, 0.0) for name in members))
+    beside = ["unknown"] if "unknown" in verdict.named else []
+    each = [odds.get(key([name, *beside]), 0.0) for name in members]
     return (
         f"What is missing is one of {joined(members, 'or')}, which these data cannot tell apart: together "
-        f"{together}. Most probable among them, {share(odds.get(members[0], 0.0))}: {told}."
+        f"{in_words(min(1.0, sum(each)))}. Most probable among them, {share(each[0])}: {told}."
     )
 
 
@@ -162,7 +168,8 @@ def alternatives(verdict: Verdict) -> str:
         parts = [f"No rival comes near: {joined(found)} can be told from every other effect that was fitted."]
     if not found:
         rivals = [n for n in sorted(verdict.probabilities, key=verdict.probabilities.get, reverse=True)]
-        rivals = [n for n in rivals if n not in ("none", "unknown") and verdict.probabilities[n] >= 0.01][:3]
+        rivals = [n for n in rivals if n not in ("none", "unknown") and " + " not in n]
+        rivals = [n for n in rivals if verdict.probabilities[n] >= 0.01][:3]
         named = [f"{n} ({share(verdict.probabilities[n])})" for n in rivals]
         parts = [f"The nearest single effects: {joined(named)}." if named else "No single effect comes near."]
     return " ".join(parts)
@@ -200,6 +207,26 @@ def _closed(one: Gap):
         return ""
     closed = 100.0 * min(one.closed, 1.0)
     return f" ({closed:.3g} % of the gap closed)" if closed > 0.0 else " (the gap is not closed)"
+
+
+def goodness(verdict: Verdict) -> str:
+    """Whether what the model leaves looks like noise; empty for verdicts that did not ask."""
+    fit = verdict.fit
+    if fit is None or not fit.extended:
+        return ""
+    worst = max(fit.extended, key=lambda c: c.chi2)
+    text = (
+        f"The largest mean squared residual of a trace is {worst.chi2:.3g} times the noise (run {worst.run}, "
+        f"gauge {worst.sensor}), which noise alone would give with probability {number(str(worst.p), 2)}."
+    )
+    if fit.smooth_rel:
+        text += (
+            f" A smooth misfit of {100.0 * fit.smooth_rel:.2g} % of the peak counts as noise in errors and "
+            "upper limits."
+        )
+    if fit.wider > 1.0:
+        text += f" For what is left, errors behind the upper limits are {fit.wider:.3g} times as large."
+    return text
 
 
 def nuisances(model: Model) -> str:
@@ -267,6 +294,7 @@ def decided(verdict: Verdict) -> list[str]:
         "none": "what the nominal model leaves",
         "single": "what the best single effect leaves",
         "pair": "what the best pair leaves",
+        "set": "what the last set of effects leaves",
     }
     lines = [f"Decisive: {reason}." for reason in verdict.reasons]
     return lines + [
