@@ -1,0 +1,65 @@
+"""Explanations: their keys, shares among names that act alike, what is named being the likeliest."""
+
+import math
+from types import SimpleNamespace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from sonicvacuum.discover import explanations
+from sonicvacuum.discover.calibration import Calibration
+
+
+def single(name, log_bayes):
+    return SimpleNamespace(effect=name, log_bayes=log_bayes)
+
+
+def several(names, log_bayes):
+    return SimpleNamespace(effects=names, log_bayes=log_bayes)
+
+
+@given(st.lists(st.sampled_from(["tsuji", "gravity", "sensor-droop", "unknown"]), unique=True))
+def test_keys_and_effects_are_each_others_inverse(names):
+    key = explanations.key(names)
+    assert sorted(explanations.effects(key)) == sorted(names)
+    assert not names or key == " + ".join(sorted(names, key=lambda n: (n == "unknown", n)))
+
+
+@given(st.floats(-20.0, 60.0), st.floats(-20.0, 60.0), st.floats(1e-9, 0.9))
+def test_probabilities_of_sets_add_up_to_one(one, two, p):
+    logs = explanations.log_weights([single("tsuji", one)], [several(("tsuji", "gravity"), two)], [])
+    beside = {"none": 0.0, "tsuji": one}
+    for given_ in (None, beside):
+        found = explanations.probabilities(logs, p, given_)
+        assert sum(found.values()) == pytest.approx(1.0, abs=1e-9)  # rounding
+
+
+def test_a_set_has_a_probability_of_its_own():
+    logs = explanations.log_weights([single("tsuji", 80.0)], [several(("tsuji", "gravity"), 200.0)], [])
+    found = explanations.probabilities(logs, 0.5)
+    assert found["gravity + tsuji"] > 0.95
+
+
+def test_something_left_goes_to_the_set_that_stands_beside_it():
+    logs = explanations.log_weights([single("tsuji", 80.0)], [], [])
+    found = explanations.probabilities(logs, 1e-30, {"none": 0.0, "tsuji": 40.0})
+    assert found["tsuji + unknown"] > 0.99
+    assert explanations.probabilities(logs, 1e-30)["unknown"] > 0.99
+
+
+def test_names_that_act_alike_share_alike():
+    names = ["tsuji", "kuwabara-kono", "gravity"]
+    found = [single(n, 50.0 + 0.3 * k) for k, n in enumerate(names)]
+    plain = Calibration(temper=1.0)
+    odds = explanations.probabilities(explanations.log_weights(found, [], names), 0.9, None, plain)
+    assert [odds[n] for n in names] == pytest.approx([odds["tsuji"]] * 3)
+    assert odds["tsuji"] == pytest.approx((1.0 - odds["unknown"]) / 3.0, rel=1e-6)  # none: e^-50
+
+
+def test_what_failed_a_test_is_not_left_the_likeliest():
+    found, likelier = explanations.consistent({"none": 0.2, "tsuji": 0.7, "unknown": 0.1}, [])
+    assert likelier == "tsuji"
+    assert max(found, key=found.get) == "none"
+    assert math.isclose(sum(found.values()), 1.0)
+    assert explanations.consistent({"none": 0.1, "tsuji": 0.9}, ["tsuji"]) == ({"none": 0.1, "tsuji": 0.9}, "")

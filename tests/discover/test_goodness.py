@@ -1,0 +1,57 @@
+"""Goodness of fit: p-values of noise are what they say, and misfits of any shape are seen."""
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from sonicvacuum.discover import goodness
+
+SAMPLES, WIDE, TRACES = 400, 30, 200
+
+
+@pytest.fixture(scope="module")
+def noise():
+    return np.random.default_rng(np.random.SeedSequence(3)).normal(size=(TRACES, SAMPLES))
+
+
+@pytest.mark.parametrize(
+    "test",
+    [
+        goodness._chi2,
+        goodness._whiteness,
+        goodness._outliers,
+        lambda r: goodness._oscillation(r, WIDE),
+    ],
+    ids=["chi2", "whiteness", "outliers", "oscillation"],
+)
+def test_noise_fails_as_often_as_it_should(noise, test):
+    failed = sum(test(r) < 0.05 for r in noise)
+    # At most 5 % of 200: beyond 20 by chance once in a thousand.
+    assert failed <= stats.binom.isf(1e-3, TRACES, 0.05)
+
+
+def test_every_member_of_the_bank_is_a_chi_square_of_two(noise):
+    for start, decay in ((0, np.inf), (100, 15.0), (50, 60.0)):
+        values = goodness._bank(noise, start, decay)
+        seen = values[:, values.any(axis=0)]
+        # Mean of 200 draws for each frequency, neighbours correlated: five standard errors of 2/√200.
+        np.testing.assert_allclose(seen.mean(axis=0), 2.0, atol=5.0 * 2.0 / np.sqrt(TRACES))
+
+
+def test_ringing_is_seen_where_the_whole_residual_looks_like_noise(noise):
+    time = np.arange(SAMPLES) - 150.0
+    ring = np.where(time >= 0.0, np.exp(-time.clip(0.0) / 40.0) * np.sin(0.45 * time), 0.0)
+    r = noise[0] + 9.0 * ring / np.linalg.norm(ring)
+    assert goodness._chi2(r) > 1e-4
+    assert goodness._oscillation(r, WIDE) < 1e-6
+
+
+def test_one_wild_sample_is_seen(noise):
+    r = noise[1].copy()
+    r[77] = 8.0
+    assert goodness._outliers(r) < 1e-8
+
+
+def test_correlation_beyond_neighbours_is_seen(noise):
+    r = noise[2] + 0.7 * np.roll(noise[2], 6)
+    assert goodness._whiteness(r) < 1e-6
