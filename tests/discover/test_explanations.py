@@ -62,4 +62,7 @@ def test_what_failed_a_test_is_not_left_the_likeliest():
     assert likelier == "tsuji"
     assert max(found, key=found.get) == "none"
     assert math.isclose(sum(found.values()), 1.0)
-    assert explanations.consistent({"none": 0.1, "tsuji": 0.9}, ["tsuji"]) == ({"none": 0.1, "tsuji": 0.9}, "")
+    assert explanations.consistent({"none": 0.1, "tsuji": 0.9}, ["tsuji"]) == (
+        {"none": 0.1, "tsuji": 0.9},
+        "",
+    )

@@ -83,7 +83,9 @@ def with_systematics(record: Record, size: float, seed=5) -> Record:
 
 def test_the_width_of_a_pulse_is_that_at_half_height():
     time = np.arange(200.0)
-    assert smooth.width(np.exp(-4.0 * np.log(2.0) * np.square((time - 90.0) / 20.0))) == pytest.approx(20, abs=1)
+    assert smooth.width(np.exp(-4.0 * np.log(2.0) * np.square((time - 90.0) / 20.0))) == pytest.approx(
+        20, abs=1
+    )
 
 
 def test_records_of_one_laboratory_hand_on_what_was_hidden():

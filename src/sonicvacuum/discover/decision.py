@@ -29,9 +29,7 @@ UNKNOWN = explanations.UNKNOWN
 
 @dataclass(frozen=True)
 class View:
-    """A model in one view of the data: `smooth` counts a discrepancy as noise, so that errors and limits allow
-    for it.
-    """
+    """The models with a smooth discrepancy counted as noise, so that errors and limits allow for it."""
 
     forward: Forward
     null: Fit

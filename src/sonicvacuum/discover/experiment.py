@@ -94,8 +94,8 @@ class Smooth:
     Attributes:
         size: its standard deviation as a share of each trace's peak.
         variance: that of the weights of its directions, in squared peaks.
-        blocks: for each run and gauge, orthonormal directions (T, r) of the whitened trace and their variances
-            (r,) for weights of one squared peak.
+        blocks: for each run and gauge, orthonormal directions (T, r) of the whitened trace and their
+            variances (r,) for weights of one squared peak.
     """
 
     size: float

@@ -62,8 +62,10 @@ _WORDS = {
 
 
 def left(forward: Forward, fit: Fit, known, scores: screen.Screen | None = None, behind: float = 0.0) -> Left:
-    """All three; `known` are the `smooth.blocks`, None where no discrepancy is to be inferred; `scores` is the
-    catalogue's screen at the fit, where at hand.
+    """All three.
+
+    `known` are the `smooth.blocks`, None where no discrepancy is to be inferred; `scores` is the catalogue's
+    screen at the fit, where at hand.
     """
     size = smooth.Size(0.0, 0.0) if known is None else smooth.infer(forward, fit, known)
     return Left(unknown.alarm(forward, fit, scores), goodness.goodness(forward, fit), size, behind)

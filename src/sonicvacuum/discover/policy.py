@@ -12,9 +12,9 @@ FALSE_ALARM = 0.01
 LEAST_LOG10_BAYES = 1.0
 # p below which the nominal model leaves a sure misfit: with nothing to name, only that is called unknown.
 NULL_ALARM = 1e-3
-# p below which shapes outside the catalogue are left beside what is named. Below it `unknown` is the likelier.
+# p below which shapes outside the catalogue are left beside what is named: `unknown` is then the likelier.
 ALARM = 4e-3
-# p below which goodness of fit fails: its tests know no shape, so that they are asked for more than the alarm.
+# p below which goodness of fit fails: its tests know no shape, and more is asked of them than of the alarm.
 MISFIT = 1e-3
 # What is named must gain as much as the simplest shape outside the catalogue, within a χ² of noise and the
 # share by which linear predictions err.

@@ -95,7 +95,7 @@ def discover(*records: Record, threads: int | None = None, catalogue: Catalogue 
 
 
 def _limits(found: Investigation, fit: goodness.Goodness) -> tuple[list[degenerate.Limit], float]:
-    """Upper limits of all effects that are not named, what is left counted as noise, and the factor on errors.
+    """Upper limits of all effects not named, and the factor on their errors.
 
     What is smooth is in the noise already; for the rest errors grow with the residual (Birge, Phys. Rev. 40,
     207, 1932).

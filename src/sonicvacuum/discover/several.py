@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from sonicvacuum.discover import heldout, pairs, policy, smooth
+from sonicvacuum.discover import heldout, pairs, places, policy, smooth
 from sonicvacuum.discover.evidence import Combination
 from sonicvacuum.discover.forward import Forward
 from sonicvacuum.discover.hypothesis import Hypothesis, is_law
@@ -20,11 +20,11 @@ from sonicvacuum.discover.refit import Fit, polish
 from sonicvacuum.discover.unknown import Alarm
 from sonicvacuum.effects import Setup
 
-# Starts that are fitted jointly at each turn, by what they should gain.
-TRIED = 3
+# Starts that are fitted jointly at each turn, by what they should gain; rounds of exchanges.
+TRIED, EXCHANGES = 2, 1
 # What slopes promise may fall short of what a fit gains by this share.
 PROMISE = 0.6
-TURNS = 2 * policy.MOST_EFFECTS
+TURNS = policy.MOST_EFFECTS + 2
 
 
 @dataclass(frozen=True)
@@ -73,12 +73,13 @@ class Turns:
 
     def grow(self, null: Fit, start: Fit) -> Grown:
         """From a start to where nothing more is added, taken away or exchanged."""
-        plain_null, fit = null, start
+        plain_null, fit, exchanges = null, start, 0
         for _ in range(TURNS):
             fit = self._counted(plain_null, fit)
             fit = self._pruned(fit)
             more = self._added(fit)
-            if more is None:
+            if more is None and exchanges < EXCHANGES:
+                exchanges += 1
                 more = self._exchanged(fit)
             if more is None:
                 break
@@ -150,29 +151,31 @@ class Turns:
         scores = pairs.screened(self.forward, fit, self.setup)
         promised = pairs.beside(self.forward, self.null, fit, self.setup, scores)
         enough = self.null.objective - fit.objective + PROMISE * self.needed
-        found = self._fitted(promised, enough, fit)
-        best = max(found, key=self._evidence, default=None)
+        best = self._likeliest(promised, enough)
         return best if best is not None and self._earned(fit, best) else None
 
-    def _fitted(self, starts, enough, fit):
-        """The most promising starts, fitted; effects already tried together are not tried again."""
+    def _likeliest(self, starts, enough) -> Fit | None:
+        """The likeliest of the most promising starts, fitted; what was tried before is not tried again."""
         chosen = [s for s in starts if s.gain > enough and s.effects not in self.tried]
         chosen = sorted(chosen, key=lambda s: -s.gain)[:TRIED]
-        found = [pairs.fitted(self.forward, s, self.setup, fit.objective + pairs.BEHIND) for s in chosen]
+        found = [pairs.fitted(self.forward, s, self.setup, -np.inf) for s in chosen]
         found = [one for one in found if np.isfinite(one.objective)]
         for one in found:
             self._noted(one)
-        return found
+        best = max(found, key=self._evidence, default=None)
+        if best is not None and places.placed(best):
+            best = places.settled(self.forward, best, self.setup)
+            self._noted(best)
+        return best
 
     def _exchanged(self, fit):
         """The fit with one effect exchanged for a likelier one, None where there is none."""
-        own = self._evidence(fit)
-        for k in range(len(fit.hypothesis.components)):
+        own, count = self._evidence(fit), len(fit.hypothesis.components)
+        for k in range(count if count > 1 else 0):
             less = self._less(fit, k)
             starts = pairs.beside(self.forward, self.null, less, self.setup)
             enough = PROMISE * (self.null.objective - fit.objective)
-            found = self._fitted(starts, enough, fit)
-            best = max(found, key=self._evidence, default=None)
+            best = self._likeliest(starts, enough)
             if best is not None and self._evidence(best) > own + 0.5:
                 return best
         return None

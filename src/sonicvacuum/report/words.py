@@ -84,7 +84,9 @@ def headline(verdict: Verdict, catalogue: Catalogue = CATALOGUE) -> str:
     else:
         text = f"{_COUNTS.get(len(found), str(len(found)))} effects are missing: {'; '.join(told)}."
         sure = verdict.probability
-        text += f" No single effect does: {_singles(odds)}." if sure is None else f" That is {in_words(sure)}."
+        text += (
+            f" No single effect does: {_singles(odds)}." if sure is None else f" That is {in_words(sure)}."
+        )
     return text + (" Even so, a misfit is left that nothing of the catalogue explains." if unknown else "")
 
 
