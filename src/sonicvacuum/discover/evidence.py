@@ -37,7 +37,7 @@ class Candidate:
         gain: Δχ² (nuisance penalties included) against the nominal model.
         log_bayes: natural log of the Bayes factor against it.
         places: (place, weight) where it may sit.
-        flags: what to doubt: "bound", "unsettled".
+        flags: what to doubt: "bound", "beyond" (the range of the catalogue), "unsettled".
     """
 
     effect: str

@@ -118,3 +118,10 @@ def consistent(found: Mapping[str, float], named: Iterable[str]) -> tuple[dict[s
     held[own] = max(mine, 1e-12)
     total = sum(held.values())
     return {name: value / total for name, value in held.items()}, best
+
+
+def doubted(found: Mapping[str, float], named: Iterable[str], most: float) -> dict[str, float]:
+    """Probabilities in which what is named has at most `most`, what it loses going to `unknown`."""
+    own = key(named)
+    excess = max(0.0, found.get(own, 0.0) - most)
+    return {**found, own: found.get(own, 0.0) - excess, UNKNOWN: found.get(UNKNOWN, 0.0) + excess}

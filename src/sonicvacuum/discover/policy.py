@@ -45,5 +45,8 @@ SIGMA_REL = 0.02
 ALIAS_COSINE = 0.999
 # ... unless the data tell them apart by more than this Δχ².
 ALIAS_GAIN = 4.0
+# A fit that ends at a bound could fit better: where the named effect or a rival within this Δχ² has, what is
+# named is not held surer than that.
+RIVAL, AT_BOUND = 9.0, 0.6
 # What failed a test may be at most this share as probable as what is named.
 REFUSED = 0.5

@@ -4,7 +4,17 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from sonicvacuum.discover import directions, evidence, explanations, places, policy, screen, singles, smooth
+from sonicvacuum.discover import (
+    bounds,
+    directions,
+    evidence,
+    explanations,
+    places,
+    policy,
+    screen,
+    singles,
+    smooth,
+)
 from sonicvacuum.discover.decision import Case, Decision, View
 from sonicvacuum.discover.evidence import Candidate, Combination
 from sonicvacuum.discover.experiment import Experiment
@@ -111,6 +121,12 @@ def _odds(found, decision: Decision, alike) -> tuple[dict[str, float], list[str]
     plain = explanations.probabilities(logs, decision.left, decision.beside)
     odds, likelier = explanations.consistent(plain, decision.named)
     reasons = []
+    stuck = _stuck(found, decision.named)
+    if stuck:
+        odds = explanations.doubted(odds, decision.named, policy.AT_BOUND)
+        reasons.append(
+            f"{', '.join(stuck)} ended at a bound, even beyond the catalogue's range, and might fit better"
+        )
     if likelier:
         reasons.append(f"{likelier} has the larger evidence, and did not pass every test")
     if len(alike) > 1 and alike[0] in decision.named:
@@ -119,6 +135,14 @@ def _odds(found, decision: Decision, alike) -> tuple[dict[str, float], list[str]
             f"{alike[0]} has the largest evidence by a little"
         )
     return odds, reasons
+
+
+def _stuck(found: list[Candidate], named: list[str]) -> list[str]:
+    """Of a single effect that is named and its rivals, those whose fits ended at a bound."""
+    if len(named) != 1 or named[0] == explanations.UNKNOWN:
+        return []
+    own = next(c.gain for c in found if c.effect == named[0])
+    return [c.effect for c in found if c.gain > own - policy.RIVAL and "bound" in c.flags]
 
 
 def significant(candidate: Candidate, threshold: float) -> bool:
@@ -141,8 +165,15 @@ def _polished(forward, null, found):
             better = polish(forward, c.fit)
             flags = tuple(f for f in c.flags if f != "unsettled") + ("unsettled",) * (not better.settled)
             c = _moved(c, null, better, c.places, flags)
-        result.append(c)
+        result.append(_beyond(forward, null, c) if c.gain > least else c)
     return sorted(result, key=lambda c: -c.log_bayes)
+
+
+def _beyond(forward, null, c):
+    """A candidate followed beyond the bounds that its fit stands at."""
+    better, held = bounds.beyond(forward, c.fit)
+    flags = (*(f for f in c.flags if f != "bound"), *("beyond",) * (better is not c.fit), *("bound",) * held)
+    return _moved(c, null, better, c.places, flags)
 
 
 def _along(forward, null, found):

@@ -3,10 +3,10 @@
 Kennedy & O'Hagan (J. R. Stat. Soc. B 63, 425, 2001): data = model + discrepancy + noise, the discrepancy a
 Gaussian process in time. Here its standard deviation is a share of each trace's peak, from the arrival on,
 and its correlation time a share of the pulse's width. It is written as a sum of bumps with independent
-weights (process convolution: Higdon, in Quantitative Methods for Current Environmental Issues, Springer 2002, 37), so
-that the covariance of a whitened trace is 1 + U Λ Uᵀ with a few orthonormal columns U, and its inverse root
-1 − U (1 − (1 + Λ)^−½) Uᵀ. Applied to data, predictions and slopes alike (`Experiment.whiten`), it is seen by
-every step: screen, fit, evidence, held-out runs and limits.
+weights (process convolution: Higdon, in Quantitative Methods for Current Environmental Issues, Springer
+2002, 37), so that the covariance of a whitened trace is 1 + U Λ Uᵀ with a few orthonormal columns U, and
+its inverse root 1 − U (1 − (1 + Λ)^−½) Uᵀ. Applied to data, predictions and slopes alike
+(`Experiment.whiten`), it is seen by every step: screen, fit, evidence, held-out runs and limits.
 """
 
 from dataclasses import dataclass, replace

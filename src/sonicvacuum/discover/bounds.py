@@ -1,0 +1,79 @@
+"""Fits that end at a bound of the search: followed beyond it, as far as values have a meaning.
+
+The bounds of the catalogue are those of beads and laboratory strikers. Data of another size may ask for more;
+and what stands at a bound fits worse than it could, so that its rivals look surer than they are. The bound of
+a strength towards off is none: there the effect is absent.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from sonicvacuum.discover.forward import Forward
+from sonicvacuum.discover.hypothesis import Hypothesis
+from sonicvacuum.discover.parameters import Coordinate
+from sonicvacuum.discover.refit import Fit, polish
+
+# A bound is moved by this factor (logarithmic coordinates), or by the whole range (linear ones).
+FACTOR = 10.0
+# In χ², less is no reason to leave the range.
+WORTH = 0.5
+_ROOM = 1e-6
+
+
+def stuck(fit: Fit) -> np.ndarray:
+    """(p,) whether a coordinate stands at a bound that is neither its off value nor the end of what it may
+    mean.
+    """
+    return np.array(
+        [
+            (u >= c.high - _ROOM and c.high < _ends(c)[1] - 2.0 * _ROOM)
+            or (u <= c.low + _ROOM and not _off_below(c) and c.low > _ends(c)[0] + 2.0 * _ROOM)
+            for u, c in zip(fit.u, fit.hypothesis.coordinates, strict=True)
+        ],
+        dtype=bool,
+    )
+
+
+def beyond(forward: Forward, fit: Fit) -> tuple[Fit, bool]:
+    """The fit with the coordinates that are stuck let go, and whether one is stuck even so.
+
+    The same fit where that gains nothing: there the bound holds nothing back.
+    """
+    at = stuck(fit)
+    if not at.any():
+        return fit, False
+    wider = iter([_wider(c) if s else c for c, s in zip(fit.hypothesis.coordinates, at, strict=True)])
+    parts = tuple(replace(c, free=tuple(next(wider) for _ in c.free)) for c in fit.hypothesis.components)
+    found = polish(forward, Fit(Hypothesis(parts, fit.hypothesis.common), fit.normal, others=fit.others))
+    if not found.objective < fit.objective - WORTH:
+        return fit, False
+    return found, bool(stuck(found).any())
+
+
+def _off_below(c: Coordinate) -> bool:
+    """Whether the lower bound of a coordinate leads to off."""
+    return (c.parameter.switches and c.kind in ("log", "inverse")) or (c.kind == "linear" and c.low == 0.0)
+
+
+def _wider(c: Coordinate) -> Coordinate:
+    """A coordinate with bounds further out, inside what the parameter may mean."""
+    more = c.high - c.low if c.kind == "linear" else float(np.log(FACTOR))
+    low, high = c.low if _off_below(c) else c.low - more, c.high + more
+    least, most = _ends(c)
+    return replace(c, low=max(low, least), high=min(high, most))
+
+
+def _ends(c: Coordinate) -> tuple[float, float]:
+    """Coordinates between which a parameter has a meaning."""
+    ends = [_place(c, value) for value in (c.parameter.least, c.parameter.most)]
+    return min(ends), max(ends)
+
+
+def _place(c, value):
+    """The coordinate of a limit of meaning, infinite where there is none."""
+    if not np.isfinite(value) or (c.kind != "linear" and value <= 0.0):
+        below = value <= 0.0 or value == -np.inf
+        return np.inf if below == (c.kind == "inverse") else -np.inf
+    # A limit itself may be singular.
+    return c.inverse(value) + (_ROOM if value == c.parameter.least else -_ROOM)

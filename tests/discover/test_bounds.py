@@ -1,0 +1,53 @@
+"""Fits at a bound of the search: let go where data ask for more, and left alone where they do not."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from sonicvacuum.discover import bounds
+from sonicvacuum.discover.forward import Forward
+from sonicvacuum.discover.hypothesis import Component, Hypothesis, variants
+from sonicvacuum.discover.parameters import coordinate
+from sonicvacuum.discover.problem import experiment
+from sonicvacuum.discover.refit import fit
+from sonicvacuum.effects import CATALOGUE, effect
+
+
+def restricted(record, setup, **ends):
+    """Kuwabara–Kono's damping fitted in a range of its coordinate."""
+    forward = Forward(experiment(record))
+    ((free,),) = variants(effect("kuwabara-kono"), setup)
+    free = replace(free, **ends)
+    one = Hypothesis((Component(effect("kuwabara-kono"), (free,)),))
+    return (
+        forward,
+        free,
+        fit(forward, one, np.array([[0.5 * (free.low + free.high)]]), np.zeros((1, forward.layout.size))),
+    )
+
+
+def test_a_fit_at_a_bound_is_followed_beyond(hidden, setup):
+    ((full,),) = variants(effect("kuwabara-kono"), setup)
+    forward, free, one = restricted(hidden, setup, high=full.inverse(0.1))
+    assert bounds.stuck(one).all()
+    assert one.at_bound().all()
+    found, held = bounds.beyond(forward, one)
+    assert not held
+    assert found.u[0] == pytest.approx(full.inverse(0.3), abs=4.0 * found.sigma[0])  # as hidden
+    assert found.objective < one.objective
+
+
+def test_the_bound_towards_off_is_none(empty, setup):
+    """Without damping the fit leads to off: nothing is stuck."""
+    forward, free, one = restricted(empty, setup)
+    assert not bounds.stuck(one).any()
+    assert bounds.beyond(forward, one) == (one, False)
+
+
+@pytest.mark.parametrize("effect", CATALOGUE, ids=lambda e: e.id)
+def test_wider_bounds_keep_to_what_values_may_mean(effect, setup):
+    for parameter in effect.parameters:
+        wide = bounds._wider(coordinate(parameter, setup))
+        for u in (wide.low, wide.high):
+            parameter.check(wide.value(u), effect.id)
