@@ -29,7 +29,7 @@ def restricted(record, setup, **ends):
 
 def test_a_fit_at_a_bound_is_followed_beyond(hidden, setup):
     ((full,),) = variants(effect("kuwabara-kono"), setup)
-    forward, free, one = restricted(hidden, setup, high=full.inverse(0.1))
+    forward, one = restricted(hidden, setup, high=full.inverse(0.1))
     assert bounds.stuck(one).all()
     assert one.at_bound().all()
     found, held = bounds.beyond(forward, one)
@@ -40,7 +40,7 @@ def test_a_fit_at_a_bound_is_followed_beyond(hidden, setup):
 
 def test_the_bound_towards_off_is_none(empty, setup):
     """Without damping the fit leads to off: nothing is stuck."""
-    forward, free, one = restricted(empty, setup)
+    forward, one = restricted(empty, setup)
     assert not bounds.stuck(one).any()
     assert bounds.beyond(forward, one) == (one, False)
 
