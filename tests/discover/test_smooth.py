@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from made_records import made
 
-from sonicvacuum.discover import smooth
+from sonicvacuum.discover import session, smooth
 from sonicvacuum.discover.experiment import Smooth
 from sonicvacuum.discover.forward import Forward
 from sonicvacuum.discover.problem import experiment
-from sonicvacuum.discover.rounds import nominal
+from sonicvacuum.discover.rounds import investigate, nominal
 from sonicvacuum.records import Record
 
 
@@ -62,6 +62,23 @@ def test_a_smooth_misfit_is_found_with_its_size(empty, size):
     seen = smooth.infer(forward, nominal(forward), smooth.blocks(forward.experiment))
     assert seen.found
     assert size / 2.0 < seen.size < size * 2.0  # some sixty directions, part of which nuisances take up
+
+
+def test_an_effect_is_kept_beside_a_smooth_misfit(hidden):
+    v = session.discover(with_systematics(hidden, 0.01)).verdict
+    assert v.named == ["kuwabara-kono", "unknown"]
+    assert v.probabilities["kuwabara-kono + unknown"] > 0.9
+    time = v.parameters["kuwabara-kono"]["time_us"]
+    assert abs(time.value - 0.3) < 4.0 * time.sigma
+    assert v.gap.fitted.after < v.gap.fitted.before
+    assert 0.005 < v.fit.smooth_rel < 0.02  # as hidden: 1 % of the peak
+
+
+def test_a_smooth_misfit_that_the_record_states_names_nothing(empty):
+    e = replace(experiment(with_systematics(empty, 0.01)), model_floor_rel=0.01)
+    found = investigate(e)
+    assert found.named == []
+    assert found.smooth == 0.0  # nothing beyond what is stated
 
 
 def with_systematics(record: Record, size: float, seed=5) -> Record:
