@@ -208,7 +208,7 @@ def _reduced(grown, fit_, k, setup):
 
 
 def _clear(weights, named) -> bool:
-    """Whether a set of effects is nine times likelier than all others beside what is left."""
+    """Whether a set of effects is likelier than all others together beside what is left."""
     own = weights.get(explanations.key(named), -np.inf)
     others = [w for name, w in weights.items() if name != explanations.key(named)]
     return own - np.logaddexp.reduce(others) > np.log(policy.CLEAR) if others else True

@@ -19,8 +19,8 @@ MISFIT = 1e-3
 # What is named must gain as much as the simplest shape outside the catalogue, within a χ² of noise and the
 # share by which linear predictions err.
 MARGIN, SHARE = 6.0, 0.05
-# Beside what is left, a set of effects is named where it is so many times likelier than all others together.
-CLEAR = 9.0
+# Beside what is left, effects are named where they are so many times likelier than all else together.
+CLEAR = 1.0
 # No more effects than this are named together: a set of more is not looked through in any sense.
 MOST_EFFECTS = 6
 
