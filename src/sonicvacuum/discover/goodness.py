@@ -72,10 +72,11 @@ def goodness(forward: Forward, fit: Fit) -> Goodness:
     cells = []
     for run, s, r in left:
         data = forward.experiment.runs[run]
-        chi2, white = _chi2(r), _whiteness(r)
-        cells.append(Cell(data.id, forward.experiment.gauges[s].id, float(r @ r) / len(r), chi2, white))
-        wide = width(np.abs(data.readings[s]))
-        for name, p in zip(found, (chi2, white, _outliers(r), _oscillation(r, wide)), strict=True):
+        own = r if data.present is None else r[data.present[s]]
+        chi2, white = _chi2(own), _whiteness(own)
+        cells.append(Cell(data.id, forward.experiment.gauges[s].id, float(own @ own) / len(own), chi2, white))
+        wide = width(_size(data, s))
+        for name, p in zip(found, (chi2, white, _outliers(own), _oscillation(r, wide)), strict=True):
             found[name].append(p)
     total = sum(r @ r for *_, r in left) + _scalars(forward, fit)
     size = sum(forward.experiment.size(k) for k in range(len(forward.experiment.runs)))
@@ -98,6 +99,11 @@ def residuals(forward: Forward, fit: Fit) -> list[tuple[int, int, np.ndarray]]:
             if np.any(part):
                 result.append((run, s, part))
     return result
+
+
+def _size(data, s):
+    """(T,) magnitude of a measured trace, 0 where samples are missing."""
+    return np.abs(np.nan_to_num(data.readings[s]))
 
 
 def _scalars(forward, fit):
@@ -197,7 +203,7 @@ def _shared(forward, left):
 
 def _together(own, s):
     """p of the best oscillation of one gauge's runs, their χ² added."""
-    traces = [np.abs(data.readings[s]) for data, _ in own]
+    traces = [_size(data, s) for data, _ in own]
     wide = int(np.median([width(t) for t in traces]))
     highest, count = 0.0, 0
     for after in TOGETHER:
