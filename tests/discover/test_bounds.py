@@ -22,7 +22,6 @@ def restricted(record, setup, **ends):
     one = Hypothesis((Component(effect("kuwabara-kono"), (free,)),))
     return (
         forward,
-        free,
         fit(forward, one, np.array([[0.5 * (free.low + free.high)]]), np.zeros((1, forward.layout.size))),
     )
 
