@@ -58,7 +58,7 @@ def _experiment(record, catalogue):
         diameter=record.specimen.diameters,
         record=record,
         catalogue=catalogue,
-        model_floor_rel=getattr(record, "model_floor_rel", None),
+        model_floor_rel=record.model_floor_rel,
     )
 
 
