@@ -14,7 +14,7 @@ wildcard_constraints:
 
 rule hide:
     input:
-        sources=sources("blind hide"),
+        sources=sources("blind hide", without=CATALOGUE),
     output:
         records=directory(f"{BLIND}/records/{{batch}}"),
         truth=directory(f"{BLIND}/truth/{{batch}}"),
@@ -55,7 +55,7 @@ rule score:
     input:
         truth=batches("truth"),
         verdicts=batches("verdicts"),
-        sources=sources("blind score"),
+        sources=sources("blind score", without=CATALOGUE),
     output:
         f"{BLIND}/score.csv",
         f"{BLIND}/summary.csv",
@@ -185,7 +185,7 @@ rule publish_study:
 rule follow:
     input:
         verdicts=f"{BLIND}/verdicts/{{batch}}",
-        sources=sources("blind follow"),
+        sources=sources("blind follow", without=CATALOGUE),
     output:
         directory(f"{BLIND}/followed/{{choice}}/{{batch}}"),
     log:
@@ -233,7 +233,7 @@ rule resolved:
         proposed_joint=some_batches("joint/proposed"),
         random=some_batches("followed/random"),
         random_joint=some_batches("joint/random"),
-        sources=sources("blind resolved"),
+        sources=sources("blind resolved", without=CATALOGUE),
     output:
         rows=f"{BLIND}/resolved.csv",
         summary=f"{BLIND}/resolved_summary.csv",

@@ -11,6 +11,8 @@ BATCHES = {"small": 4, "training": 4, "full": 24}
 # Effects take turns among the cases, so that a batch holds every second one: an even number of batches holds all alike.
 FOLLOWED = {"small": 4, "training": 4, "full": 4}
 BLIND = "results/blind/{study}"
+# Asked only for the priors that a record may state, which hidden data never do: they stay when an effect changes.
+CATALOGUE = ["sonicvacuum.effects"]
 PICTURES = ["confusion", "accuracy", "reliability", "baselines"]
 DETAILS = ["confusion", "accuracy", "reliability", "coverage", "seconds"]
 CHOICES = ["proposed", "random"]
