@@ -16,8 +16,7 @@ from sonicvacuum.discover import gauges, scalars
 from sonicvacuum.discover.experiment import Experiment
 from sonicvacuum.discover.hypothesis import Hypothesis
 from sonicvacuum.effects import Setup
-from sonicvacuum.gauges import needed
-from sonicvacuum.physics.run import History, simulate
+from sonicvacuum.forward import Seen, see, virtual
 
 # Largest steps of speed and modulus for finite differences, relative; smaller where the data are precise, so
 # that all data together change by about this many standard errors, and collinear columns come out collinear.
@@ -279,45 +278,16 @@ class Forward:
         chain = replace(chain, speed=speed).stiffened(chain.first.surface.name, stiffer)
         return Setup(chain, batch.gauges or self.experiment.gauges, self.experiment.catalogue)
 
-    def simulate(self, batch, setup: Setup):
-        """Readings (lanes, S, T') on the simulated grid, with what the scalars need besides."""
-        beads = setup.chain.beads
-        contacts, bodies = needed(setup.sensors, beads)
-        contacts = sorted({*contacts, *scalars.contacts_wanted(self.experiment)})
-        history = _simulated(setup.chain, (contacts, bodies), batch, self.threads)
+    def simulate(self, batch, setup: Setup) -> Seen:
+        """What a batch shows, with what the scalars need besides."""
         self.simulations += setup.chain.lanes
-        if setup.sensors:
-            read = gauges.readings(setup.sensors, history, beads)
-        else:
-            read = np.zeros((setup.chain.lanes, 0, len(history.time)))
-        return Seen(read, history, setup)
-
-
-def _simulated(chain, wanted, batch, threads):
-    """The history of a batch; chains whose motion does not stay finite have forces that are no numbers."""
-    try:
-        return _recorded(chain, wanted, batch, threads)
-    except FloatingPointError:
-        if chain.lanes == 1:
-            rest = replace(chain, speed=chain.speed * 1e-3, actions=())
-            return _recorded(rest, wanted, batch, threads).without_numbers()
-    half = chain.lanes // 2
-    parts = [
-        _simulated(chain.take(np.arange(*share)), wanted, batch, threads)
-        for share in ((0, half), (half, chain.lanes))
-    ]
-    return History.side_by_side(parts)
-
-
-def _recorded(chain, wanted, batch, threads):
-    contacts, bodies = wanted
-    return simulate(chain, contacts, batch.duration, batch.interval, bodies=bodies, threads=threads)
-
-
-@dataclass(frozen=True)
-class Seen:
-    """What a simulation of one batch shows: readings (lanes, S, T'), the history, the setup."""
-
-    readings: np.ndarray
-    history: object
-    setup: Setup
+        asked = any(run.scalars for run in self.experiment.runs)
+        return see(
+            setup,
+            batch.duration,
+            batch.interval,
+            besides=virtual(self.experiment.gauges, setup.chain.beads) if asked else (),
+            striker=asked,
+            threads=self.threads,
+            forgiving=True,
+        )

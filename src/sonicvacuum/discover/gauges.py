@@ -1,18 +1,10 @@
-"""What all gauges read, lane by lane, and readings between their samples."""
+"""Readings between the samples of a simulation."""
 
 import numpy as np
-
-from sonicvacuum.gauges import Gauge, Motion, reading
 
 # Interpolation between samples: polynomials through six neighbours.
 POINTS = 6
 _OFFSETS = np.arange(POINTS) - (POINTS // 2 - 1)
-
-
-def readings(gauges: tuple[Gauge, ...], motion: Motion, beads: int) -> np.ndarray:
-    """(L, S, T) readings of a motion (T, L) with L lanes, each gauge in its own unit."""
-    signals = [reading(g, motion, beads) for g in gauges]
-    return np.ascontiguousarray(np.stack(signals).transpose(2, 0, 1))
 
 
 def lagrange(fraction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

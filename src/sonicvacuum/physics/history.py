@@ -34,6 +34,11 @@ class History:
     velocity: np.ndarray = field(default_factory=lambda: np.zeros((0, 0, 0)))
     acceleration: np.ndarray = field(default_factory=lambda: np.zeros((0, 0, 0)))
 
+    @property
+    def lanes(self) -> int:
+        """Number of chains."""
+        return len(self.striker_speed)
+
     def of(self, contact: int) -> np.ndarray:
         """(samples, lanes) force of one contact in N."""
         return self.force[:, _place(self.contacts, contact, "force of contact")]

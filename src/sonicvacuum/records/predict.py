@@ -12,17 +12,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonicvacuum.effects.base import Setup
-from sonicvacuum.gauges import Gauge, Motion, needed, reading
-from sonicvacuum.observe.contacts import contact_duration, restitution
-from sonicvacuum.observe.quantities import measure_run
-from sonicvacuum.observe.run import Geometry
-from sonicvacuum.observe.run import Run as Passage
+from sonicvacuum.forward import measured, passages, see, virtual
 from sonicvacuum.observe.trace import Measured
-from sonicvacuum.physics.chain import Chain
-from sonicvacuum.physics.run import History, simulate
 from sonicvacuum.records.assemble import Batch, assemble, duration_of, interval_of
 from sonicvacuum.records.record import Record
-from sonicvacuum.records.solitary import speed_at_amplitude
 
 
 def nominal(setup: Setup) -> Setup:
@@ -75,45 +68,30 @@ def predict(record: Record, conditions: Conditions | None = None) -> tuple[Predi
     conditions = conditions or Conditions()
     found: dict[int, Prediction] = {}
     for batch in assemble(record):
-        setup = conditions.setup(record, batch)
-        history = simulated(record, batch, setup.chain, conditions.refine)
-        readings = readings_of(setup.sensors, history, record.beads)
+        seen = _seen(record, batch, conditions)
+        gauges, diameters = seen.setup.sensors, record.specimen.diameters
+        shown = passages(seen, slice(None), seen.readings, gauges, diameters)
         for lane, place in enumerate(batch.runs):
-            mine = {s: r[:, lane] for s, r in readings.items()}
-            found[place] = Prediction(
-                _at_record(record, place, history.time, mine, conditions),
-                _scalars(record, place, setup, history, lane, mine, conditions.refine),
-            )
+            readings = dict(zip((g.id for g in gauges), seen.readings[lane], strict=True))
+            wanted = record.runs[place].observables
+            scalars = (measured(o, seen, lane, shown[lane], diameters, conditions.refine) for o in wanted)
+            at_record = _at_record(record, place, seen.history.time, readings, conditions)
+            found[place] = Prediction(at_record, tuple(scalars))
     return tuple(found[k] for k in range(len(record.runs)))
 
 
-def simulated(record: Record, batch: Batch, chain: Chain, refine: float = 1.0) -> History:
+def _seen(record, batch, conditions):
     """The batch's chains, integrated for as long and sampled as finely as its runs ask."""
     runs = [record.runs[k] for k in batch.runs]
-    contacts, bodies = needed((*record.gauges, *virtual(record)), record.beads)
-    return simulate(
-        chain,
-        sorted({0, *contacts}),
-        duration_of(record, runs, chain),
-        interval_of(record, runs, chain),
-        bodies=bodies,
-        refine=refine,
+    setup = conditions.setup(record, batch)
+    return see(
+        setup,
+        duration_of(record, runs, setup.chain),
+        interval_of(record, runs, setup.chain),
+        besides=virtual(record.gauges, record.beads),
+        striker=True,
+        refine=conditions.refine,
     )
-
-
-def readings_of(sensors: tuple[Gauge, ...], motion: Motion, beads: int) -> dict[str, np.ndarray]:
-    """Sensor id → (S, lanes) reading at the simulation's times."""
-    return {s.id: reading(s, motion, beads) for s in sensors}
-
-
-def virtual(record: Record) -> tuple[Gauge, ...]:
-    """Gauges that only the simulation has, so that it is known when the reflection returns."""
-    kinds = {s.kind for s in record.gauges}
-    middle = Gauge(id="(middle)", kind="embedded", bead=max(1, record.beads // 2))
-    end = Gauge(id="(end)", kind="wall", bead=None)
-    if record.beads == 0:
-        return ()
-    return ((middle,) if "embedded" not in kinds else ()) + ((end,) if "wall" not in kinds else ())
 
 
 def at_times(
@@ -150,24 +128,3 @@ def _at_record(record, place, time, readings, conditions):
         return {}
     shift = float(np.broadcast_to(conditions.shift_s, (len(record.runs),))[place])
     return {s: at_times(signals.time_s, time, r, shift) for s, r in readings.items()}
-
-
-def _scalars(record, place, setup, history, lane, readings, refine):
-    """The observables of the run that is this lane."""
-    chain, force, extra = setup.chain.take([lane]), history.of(0)[:, lane], virtual(record)
-    others = {s: r[:, lane] for s, r in readings_of(extra, history, record.beads).items()}
-    geometry = Geometry(record.beads, record.specimen.diameters, (*setup.sensors, *extra))
-    passage = Passage({**readings, **others}, history.time, geometry)
-
-    def value(o):
-        if o.quantity == "restitution":
-            striker = (float(n[0]) for n in (chain.striker_mass, chain.speed, chain.gravity))
-            return restitution(history.time, force, *striker)
-        if o.quantity == "contact_duration":
-            return contact_duration(history.time, force)
-        if o.quantity == "speed_at_amplitude":
-            sensor = geometry.sensor(o.options["sensor"])
-            return speed_at_amplitude(record, chain, sensor, o.options["amplitude"], refine)
-        return measure_run(o.quantity, passage, **o.options)
-
-    return tuple(value(o) for o in record.runs[place].observables)

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from sonicvacuum.gauges import Gauge, needed, position, reading
+from sonicvacuum.laboratory.bodies import Bodies
 from sonicvacuum.observe.quantities import measure
 from sonicvacuum.observe.run import Geometry
 from sonicvacuum.observe.sweep import speed_at_amplitude as interpolated
@@ -13,7 +14,6 @@ from sonicvacuum.observe.trace import Measured, missing
 from sonicvacuum.physics.chain import Chain
 from sonicvacuum.physics.run import simulate
 from sonicvacuum.physics.scales import CROSSINGS, impact_scales, passage_of, sampling_of
-from sonicvacuum.records.record import Record
 
 # Striker speeds tried, over the one expected to give the amplitude.
 LADDER = np.geomspace(0.5, 2.0, 8)
@@ -29,13 +29,13 @@ _SHARE = 0.45
 
 
 def speed_at_amplitude(
-    record: Record, chain: Chain, sensor: Gauge, amplitude: float, refine: float = 1.0
+    chain: Chain, diameters: Bodies | float, sensor: Gauge, amplitude: float, refine: float = 1.0
 ) -> Measured:
     """Speed in m/s of the wave that peaks at `amplitude` N at a gauge.
 
     Args:
-        record: the record.
         chain: one lane, with its effects; its striker's speed is the first guess.
+        diameters: of the beads in m.
         sensor: the gauge, with its electronics and gain.
         amplitude: reading in N.
         refine: divides the step of the simulation.
@@ -44,13 +44,13 @@ def speed_at_amplitude(
         Peak-to-peak speed between gauges 2 beads before and behind (near the wall: over the last 4 beads that
         are clear of the reflection), interpolated between striker speeds; NaN with a reason if there is none.
     """
-    pair = _pair(sensor, record.beads)
+    pair = _pair(sensor, chain.beads)
     if pair is None:
         return missing("short: the chain has too few beads for a speed at this gauge")
     centre = float(chain.speed[0]) * (amplitude / (_SHARE * impact_scales(chain)[0])) ** _POWER
     found = missing("outside: no striker speed gives this amplitude")
     for _ in range(TRIES):
-        amplitudes, speeds = _sweep(record, chain, sensor, pair, centre * LADDER, refine)
+        amplitudes, speeds = _sweep(chain, diameters, sensor, pair, centre * LADDER, refine)
         known = amplitudes[np.isfinite(amplitudes)]
         if not len(known):
             return missing(f"absent: no pulse at {sensor.id}")
@@ -71,15 +71,15 @@ def _pair(sensor, beads):
     return Gauge("(before)", "embedded", first), Gauge("(behind)", "embedded", last)
 
 
-def _sweep(record, chain, sensor, pair, speeds, refine):
+def _sweep(chain, diameters, sensor, pair, speeds, refine):
     """(n,) amplitudes at the gauge and speeds across the pair, for n striker speeds."""
     lanes = replace(chain.take(np.zeros(len(speeds), dtype=int)), speed=speeds)
     gauges = (replace(sensor, id="(gauge)"), *pair, Gauge("(end)", "wall", None))
-    contacts, bodies = needed(gauges, record.beads)
+    contacts, bodies = needed(gauges, chain.beads)
     interval = sampling_of(lanes)
     history = simulate(lanes, contacts, passage_of(lanes, CROSSINGS), interval, bodies=bodies, refine=refine)
-    readings = {s.id: reading(s, history, record.beads) for s in gauges}
-    geometry = Geometry(record.beads, record.specimen.diameters, gauges)
+    readings = {s.id: reading(s, history, chain.beads) for s in gauges}
+    geometry = Geometry(chain.beads, diameters, gauges)
     heights = measure("amplitude", readings, history.time, geometry, sensor="(gauge)")
     fast = measure("speed", readings, history.time, geometry, from_=pair[0].id, to=pair[1].id)
     return np.array([m.value for m in heights]), np.array([m.value for m in fast])

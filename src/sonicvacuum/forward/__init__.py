@@ -1,0 +1,10 @@
+"""The forward model, lane by lane: chains and gauges go in, their motion, readings and scalars come out.
+
+`motion.see` simulates a setup and reads its gauges; `scalars` measures on the readings what a record reports
+as single numbers. What is predicted of a record and what `discover` fits both come from here.
+"""
+
+from sonicvacuum.forward.motion import Seen, readings, see
+from sonicvacuum.forward.scalars import STRIKER, measured, passages, virtual
+
+__all__ = ["STRIKER", "Seen", "measured", "passages", "readings", "see", "virtual"]

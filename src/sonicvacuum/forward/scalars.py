@@ -1,0 +1,71 @@
+"""Single numbers that a simulation shows, lane by lane, found by the functions of `observe`."""
+
+import numpy as np
+
+from sonicvacuum.forward.motion import Seen, readings
+from sonicvacuum.forward.solitary import speed_at_amplitude
+from sonicvacuum.gauges import Gauge
+from sonicvacuum.laboratory.bodies import Bodies
+from sonicvacuum.observe.contacts import contact_duration, restitution
+from sonicvacuum.observe.quantities import measure_run
+from sonicvacuum.observe.run import Geometry, Run
+from sonicvacuum.observe.trace import Measured
+
+# Observables of the striker's own contact.
+STRIKER = ("restitution", "contact_duration")
+
+
+def virtual(gauges: tuple[Gauge, ...], beads: int) -> tuple[Gauge, ...]:
+    """Gauges that only the simulation has, so that it is known when the reflection returns."""
+    if beads == 0:
+        return ()
+    kinds = {g.kind for g in gauges}
+    middle = Gauge(id="(middle)", kind="embedded", bead=max(1, beads // 2))
+    end = Gauge(id="(end)", kind="wall", bead=None)
+    return ((middle,) if "embedded" not in kinds else ()) + ((end,) if "wall" not in kinds else ())
+
+
+def passages(
+    seen: Seen, lanes, signals: np.ndarray, gauges: tuple[Gauge, ...], diameters: Bodies | float
+) -> list[Run]:
+    """What `observe` measures on: the readings of each lane, those of the virtual gauges added.
+
+    Args:
+        seen: the simulation; what `virtual` needs must have been recorded.
+        lanes: slice of its lanes.
+        signals: (L, S, T) readings of those lanes.
+        gauges: where the S gauges sit.
+        diameters: of the beads in m.
+    """
+    beads, history = seen.setup.chain.beads, seen.history
+    extra = virtual(gauges, beads)
+    geometry = Geometry(beads, diameters, (*gauges, *extra))
+    ids = [g.id for g in geometry.sensors]
+    if extra:
+        signals = np.concatenate([signals, readings(extra, history.take(lanes), beads)], axis=1)
+    return [Run(dict(zip(ids, lane, strict=True)), history.time, geometry) for lane in signals]
+
+
+def measured(
+    observable, seen: Seen, lane: int, passage: Run, diameters: Bodies | float, refine: float = 1.0
+) -> Measured:
+    """One observable (with `quantity` and `options`) of one lane, in SI; NaN with a reason if there is none.
+
+    Args:
+        observable: what is asked for.
+        seen: the simulation, the striker's contact recorded where the observable is of it.
+        lane: of the simulation.
+        passage: of that lane; not used for what is the striker's or the solitary wave's.
+        diameters: of the beads in m.
+        refine: divides the step of further simulations.
+    """
+    chain, history, options = seen.setup.chain, seen.history, observable.options
+    if observable.quantity == "contact_duration":
+        return contact_duration(history.time, history.of(0)[:, lane])
+    if observable.quantity == "restitution":
+        striker = (float(n[lane]) for n in (chain.striker_mass, chain.speed, chain.gravity))
+        return restitution(history.time, history.of(0)[:, lane], *striker)
+    if observable.quantity == "speed_at_amplitude":
+        gauge = next(g for g in seen.setup.sensors if g.id == options["sensor"]).lane(lane)
+        return speed_at_amplitude(chain.take([lane]), diameters, gauge, options["amplitude"], refine)
+    return measure_run(observable.quantity, passage, **options)
