@@ -119,20 +119,3 @@ class _File(click.Path):
 def existing(**options):
     """Type of a path argument that must be a readable file."""
     return _File(exists=True, dir_okay=False, readable=True, **options)
-
-
-own_effects = click.option(
-    "--effects",
-    "own",
-    multiple=True,
-    type=existing(),
-    metavar="FILE",
-    help="Python file with an effect of your own (EFFECT or EFFECTS), for the catalogue; may be repeated.",
-)
-
-
-def catalogue(files=()):
-    """The project's effects, those of installed packages and those of files."""
-    from sonicvacuum.plugins import catalogue
-
-    return catalogue(files)

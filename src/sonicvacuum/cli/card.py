@@ -6,7 +6,8 @@ import click
 
 from sonicvacuum import config as configuration
 from sonicvacuum.card import dump
-from sonicvacuum.cli import catalogue, existing, own_effects
+from sonicvacuum.cli import existing
+from sonicvacuum.cli.own_effects import catalogue, own_effects
 from sonicvacuum.files import InputError, replacing
 from sonicvacuum.materials import MATERIALS
 from sonicvacuum.outputs import check_apart

@@ -4,7 +4,8 @@ from pathlib import Path
 
 import click
 
-from sonicvacuum.cli import catalogue, existing, own_effects
+from sonicvacuum.cli import existing
+from sonicvacuum.cli.own_effects import catalogue, own_effects
 
 
 @click.command()

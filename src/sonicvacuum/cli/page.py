@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from sonicvacuum.cli import catalogue, own_effects
+from sonicvacuum.cli.own_effects import catalogue, own_effects
 
 
 @click.command()

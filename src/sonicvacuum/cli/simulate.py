@@ -2,8 +2,9 @@
 
 import click
 
-from sonicvacuum.cli import catalogue, existing, own_effects
+from sonicvacuum.cli import existing
 from sonicvacuum.cli.cards import read_card
+from sonicvacuum.cli.own_effects import catalogue, own_effects
 from sonicvacuum.outputs import check_apart
 
 
