@@ -153,7 +153,7 @@ def run(card: Card, catalogue: Catalogue = CATALOGUE) -> Study:
     )
 
 
-def _simulate(card, speeds, contacts, catalogue, refine=1.0, audit=False) -> History:
+def _simulate(card, speeds, contacts, catalogue=CATALOGUE, refine=1.0, audit=False) -> History:
     chain = set_up(card, speeds, catalogue).chain
     _, bodies = needed(sensors(card), card.beads)
     history = simulate(
