@@ -147,15 +147,40 @@ def convert(content: Any, kind: type, path: str | os.PathLike, prefix: str = "")
     try:
         return msgspec.convert(content, kind)
     except msgspec.ValidationError as error:
-        raise InputError(explain(error, content, path, prefix)) from None
+        raise InputError(explain(error, content, path, prefix, kind)) from None
 
 
-def explain(error: msgspec.ValidationError, content: Any, path: str | os.PathLike, prefix: str = "") -> str:
-    """One sentence for a validation error: file, key, value, what was expected and, where known, the cure."""
+def check_finite(content: Any, path: str | os.PathLike, place: str = "") -> None:
+    """InputError for a number that is none: YAML knows .nan and .inf, which pass many a comparison."""
+    if isinstance(content, dict):
+        parts = [(f"{place}.{k}" if place else str(k), v) for k, v in content.items()]
+    elif isinstance(content, list):
+        parts = [(f"{place}[{k}]", v) for k, v in enumerate(content)]
+    else:
+        if isinstance(content, float) and not math.isfinite(content):
+            raise InputError(f"{path}: {place}: is {content}; write a finite number, or leave the key out")
+        return
+    for key, value in parts:
+        check_finite(value, path, key)
+
+
+def explain(
+    error: msgspec.ValidationError,
+    content: Any,
+    path: str | os.PathLike,
+    prefix: str = "",
+    kind: type | None = None,
+) -> str:
+    """One sentence for a validation error: file, key, value, what was expected and, where known, the cure.
+
+    With the type that was asked for, keys that users choose (names of materials, say) are named too.
+    """
     text = str(error)
-    found = re.search(r" - at `(key in )?\$([^`]*)`$", text)
+    found = re.search(r" - at (`key` in )?`\$([^`]*)`$", text)
     problem = text[: found.start()] if found else text
     inner = found.group(2).lstrip(".") if found else ""
+    if kind and "[...]" in inner:
+        inner = _named(inner, content, kind, text)
     unknown = re.search(r"unknown field `([^`]*)`", problem)
     missing = re.search(r"missing required field `([^`]*)`", problem)
     place = ".".join(p for p in (prefix, inner, *(m.group(1) for m in (unknown, missing) if m)) if p)
@@ -163,9 +188,41 @@ def explain(error: msgspec.ValidationError, content: Any, path: str | os.PathLik
         return f"{path}: {place}: unknown key; check its spelling and its place, or remove it"
     if missing:
         return f"{path}: {place}: missing; this key is required"
+    if found and found.group(1):
+        return f"{path}: {place}: a key here is not allowed: {problem[0].lower()}{problem[1:]}"
     value = _value_at(content, inner)
     shown = "" if value is _ABSENT else f"is {value!r}: "
-    return f"{path}: {place}: {shown}{problem[0].lower()}{problem[1:]}{_cure(value)}"
+    return f"{path}: {place}: {shown}{problem[0].lower()}{problem[1:]}{number_cure(value)}"
+
+
+def _named(inner, content, kind, text):
+    """The place of an error with each `[...]`, which stands for any key, replaced by the key at fault.
+
+    It is the one without the others beside it that gives the same error.
+    """
+    while "[...]" in inner:
+        before = inner[: inner.index("[...]")]
+        for key in mapping if isinstance(mapping := _value_at(content, before), dict) else ():
+            alone = _with_value(content, before, {key: mapping[key]})
+            try:
+                msgspec.convert(alone, kind)
+            except msgspec.ValidationError as error:
+                if str(error) == text:
+                    content, inner = alone, inner.replace("[...]", f".{key}", 1).lstrip(".")
+                    break
+        else:
+            return inner
+    return inner
+
+
+def _with_value(content, inner, value):
+    """A copy of nested mappings and lists with another value at a place."""
+    first, _, rest = inner.partition(".")
+    if not inner:
+        return value
+    if isinstance(content, list):
+        return [_with_value(c, rest, value) if str(k) == first else c for k, c in enumerate(content)]
+    return content | {first: _with_value(content[first], rest, value)}
 
 
 _ABSENT = object()
@@ -180,7 +237,8 @@ def _value_at(content, inner):
     return content
 
 
-def _cure(value):
+def number_cure(value: Any) -> str:
+    """What to write instead of text or a truth value where a number is wanted; nothing for other values."""
     if isinstance(value, str) and re.fullmatch(r"[-+]?\d+(\.\d*)?[eE][-+]?\d+", value):
         mantissa, exponent = re.split("[eE]", value)
         mantissa = mantissa if "." in mantissa else mantissa + ".0"

@@ -103,10 +103,21 @@ def test_with_nothing_said_an_effect_is_off(one):
 
 @every_parameter
 def test_a_value_without_meaning_is_refused(one, p):
-    bad = [math.nan] + [x for x in (p.least - 1.0, p.most + 1.0) if math.isfinite(x)]
+    bad = [math.nan, -math.inf] + [x for x in (p.least - 1.0, p.most + 1.0) if math.isfinite(x)]
+    if p.off != math.inf:
+        bad.append(math.inf)
+    if one.dissipative:
+        # Less than nothing would give energy to the chain.
+        bad.append(-1e-9)
     for value in bad:
         with pytest.raises(ValueError, match=rf"{one.id}: {p.name} is .*use a value from"):
             one.apply(nominal(), **{p.name: value})
+
+
+@every_parameter
+def test_text_is_no_number(one, p):
+    with pytest.raises(ValueError, match=rf"{p.name} is '2e0', not a number; .*write 2.0e\+0"):
+        one.apply(nominal(), **{p.name: "2e0"})
 
 
 @every_effect

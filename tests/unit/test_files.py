@@ -1,12 +1,15 @@
 """Files are written whole or not at all; what is wrong with one is said in one line."""
 
 import os
+from typing import Annotated
 
+import msgspec
 import pytest
+import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sonicvacuum.files import InputError, read_text, read_yaml, replacing
+from sonicvacuum.files import InputError, check_finite, convert, read_text, read_yaml, replacing
 
 
 def test_a_failure_leaves_what_stood_there(tmp_path):
@@ -118,3 +121,32 @@ def test_no_content_escapes_as_another_error(tmp_path_factory, content):
         assert isinstance(read_yaml(path), dict)
     except InputError as error:
         assert str(path) in str(error)
+
+
+class Inner(msgspec.Struct, forbid_unknown_fields=True):
+    size: Annotated[float, msgspec.Meta(gt=0.0)] | None = None
+
+
+class Outer(msgspec.Struct):
+    parts: dict[str, dict[str, Inner]]
+
+
+@pytest.mark.parametrize(
+    ("parts", "told"),
+    [
+        ({"a": {}, "b": {"c": {}, "d": {"size": "2e0"}}}, "parts.b.d.size: is '2e0'.*write 2.0e[+]0"),
+        ({"a": {}, "b": {"c": {"size": 1.0}, "d": {"size": -1.0}}}, "parts.b.d.size: is -1.0"),
+        ({"a": {"x": {"sise": 1.0}}, "b": {}}, "parts.a.x.sise: unknown key"),
+        ({"a": {3: {}}}, "parts.a: a key here is not allowed"),
+    ],
+)
+def test_keys_that_users_choose_are_named(parts, told):
+    with pytest.raises(InputError, match=told):
+        convert({"parts": parts}, Outer, "c.yaml")
+
+
+@pytest.mark.parametrize("number", [".nan", ".inf", "-.inf"])
+def test_numbers_that_are_none_are_named(number):
+    content = yaml.safe_load(f"a: [{{b: 1.0}}, {{b: {number}}}]")
+    with pytest.raises(InputError, match=r"c.yaml: a\[1\].b: is .*finite"):
+        check_finite(content, "c.yaml")

@@ -15,6 +15,6 @@ def read_card(path) -> Card:
     try:
         return load(text)
     except msgspec.ValidationError as error:
-        raise InputError(explain(error, json.loads(text), path)) from None
+        raise InputError(explain(error, json.loads(text), path, kind=Card)) from None
     except msgspec.DecodeError as error:
         raise InputError(f"{path}: not a card ({error}); write one with: sonicvacuum card --out") from None

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from sonicvacuum.effects.catalogue import EMPTY, Catalogue
+from sonicvacuum.files import number_cure
 from sonicvacuum.physics.chain import Chain
 from sonicvacuum.physics.laws import Term
 
@@ -100,13 +101,21 @@ class Parameter:
         return off + towards * strength * self.scale
 
     def check(self, value, effect: str):
-        """Raise ValueError for a value that has no meaning."""
-        bad = np.isnan(value) | (np.asarray(value) < self.least) | (np.asarray(value) > self.most)
+        """Raise ValueError for a value that has no meaning: no number, none at all, or outside the limits.
+
+        Infinity has a meaning only where the effect fades as the value grows.
+        """
+        if isinstance(value, str | bool):
+            raise ValueError(f"effect {effect}: {self.name} is {value!r}, not a number{number_cure(value)}")
+        values = np.asarray(value, dtype=float)
+        bad = ~((values >= self.least) & (values <= self.most))
+        if self.off != math.inf:
+            bad |= np.isinf(values)
         if np.any(bad):
-            culprit = np.asarray(value, dtype=float)[bad].flat[0]
+            finite = "" if self.off == math.inf or math.isfinite(self.most) else ", finite"
             raise ValueError(
-                f"effect {effect}: {self.name} is {culprit:g}; "
-                f"use a value from {self.least:g} to {self.most:g}"
+                f"effect {effect}: {self.name} is {values[bad].flat[0]:g}; "
+                f"use a value from {self.least:g} to {self.most:g}{finite}"
             )
 
 
@@ -232,6 +241,10 @@ class Effect:
             raise ValueError(f"effect {self.id} needs the parameter {self.places}: where it sits")
         place, possible = parameters[self.places], self.candidates(setup)
         if isinstance(place, str):
+            if self.places != "sensor":
+                raise ValueError(
+                    f"effect {self.id}: {self.places} is {place!r}, not a number{number_cure(place)}"
+                )
             ids = [s.id for s in setup.sensors]
             place = ids.index(place) if place in ids else -1
         if not np.all(np.isin(place, possible)):

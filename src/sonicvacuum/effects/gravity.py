@@ -41,6 +41,7 @@ EFFECT = Effect(
             1.0,
             "cosine of the inclination to the vertical",
             0.0,
+            1.0,
             linear=True,
         ),
     ),

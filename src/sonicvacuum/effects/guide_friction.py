@@ -37,7 +37,9 @@ EFFECT = Effect(
     energy="takes f |u'| per time and bead",
     reference="Santibanez, Munoz, Caussarieu, Job & Melo, Phys. Rev. E 84, 026604 (2011); chosen here: "
     "the cubic below 1 mm/s",
-    parameters=(Parameter("force_N", "N", 0.0, 1e-4, 0.1, "log-uniform", 0.01, "friction force on a bead"),),
+    parameters=(
+        Parameter("force_N", "N", 0.0, 1e-4, 0.1, "log-uniform", 0.01, "friction force on a bead", 0.0),
+    ),
     signature="weak pulses decay faster than strong ones and come to a halt; tails are cut",
     when_to_use="tight holders; losses that matter at small amplitude only",
     when_not="losses that grow with amplitude; loss in proportion to velocity: viscous-drag",

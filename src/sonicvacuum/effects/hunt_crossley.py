@@ -30,7 +30,9 @@ EFFECT = Effect(
     energy="takes (3/2) c K delta^{3/2} v^2 per time and contact",
     reference="Hunt & Crossley, J. Appl. Mech. 42, 440 (1975)",
     parameters=(
-        Parameter("damping_s_per_m", "s/m", 0.0, 1e-4, 10.0, "log-uniform", 0.1, "c, restitution 1 - c v"),
+        Parameter(
+            "damping_s_per_m", "s/m", 0.0, 1e-4, 10.0, "log-uniform", 0.1, "c, restitution 1 - c v", 0.0
+        ),
     ),
     signature="loss in proportion to amplitude: strong pulses decay fast, weak ones hardly; "
     "restitution 1 - c v",

@@ -33,7 +33,7 @@ EFFECT = Effect(
     energy="takes (3/2) A K delta^{1/2} v^2 per time and contact",
     reference="Kuwabara & Kono, Jpn. J. Appl. Phys. 26, 1230 (1987); Brilliantov, Spahn, Hertzsch & "
     "Pöschel, Phys. Rev. E 53, 5382 (1996), Eq. 21",
-    parameters=(Parameter("time_us", "us", 0.0, 1e-3, 100.0, "log-uniform", 1.0, "dissipative time A"),),
+    parameters=(Parameter("time_us", "us", 0.0, 1e-3, 100.0, "log-uniform", 1.0, "dissipative time A", 0.0),),
     signature="pulses decay and widen along the chain, strong ones a little faster (lost fraction as "
     "u^{1/5}); restitution 1 - 1.15 (3A/2) (K/m)^{2/5} v^{1/5}",
     when_to_use="polymers, ice, rubber; restitution that falls slowly with impact speed",

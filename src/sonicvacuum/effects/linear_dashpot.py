@@ -31,7 +31,7 @@ EFFECT = Effect(
     reference="Herbold & Nesterenko, Phys. Rev. E 75, 021304 (2007)",
     parameters=(
         Parameter(
-            "damping_kg_s", "kg/s", 0.0, 1e-3, 50.0, "log-uniform", 0.5, "damping constant of a contact"
+            "damping_kg_s", "kg/s", 0.0, 1e-3, 50.0, "log-uniform", 0.5, "damping constant of a contact", 0.0
         ),
     ),
     signature="pulses decay and widen along the chain; the lost fraction grows as u^{-1/5} towards "

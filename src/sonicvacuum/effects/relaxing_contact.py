@@ -55,6 +55,7 @@ EFFECT = Effect(
             "log-uniform",
             0.2,
             "g, instantaneous over relaxed stiffness less 1",
+            0.0,
         ),
         Parameter("tau_us", "us", None, 0.3, 3000.0, "log-uniform", 30.0, "relaxation time", 1e-3),
     ),

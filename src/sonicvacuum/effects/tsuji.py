@@ -34,7 +34,7 @@ EFFECT = Effect(
     energy="takes alpha sqrt(m_eff K) delta^{1/4} v^2 per time and contact",
     reference="Tsuji, Tanaka & Ishida, Powder Technol. 71, 239 (1992), Eq. 14; exact restitution: "
     "Antypov & Elliott, EPL 94, 50004 (2011)",
-    parameters=(Parameter("alpha", "1", 0.0, 1e-4, 2.0, "log-uniform", 0.05, "damping number"),),
+    parameters=(Parameter("alpha", "1", 0.0, 1e-4, 2.0, "log-uniform", 0.05, "damping number", 0.0),),
     signature="pulses decay exponentially along the chain, the same for every amplitude; restitution "
     "the same at every speed",
     when_to_use="restitution measured as constant over speeds",

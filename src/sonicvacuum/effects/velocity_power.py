@@ -32,7 +32,7 @@ EFFECT = Effect(
     reference="Carretero-González, Khatri, Porter, Kevrekidis & Daraio, Phys. Rev. Lett. 102, 024102 "
     "(2009), alpha = 1.75; chosen here: velocities in m/s",
     parameters=(
-        Parameter("gamma", "N (s/m)^alpha", 0.0, 1e-3, 100.0, "log-uniform", 0.5, "force at 1 m/s"),
+        Parameter("gamma", "N (s/m)^alpha", 0.0, 1e-3, 100.0, "log-uniform", 0.5, "force at 1 m/s", 0.0),
         Parameter("alpha", "1", None, 1.2, 2.5, "uniform", 1.75, "power of the velocity", 1.01, 6.0),
     ),
     signature="pulses decay along the chain, the lost fraction growing as u^{alpha-6/5} with "

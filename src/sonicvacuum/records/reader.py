@@ -4,7 +4,7 @@ import math
 import re
 from pathlib import Path
 
-from sonicvacuum.files import InputError, convert, read_yaml
+from sonicvacuum.files import InputError, check_finite, convert, read_yaml
 from sonicvacuum.gauges import KINDS
 from sonicvacuum.laboratory.ranges import FORCE, LONGEST_INTERVAL, SHORTEST_RECORD, LaboratoryError
 from sonicvacuum.physics.scales import impact_scales
@@ -58,7 +58,7 @@ def read(path) -> Record:
 
 def parse(content: dict, path=FILE) -> RecordBlock:
     """The checked block of a YAML mapping; InputError as in `read`."""
-    _check_finite(content, path)
+    check_finite(content, path)
     _check_observables(content, path)
     lacking = missing(content, RecordBlock)
     if len(lacking) > 1:
@@ -72,20 +72,6 @@ def parse(content: dict, path=FILE) -> RecordBlock:
     except LaboratoryError as error:
         raise InputError(f"{path}: {error}") from None
     return block
-
-
-def _check_finite(content, path, place=""):
-    """YAML knows .nan and .inf, and lets a ratio of them through every comparison."""
-    if isinstance(content, dict):
-        parts = [(f"{place}.{k}" if place else str(k), v) for k, v in content.items()]
-    elif isinstance(content, list):
-        parts = [(f"{place}[{k}]", v) for k, v in enumerate(content)]
-    else:
-        if isinstance(content, float) and not math.isfinite(content):
-            raise InputError(f"{path}: {place}: is {content}; write a finite number, or leave the key out")
-        return
-    for key, value in parts:
-        _check_finite(value, path, key)
 
 
 def _check_observables(content, path):
