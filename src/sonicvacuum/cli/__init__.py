@@ -104,7 +104,10 @@ def main():
         click.echo(f"Error: {error.name} is not installed; this verb needs it: {cure}", err=True)
         sys.exit(2)
     except (click.Abort, KeyboardInterrupt):
-        sys.exit(130)
+        # At once: a compiler may still be at work in a thread that nobody waits for.
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(130)
 
 
 class _File(click.Path):

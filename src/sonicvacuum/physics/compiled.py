@@ -26,6 +26,8 @@ import numpy as np
 from numba.core.caching import CompileResultCacheImpl, _Cache
 from numba.core.serialize import dumps
 
+from sonicvacuum.physics import watch
+
 _PACKAGE = Path(__file__).resolve().parent
 _KEPT_FOLDERS = 8
 # Longer than any compilation: a process that still holds the lock then is taken for dead.
@@ -156,11 +158,14 @@ def _load_or_compile(dispatcher, signature):
     _import_array_functions()
     folder = cache_folder()
     path = dispatcher._cache.path(signature, dispatcher.targetctx) if folder else None
-    if path is None or path.exists():
+    if path and path.exists():
         dispatcher.compile(signature)
         return
+    if path is None:
+        watch.aside(dispatcher.compile, signature)
+        return
     with _lock(path.with_suffix(".lock")):
-        dispatcher.compile(signature)
+        watch.aside(dispatcher.compile, signature)
 
 
 @contextlib.contextmanager

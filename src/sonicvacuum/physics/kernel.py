@@ -59,8 +59,10 @@ from sonicvacuum.physics.table import (
 
 # Bodies that are switched on together, ahead of the wave.
 MARGIN = 4
-# Entries of a group's status: bodies stepped, entries of the balance, whether the wave ran out of the table.
-STEPPED, BALANCED, RAN_OUT = range(3)
+# Entries of a group's status: bodies stepped, entries of the balance, whether the wave ran out of the table,
+# steps made, and whether to stop, which another thread may say.
+STEPPED, BALANCED, RAN_OUT, MADE, STOP = range(5)
+STATUS_ENTRIES = 5
 
 
 _inlined = njit(**INLINED)
@@ -224,6 +226,9 @@ def _advance_group(
             start, end = end, start
         noted = sampled
         count += 1
+        status[MADE] = count
+        if status[STOP] > 0:
+            break
         if every > 0 and count % every == 0:
             _audit(c, table, first, beyond, weight, impulse, pending, time, balance, status)
     for body in range(first, beyond):
@@ -272,7 +277,7 @@ def advance(
             m/s and the acceleration in m/s².
         every: steps between entries of the balance.
         balance: (groups, entries, 2, L) total energy in J and momentum less received impulses in N s.
-        status: (groups, 3) see STEPPED, BALANCED and RAN_OUT.
+        status: (groups, STATUS_ENTRIES) see STEPPED to STOP.
         begin, end: range of groups.
     """
     bodies = table.shape[1] - 1

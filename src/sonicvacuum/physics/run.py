@@ -6,11 +6,10 @@ reaches, and keeps the audit (energy and momentum balance).
 
 import math
 import os
-from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
-from sonicvacuum.physics import kernel, sampling
+from sonicvacuum.physics import kernel, sampling, watch
 from sonicvacuum.physics.chain import Chain
 from sonicvacuum.physics.compiled import cached, prepare
 from sonicvacuum.physics.history import History
@@ -27,6 +26,8 @@ COINCIDENCE = 1e-9
 AUDIT_ENTRIES = 400
 # Shares of the work per thread, so that threads end together though groups differ in cost.
 SHARES = 8
+# Steps of one body (in all lanes of a group) below which a call is over in a fraction of a second.
+SHORT = 5e6
 
 advance = cached(kernel.advance)
 
@@ -202,7 +203,7 @@ class _Batch:
             if body == 0:
                 self.out[:, len(self.recorded) + 2 * b, 0] = self.chain.speed
                 self.out[:, len(self.recorded) + 2 * b + 1, 0] = self.chain.gravity
-        self.status = np.zeros((groups, 3), dtype=np.int64)
+        self.status = np.zeros((groups, kernel.STATUS_ENTRIES), dtype=np.int64)
         count = int(self.steps.max()) + 2
         self.every = max(1, count // AUDIT_ENTRIES) if audit else 0
         entries = count // self.every + 2 if audit else 0
@@ -242,13 +243,19 @@ class _Batch:
 
         everything = share(0, groups)
         prepare(advance, self.composition.name, everything)
-        if threads == 1 or groups == 1:
+        expected = float(self.steps[self.dealt].max(axis=1).sum())
+        if (threads == 1 or groups == 1) and expected * self.bodies < SHORT:
             advance(*everything)
         else:
-            bounds = np.linspace(0, groups, min(SHARES * threads, groups) + 1).astype(int).tolist()
-            with ThreadPoolExecutor(threads) as pool:
-                list(pool.map(lambda b, e: advance(*share(b, e)), bounds[:-1], bounds[1:]))
+            count = 1 if threads == 1 else min(SHARES * threads, groups)
+            bounds = np.linspace(0, groups, count + 1).astype(int).tolist()
+            shares = [share(*ends) for ends in zip(bounds[:-1], bounds[1:], strict=True)]
+            made = self.status[:, kernel.MADE]
+            watch.run(advance, shares, threads, self._stop, lambda: min(1.0, made.sum() / expected))
         self._check_finite()
+
+    def _stop(self):
+        self.status[:, kernel.STOP] = 1
 
     def _check_finite(self):
         sane = np.isfinite(self.table[:, :, V]).all(axis=1)
