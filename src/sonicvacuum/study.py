@@ -17,6 +17,7 @@ from sonicvacuum.gauges import Gauge, needed, reading
 from sonicvacuum.gauges.base import Recorded
 from sonicvacuum.physics.assemble import assemble
 from sonicvacuum.physics.chain import Chain
+from sonicvacuum.physics.extent import Extent, TooLargeError, estimate
 from sonicvacuum.physics.run import History, simulate
 
 # An aimed striker's speed is settled when the gauge's peak is this close to its aim.
@@ -128,9 +129,26 @@ def recorded_contacts(card: Card) -> tuple[int, ...]:
     return (*range(min(inside) - 1, max(inside) + 1), card.beads)
 
 
+def check_extent(card: Card, catalogue: Catalogue = CATALOGUE) -> None:
+    """InputError for a card that asks for more than a computer gives, see `physics.extent`."""
+    try:
+        Extent(card.beads, 1.0, 1.0, 1.0).check()  # before anything is made for each bead
+        chain, contacts = set_up(card, catalogue=catalogue).chain, len(recorded_contacts(card))
+        # At the step and at half of it.
+        estimate(chain, contacts, card.duration_s, card.interval_s, copies=3).check()
+    except TooLargeError as error:
+        raise InputError(f"{card.name}: {error}") from None
+
+
 @one_thread
-def run(card: Card, catalogue: Catalogue = CATALOGUE) -> Study:
-    """Simulate a card, at the chosen step and at half of it."""
+def run(card: Card, catalogue: Catalogue = CATALOGUE, limits: bool = True) -> Study:
+    """Simulate a card, at the chosen step and at half of it.
+
+    Raises:
+        InputError: for effects or an aim that cannot be; with `limits`, for more than a computer gives.
+    """
+    if limits:
+        check_extent(card, catalogue)
     speeds = np.array(card.striker.speeds_m_s)
     if card.striker.aim is not None:
         speeds = _aimed(card, speeds, catalogue)

@@ -3,7 +3,9 @@
 Bad input ends in one line on standard error and exit code 2, never in a traceback.
 """
 
+import os
 import sys
+from contextlib import contextmanager
 from difflib import get_close_matches
 from importlib import import_module
 
@@ -103,11 +105,31 @@ def main():
         cure = f"pip install 'sonicvacuum[{EXTRAS[error.name]}]'"
         click.echo(f"Error: {error.name} is not installed; this verb needs it: {cure}", err=True)
         sys.exit(2)
+    except MemoryError as error:
+        click.echo(f"Error: the memory does not suffice: {error}", err=True)
+        sys.exit(1)
     except (click.Abort, KeyboardInterrupt):
         # At once: a compiler may still be at work in a thread that nobody waits for.
         sys.stdout.flush()
         sys.stderr.flush()
         os._exit(130)
+
+
+@contextmanager
+def progress():
+    """On a terminal, a bar that moves within each long simulation."""
+    from tqdm import tqdm
+
+    from sonicvacuum.physics.watch import told_to
+
+    with tqdm(total=1.0, disable=None, leave=False, bar_format="{l_bar}{bar}| {elapsed}") as bar:
+
+        def move(part):
+            bar.n = part
+            bar.refresh()
+
+        with told_to(move):
+            yield
 
 
 class _File(click.Path):

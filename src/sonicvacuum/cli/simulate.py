@@ -2,7 +2,7 @@
 
 import click
 
-from sonicvacuum.cli import existing
+from sonicvacuum.cli import existing, progress
 from sonicvacuum.cli.cards import read_card
 from sonicvacuum.cli.own_effects import catalogue, own_effects
 from sonicvacuum.outputs import check_apart
@@ -15,9 +15,12 @@ from sonicvacuum.outputs import check_apart
     type=existing(),
     help="model.json of discover to put into the chain first; to observe the result, put it into the card.",
 )
+@click.option(
+    "--no-limits", is_flag=True, help="Simulate even what seems to need more than a computer gives."
+)
 @click.option("--out", required=True, type=click.Path(dir_okay=False), help="History (.npz) to write.")
 @own_effects
-def simulate(card, model, out, own):
+def simulate(card, model, no_limits, out, own):
     """Integrate the chains of a CARD and keep the contact forces."""
     from sonicvacuum import study
 
@@ -27,4 +30,6 @@ def simulate(card, model, out, own):
         from sonicvacuum.cli.model import with_model
 
         resolved = with_model(resolved, model, known)
-    study.save(study.run(resolved, known), out)
+    with progress():
+        simulated = study.run(resolved, known, limits=not no_limits)
+    study.save(simulated, out)

@@ -6,6 +6,7 @@ reaches, and keeps the audit (energy and momentum balance).
 
 import math
 import os
+from itertools import pairwise
 
 import numpy as np
 
@@ -249,7 +250,7 @@ class _Batch:
         else:
             count = 1 if threads == 1 else min(SHARES * threads, groups)
             bounds = np.linspace(0, groups, count + 1).astype(int).tolist()
-            shares = [share(*ends) for ends in zip(bounds[:-1], bounds[1:], strict=True)]
+            shares = [share(*ends) for ends in pairwise(bounds)]
             made = self.status[:, kernel.MADE]
             watch.run(advance, shares, threads, self._stop, lambda: min(1.0, made.sum() / expected))
         self._check_finite()

@@ -108,4 +108,4 @@ def reachable_bodies(chain: Chain, duration: float) -> int:
     pace = 1.0 / contact_time(chain.lightest, chain.stiffness, chain.speed)
     load = chain.static_force
     pace = pace + np.sqrt(1.5 * np.cbrt(chain.stiffness**2 * load) / chain.lightest)
-    return int(1.1 * duration * pace.max()) + 32
+    return int(min(1.1 * duration * pace.max(), chain.beads)) + 32

@@ -1,6 +1,5 @@
 """Reading a record: closed schema, physical ranges, traces; the first fault ends it with one message."""
 
-import math
 import re
 from pathlib import Path
 

@@ -1,0 +1,84 @@
+"""An interruption ends a command soon, amid one long computation, and leaves nothing half-written."""
+
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from msgspec.structs import replace
+
+from sonicvacuum import card, config
+from sonicvacuum.physics import watch
+
+ROOT = Path(__file__).resolve().parents[2]
+# What a second is stretched to on a machine that does other things as well.
+PATIENCE = 1.5
+MAIN = "import sys; from sonicvacuum.cli import main; sys.argv[0] = 'sonicvacuum'; main()"
+
+
+@pytest.fixture
+def endless(tmp_path):
+    """The file of a card whose simulation takes hours: three days of a chain."""
+    path = ROOT / "config.yaml"
+    resolved = config.card(config.read(path), "fig3b", "nominal", path)
+    (tmp_path / "card.json").write_bytes(card.dump(replace(resolved, duration_s=3e5, interval_s=1e3)))
+    return tmp_path / "card.json"
+
+
+def test_a_long_simulation_ends_soon_and_leaves_the_last_result(endless):
+    out = endless.with_name("out.npz")
+    out.write_bytes(b"finished before")
+    command = [sys.executable, "-c", MAIN, "simulate", str(endless), "--no-limits", "--out", str(out)]
+    running = subprocess.Popen(command, stderr=subprocess.PIPE)
+    time.sleep(8.0)  # starting, and loading or compiling the kernel: whatever it is at, it must end
+    assert running.poll() is None
+    asked = time.monotonic()
+    running.send_signal(signal.SIGINT)
+    _, told = running.communicate(timeout=60)
+    assert time.monotonic() - asked < PATIENCE
+    assert running.returncode == 130
+    assert told.strip() == b""
+    assert out.read_bytes() == b"finished before"
+    assert sorted(p.name for p in endless.parent.iterdir()) == ["card.json", "out.npz"]
+
+
+def test_without_no_limits_it_is_refused_with_its_numbers(endless):
+    out = endless.with_name("out.npz")
+    command = [sys.executable, "-c", MAIN, "simulate", str(endless), "--out", str(out)]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 2
+    assert "steps of a bead" in done.stderr
+    assert "--no-limits" in done.stderr
+    assert not out.exists()
+
+
+def test_progress_is_told_and_an_interruption_stops_the_work():
+    told, stopped = [], []
+
+    def work(seconds):
+        end = time.monotonic() + seconds
+        while time.monotonic() < end and not stopped:
+            time.sleep(0.01)
+
+    def listener(part):
+        told.append(part)
+        if len(told) == 3:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt), watch.told_to(listener):
+        watch.run(work, [(60.0,), (60.0,)], 1, lambda: stopped.append(True), lambda: 0.25)
+    assert told == [0.25] * 3
+    assert stopped
+    assert not watch._listeners
+
+
+def test_errors_of_the_work_arrive():
+    def fail():
+        raise ValueError("from the thread")
+
+    with pytest.raises(ValueError, match="from the thread"):
+        watch.run(fail, [()], 1, lambda: None, lambda: 0.0)
+    with pytest.raises(ValueError, match="from the thread"):
+        watch.aside(fail)
