@@ -13,8 +13,16 @@ from msgspec.structs import replace
 
 from sonicvacuum.gauges import KINDS, Gauge
 from sonicvacuum.gauges.base import misplaced
-from sonicvacuum.laboratory import blocks
-from sonicvacuum.laboratory.blocks import ChainBlock, MaterialBlock, material_of, specimen_of, striker_of
+from sonicvacuum.laboratory import blocks, ranges
+from sonicvacuum.laboratory.blocks import (
+    BeadBlock,
+    ChainBlock,
+    MaterialBlock,
+    bead_blocks,
+    material_of,
+    specimen_of,
+    striker_of,
+)
 from sonicvacuum.laboratory.bodies import Bodies
 from sonicvacuum.laboratory.ranges import LaboratoryError
 from sonicvacuum.laboratory.specimen import Bead, Material, NonNegative, Positive, Specimen, Striker
@@ -178,20 +186,15 @@ def resolve(case: str, variant: str, block: CaseBlock) -> Card:
         LaboratoryError: for a bead outside the chain, a sphere without diameter, an unknown material …
     """
     written = block.striker
-    ids = [s.id for s in block.sensors]
-    for place, name in enumerate(ids):
-        if name in ids[:place]:
-            raise LaboratoryError(
-                f"sensors[{place}].id", f"is {name!r}; another sensor has this id: rename one"
-            )
-    if written.aim is not None and written.aim.sensor not in ids:
-        raise LaboratoryError("striker.aim.sensor", f"is {written.aim.sensor!r}; no sensor has this id")
+    _check_ranges(block)
     specimen = specimen_of(block.chain, block.materials)
     surface = material_of(written.material, block.materials, "striker.material")
     speeds = written.speed_m_s if isinstance(written.speed_m_s, list) else [written.speed_m_s]
     striker = striker_of(written, surface, specimen, "striker", speeds[0])
     bodies = specimen.bodies
-    return Card(
+    lightest = min(bead.mass_g for _, bead in bead_blocks(block.chain).kinds)
+    _check_striker(written, lightest, speeds, "striker.speed_m_s")
+    card = Card(
         case=case,
         variant=variant,
         title=block.title,
@@ -209,19 +212,95 @@ def resolve(case: str, variant: str, block: CaseBlock) -> Card:
         ),
         gravity_m_s2=specimen.gravity_m_s2,
         static_force_N=specimen.static_force_N,
-        sensors=tuple(_sensor(s, k, specimen.beads) for k, s in enumerate(block.sensors)),
+        sensors=tuple(map(_sensor, block.sensors)),
         duration_s=block.duration_us / 1e6,
         interval_s=block.sample_us / 1e6,
         effects=block.effects,
     )
+    check_gauges(card)
+    return card
 
 
-def _sensor(block, place, beads):
-    key = f"sensors[{place}]"
-    if block.kind not in KINDS:
-        raise LaboratoryError(f"{key}.kind", f"is {block.kind!r}; the kinds of gauges are {', '.join(KINDS)}")
-    if problem := misplaced(block.kind, block.bead, beads):
-        raise LaboratoryError(f"{key}.bead", problem)
+def _check_ranges(block):
+    """What a record must satisfy as well: sizes, densities and moduli that a laboratory has."""
+    ranges.STATIC_FORCE.check("chain.static_force_N", block.chain.static_force_N)
+    for key, bead in bead_blocks(block.chain).kinds:
+        ranges.check_bead(key, bead)
+    for name, given in block.materials.items():
+        if given.modulus_GPa is not None:
+            ranges.check_modulus(f"materials.{name}", name, given.modulus_GPa)
+
+
+def _check_striker(striker, lightest_g, speeds, key):
+    """A striker's block beside beads of so many g; `key` is where its speeds stand."""
+    if striker.diameter_mm is not None:
+        ranges.DIAMETER.check("striker.diameter_mm", striker.diameter_mm)
+    if striker.shape == "sphere":
+        ranges.check_mass("striker", striker.mass_g, striker.diameter_mm)
+    else:
+        ranges.check_striker_mass("striker", striker.mass_g, lightest_g)
+    for speed in speeds:
+        ranges.SPEED.check(key, speed)
+
+
+def check_gauges(card: Card) -> None:
+    """LaboratoryError for two gauges of one id, one that is nowhere, or an aim at none of them."""
+    ids = [s.id for s in card.sensors]
+    for place, sensor in enumerate(card.sensors):
+        key = f"sensors[{place}]"
+        if sensor.kind not in KINDS:
+            known = ", ".join(KINDS)
+            raise LaboratoryError(f"{key}.kind", f"is {sensor.kind!r}; the kinds of gauges are {known}")
+        if problem := misplaced(sensor.kind, sensor.bead, card.beads):
+            raise LaboratoryError(f"{key}.bead", problem)
+        if sensor.id in ids[:place]:
+            raise LaboratoryError(f"{key}.id", f"is {sensor.id!r}; another sensor has this id: rename one")
+    aim = card.striker.aim
+    if aim is not None and aim.sensor not in ids:
+        raise LaboratoryError(
+            "striker.aim.sensor", f"is {aim.sensor!r}; no sensor has this id: {', '.join(ids)}"
+        )
+
+
+def check(card: Card) -> None:
+    """LaboratoryError for a card that `resolve` would not have made; the message names the place in the card.
+
+    Lengths and masses are told in the units of the ranges, mm and g.
+    """
+    check_gauges(card)
+    ranges.STATIC_FORCE.check("static_force_N", card.static_force_N)
+    places = {"bead": card.bead}
+    places |= {f"pattern[{k}]": b for k, b in enumerate(() if card.pattern is UNSET else card.pattern)}
+    places |= {f"bodies.{k}": b for k, b in ({} if card.bodies is UNSET else card.bodies).items()}
+    for key, bead in places.items():
+        block = _as_block(bead)
+        ranges.check_coating(key, block)
+        ranges.check_bead(key, block)
+        ranges.MODULUS.check(f"{key}.surface.modulus", bead.surface.modulus_Pa / 1e9)
+    s = card.striker
+    for key, surface in (("wall", card.wall), ("striker.surface", s.surface)):
+        ranges.MODULUS.check(f"{key}.modulus", surface.modulus_Pa / 1e9)
+    size = None if s.radius_m is None else 2e3 * s.radius_m
+    shape = "flat" if size is None else "sphere"
+    striker = StrikerBlock(
+        shape=shape, material=s.surface.name, mass_g=1e3 * s.mass_kg, diameter_mm=size, speed_m_s=1.0
+    )
+    lightest = 1e3 * min(bead.mass_kg for bead in places.values())
+    _check_striker(striker, lightest, s.speeds_m_s, "striker.speeds_m_s")
+
+
+def _as_block(bead):
+    return BeadBlock(
+        diameter_mm=1e3 * bead.diameter_m,
+        mass_g=1e3 * bead.mass_kg,
+        material=bead.surface.name,
+        coating_um=None if bead.coating_m is None else 1e6 * bead.coating_m,
+        core=None if bead.core is None else bead.core.name,
+        faces="flat" if bead.flat else "sphere",
+    )
+
+
+def _sensor(block):
     droop = None if block.droop_us is None else block.droop_us / 1e6
     return CardSensor(
         id=block.id, kind=block.kind, bead=block.bead, droop_s=droop, lowpass_s=block.lowpass_us / 1e6

@@ -1,9 +1,12 @@
 """Reading and writing files: whole or not at all, and one clear message for what is wrong with a file."""
 
+import csv
 import math
 import os
 import re
 import stat
+import zipfile
+import zlib
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -14,6 +17,22 @@ import msgspec
 LARGEST_YAML = 4 << 20
 MOST_VALUES = 200_000
 DEEPEST = 50
+
+
+# What parsers raise at content that is not theirs; programming errors elsewhere stay visible.
+_DAMAGED = (
+    ArithmeticError,
+    AttributeError,
+    EOFError,
+    LookupError,
+    NotImplementedError,
+    RecursionError,
+    TypeError,
+    ValueError,
+    csv.Error,
+    zipfile.BadZipFile,
+    zlib.error,
+)
 
 
 class InputError(Exception):
@@ -39,6 +58,21 @@ def replacing(path: str | os.PathLike, mode: str = "w"):
         partial.replace(path)
     finally:
         partial.unlink(missing_ok=True)
+
+
+@contextmanager
+def reading(path: str | os.PathLike, cure: str):
+    """Turn what a parser stumbles over in a damaged file into one InputError with the file and the cure."""
+    try:
+        yield
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path}: not a text file (byte {error.start} is not UTF-8); {cure}") from None
+    except OSError as error:
+        raise InputError(f"{path}: {error.strerror or error}; {cure}") from None
+    except _DAMAGED as error:
+        told = " ".join(str(error).split()) or type(error).__name__
+        told = f"no {told}" if isinstance(error, KeyError) else told
+        raise InputError(f"{path}: damaged, or not what is read here ({told}); {cure}") from None
 
 
 def check_file(path: str | os.PathLike) -> None:

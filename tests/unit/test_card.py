@@ -2,13 +2,16 @@
 
 import copy
 import json
+import math
 import re
 
 import pytest
+import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 
 from sonicvacuum.card import CaseBlock, dump, load, merged, resolve, variant_names
+from sonicvacuum.cli.cards import read_card
 from sonicvacuum.config import Config, card, card_names, read, schema
 from sonicvacuum.files import InputError, convert
 from sonicvacuum.laboratory.ranges import LaboratoryError
@@ -92,14 +95,65 @@ def test_a_card_survives_its_file():
     assert load(dump(resolved(CASE))) == resolved(CASE)
 
 
-@given(st.floats(1e-3, 50.0), st.floats(1e-3, 100.0), st.lists(st.floats(1e-3, 10.0), min_size=1, max_size=5))
-def test_any_positive_numbers_survive(diameter, mass, speeds):
-    case = altered(["chain", "bead", "diameter_mm"], diameter + 0.2)
-    case["chain"]["bead"]["mass_g"] = mass
+@given(st.floats(0.2, 20.0), st.floats(100.0, 2e4), st.lists(st.floats(1e-3, 10.0), min_size=1, max_size=5))
+def test_any_likely_numbers_survive(diameter, density, speeds):
+    case = altered(["chain", "bead", "diameter_mm"], diameter)
+    case["chain"]["bead"]["mass_g"] = density * 1e-6 * math.pi / 6.0 * diameter**3
     case["striker"]["speed_m_s"] = speeds
     c = resolved(case)
     assert load(dump(c)) == c
     assert c.striker.speeds_m_s == tuple(speeds)
+
+
+UNLIKELY = [
+    (["chain", "bead", "diameter_mm"], 0.00486, "chain.bead.diameter_mm", "looks like one in m"),
+    (["chain", "bead", "mass_g"], 0.44e-3, "chain.bead.mass_g", "mass in kg"),
+    (["striker", "mass_g"], 0.47e-3, "striker.mass_g", "looks like one in kg"),
+    (["striker", "speed_m_s"], [0.4, 440.0], "striker.speed_m_s", "looks like one in mm/s"),
+    (["materials"], {"parylene-c": {"modulus_GPa": 2.76e9}}, "materials.parylene-c.modulus_GPa", "in Pa"),
+    (["chain", "static_force_N"], 2e5, "chain.static_force_N", "convert it to N"),
+    (["duration_us"], math.inf, "duration_us", "inf"),
+]
+
+
+@pytest.mark.parametrize(("path", "value", "place", "hint"), UNLIKELY, ids=lambda p: str(p)[:30])
+def test_what_no_laboratory_has_is_refused_as_in_records(tmp_path, path, value, place, hint):
+    case = altered(path, value)
+    del case["variants"]
+    file = tmp_path / "config.yaml"
+    file.write_text(yaml.safe_dump({"cases": {"c": case}, "ledger": {}}))
+    with pytest.raises(InputError, match=re.escape(place) + ".*" + re.escape(hint)):
+        read(file)
+
+
+DAMAGED_CARDS = [
+    (["striker", "aim"], {"sensor": "g7", "amplitude_N": 1.0}, "striker.aim.sensor.*'g7'"),
+    (["sensors", 0, "bead"], 6, r"sensors\[0\].bead.*5 beads"),
+    (["sensors", 0, "bead"], None, r"sensors\[0\].bead"),
+    (["sensors", 1, "id"], "g1", r"sensors\[1\].id.*'g1'"),
+    (["sensors", 1, "kind"], "ear", r"sensors\[1\].kind.*'ear'"),
+    (["wall", "poisson"], 0.7, "wall.poisson.*0.7"),
+    (["bead", "surface", "poisson"], -1.0, "bead.surface.poisson"),
+    (["bead", "core"], None, "bead: coating_um is given without core"),
+    (["bead", "diameter_m"], 4.86, "bead.diameter_mm.*outside"),
+    (["striker", "speeds_m_s"], [1e4], "striker.speeds_m_s.*outside"),
+    (["beads"], "5", "beads.*'5'"),
+    (["duration_s"], -1.0, "duration_s"),
+]
+
+
+@pytest.mark.parametrize(("path", "value", "told"), DAMAGED_CARDS, ids=lambda p: str(p)[:30])
+def test_a_card_handed_over_is_checked_as_a_case_is(tmp_path, path, value, told):
+    content = json.loads(dump(resolved(CASE)))
+    *parents, last = path
+    block = content
+    for key in parents:
+        block = block[key]
+    block[last] = value
+    file = tmp_path / "card.json"
+    file.write_text(json.dumps(content))
+    with pytest.raises(InputError, match="card.json: " + told):
+        read_card(file)
 
 
 MISTAKES = [

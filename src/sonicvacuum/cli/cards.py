@@ -1,11 +1,10 @@
 """Cards as files: what the verbs that take one read it with."""
 
-import json
-
 import msgspec
 
-from sonicvacuum.card import Card, load
+from sonicvacuum.card import Card, check, load
 from sonicvacuum.files import InputError, explain
+from sonicvacuum.laboratory.ranges import LaboratoryError
 
 
 def read_card(path) -> Card:
@@ -13,8 +12,20 @@ def read_card(path) -> Card:
     with open(path, "rb") as stream:
         text = stream.read()
     try:
-        return load(text)
+        found = load(text)
+        check(found)
+        return found
     except msgspec.ValidationError as error:
-        raise InputError(explain(error, json.loads(text), path, kind=Card)) from None
+        raise InputError(explain(error, _plain(text), path, kind=Card)) from None
+    except LaboratoryError as error:
+        raise InputError(f"{path}: {error}") from None
     except msgspec.DecodeError as error:
         raise InputError(f"{path}: not a card ({error}); write one with: sonicvacuum card --out") from None
+
+
+def _plain(text):
+    """What the text says as far as it can be read at all: the fault may stand before worse ones."""
+    try:
+        return msgspec.json.decode(text)
+    except (msgspec.DecodeError, RecursionError):
+        return None

@@ -12,14 +12,17 @@ from sonicvacuum.cli.own_effects import catalogue, own_effects
 @own_effects
 def page(folders, own):
     """Draw the pictures of what discover wrote into FOLDERS, and write its page, index.html."""
+    from sonicvacuum.files import reading
     from sonicvacuum.records.guard import check_out
     from sonicvacuum.report.record import section
 
     known = catalogue(own)
     for folder in map(Path, folders):
         check_out(folder)
-        section(folder, known)  # what is not a discovery's folder is refused before anything is drawn
-        illustrate(folder, known)
+        # What is not a discovery's folder is refused before anything is drawn.
+        with reading(folder, "run sonicvacuum discover again"):
+            section(folder, known)
+            illustrate(folder, known)
 
 
 def illustrate(folder, known) -> None:

@@ -15,7 +15,7 @@ from sonicvacuum.discover.problem import experiment
 from sonicvacuum.discover.refit import fit
 from sonicvacuum.discover.verdict import Gap, Model, Sources, gap
 from sonicvacuum.effects import CATALOGUE, Catalogue
-from sonicvacuum.files import InputError
+from sonicvacuum.files import InputError, reading
 from sonicvacuum.records import Record
 
 
@@ -57,6 +57,14 @@ def read_model(path, catalogue: Catalogue = CATALOGUE) -> Model:
                 raise InputError(
                     f"{path}: effects.{name}.{key}: unknown key; {name} has {', '.join(filter(None, known))}"
                 )
+        with reading(path, "sonicvacuum discover writes a sound one"):
+            _check_values(name, given, catalogue)
+    ratios = {"modulus_ratio": found.modulus_ratio}
+    ratios |= {f"gain.{k}": v for k, v in found.gain.items()}
+    ratios |= {f"speed_ratio.{k}": v for k, v in found.speed_ratio.items()}
+    for key, ratio in ratios.items():
+        if not ratio > 0.0:
+            raise InputError(f"{path}: {key}: is {ratio:g}; a ratio is positive")
     return found
 
 
@@ -80,6 +88,16 @@ def check_source(path, name: str, sources: Sources, catalogue: Catalogue) -> Non
             f"{path}: effects.{name}: was made with {told.name} of SHA-256 {told.sha256[:12]}, {given.name} "
             f"given has {given.sha256[:12]}; give the file it was made with, or run discover again"
         )
+
+
+def _check_values(name, given, catalogue):
+    """ValueError for a parameter without meaning, or an effect whose place is missing or no whole number."""
+    one = catalogue.effect(name)
+    for key, value in given.items():
+        if key != one.places:
+            one.parameter(key).check(value, name)
+    if one.places and not float(given[one.places]).is_integer():
+        raise ValueError(f"effect {name}: {one.places} is {given[one.places]:g}; use a whole number")
 
 
 def hypothesis(model: Model, catalogue: Catalogue = CATALOGUE) -> Hypothesis:

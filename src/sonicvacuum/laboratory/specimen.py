@@ -24,7 +24,7 @@ class Material(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     name: str
     modulus_Pa: Positive
-    poisson: float
+    poisson: Annotated[float, Meta(gt=-1.0, le=0.5)]
     density_kg_m3: Positive | None = None
     yield_Pa: Positive | None = None
 

@@ -1,11 +1,13 @@
 """Drawings and styles inside a page, so that it needs nothing but itself."""
 
 import re
+import zlib
 from pathlib import Path
 
 import jinja2
 from markupsafe import Markup, escape
 
+from sonicvacuum.files import read_text, reading
 from sonicvacuum.report import tables
 
 # Drawings of one journal column are not blown up to the width of the page; pt.
@@ -33,13 +35,21 @@ def svg(path, prefix: str, told: str = "") -> Markup:
         prefix: put before every id.
         told: what a screen reader says.
     """
-    text = Path(path).read_text(encoding="utf-8")
-    text = text[text.index("<svg") :]
+    with reading(path, "draw it again"):
+        text = read_text(path)
+        text = text[text.index("<svg") :]
+    prefix = _identifier(prefix)
     text = re.sub(r'\bid="([^"]+)"', rf'id="{prefix}-\1"', text)
     text = re.sub(r"url\(#([^)]+)\)", rf"url(#{prefix}-\1)", text)
     text = re.sub(r'href="#([^"]+)"', rf'href="#{prefix}-\1"', text)
     label = f' role="img" aria-label="{escape(told)}"' if told else ""
     return Markup(text.replace("<svg", f"<svg{label}", 1))
+
+
+def _identifier(name: str) -> str:
+    """A name as part of an id, which holds no spaces, quotes or brackets; different names stay different."""
+    plain = re.sub(r"[^A-Za-z0-9_.-]", "-", name)
+    return plain if plain == name else f"{plain}-{zlib.crc32(name.encode()):08x}"
 
 
 def is_narrow(path) -> bool:

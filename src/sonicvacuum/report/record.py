@@ -12,7 +12,7 @@ import msgspec
 from sonicvacuum.discover.compare import check_source
 from sonicvacuum.discover.verdict import Model, Verdict
 from sonicvacuum.effects import CATALOGUE, Catalogue
-from sonicvacuum.files import InputError, read_text, replacing
+from sonicvacuum.files import InputError, read_text, reading, replacing
 from sonicvacuum.report import inline, words
 from sonicvacuum.report.tables import number
 
@@ -33,6 +33,13 @@ PICTURES = {
 # What a page adds to the folder of discover.
 PAGE = ("index.html", "parameters.csv", *(f"{name}.{kind}" for name in PICTURES for kind in ("svg", "png")))
 _PAIRS = 6
+# What the page needs of each table.
+_COLUMNS = {
+    "where": ("run", "sensor", "feature", "z_before", "q_before"),
+    "candidates": ("effects", "delta_chi2", "log10_bayes", "probability", "parameters"),
+    "gap": ("run", "data", "before", "after", "held_out_before", "held_out_after"),
+    "limits": ("effect", "parameter", "limit_95", "testable", "place"),
+}
 
 
 def write_page(folder, catalogue: Catalogue = CATALOGUE) -> Path:
@@ -87,7 +94,17 @@ def _json(path, kind):
 
 
 def _rows(path):
-    return list(csv.DictReader(read_text(path).splitlines()))
+    """Rows of a table; InputError where it lacks a column."""
+    with reading(path, "run sonicvacuum discover again"):
+        table = csv.DictReader(read_text(path).splitlines(), strict=True)
+        rows = list(table)
+        missing = [c for c in _COLUMNS[path.stem] if c not in (table.fieldnames or ())]
+        if missing:
+            raise ValueError(f"no column {missing[0]}")
+        for line, row in enumerate(rows, 2):
+            if None in row or None in row.values():
+                raise ValueError(f"line {line} has another number of cells than the header")
+    return rows
 
 
 def _pictures(folder, name):
