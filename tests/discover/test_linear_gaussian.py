@@ -8,7 +8,7 @@ import pytest
 from linear_models import Imagined, Linear, drawn, of_drag, screened
 from scipy import integrate, stats
 
-from sonicvacuum.discover import calibration, degenerate, evidence, heldout, next_experiment, rounds
+from sonicvacuum.discover import calibration, degenerate, evidence, heldout, left, next_experiment, policy
 from sonicvacuum.discover.calibration import Calibration
 from sonicvacuum.discover.directions import Direction
 from sonicvacuum.discover.evidence import Candidate
@@ -26,9 +26,9 @@ def test_the_normal_equations_lead_to_the_least_squares_solution_from_anywhere()
     gradient, hessian = normal.total()
     best = model.solved(range(3))
     np.testing.assert_allclose(at + np.linalg.solve(hessian[0], gradient[0]), best, rtol=1e-9)  # rounding
-    left = model.data - model.columns @ at
-    assert normal.objective[0] == pytest.approx(np.sum(left**2) + np.sum(at[1:] ** 2), rel=1e-12)
-    assert normal.weighted(np.array([3.0]))[0] == pytest.approx(np.sum(left**2) + 3.0 * np.sum(at[1:] ** 2))
+    rest = model.data - model.columns @ at
+    assert normal.objective[0] == pytest.approx(np.sum(rest**2) + np.sum(at[1:] ** 2), rel=1e-12)
+    assert normal.weighted(np.array([3.0]))[0] == pytest.approx(np.sum(rest**2) + 3.0 * np.sum(at[1:] ** 2))
 
 
 # --- evidence
@@ -115,14 +115,13 @@ def test_the_threshold_lets_pure_noise_pass_once_in_a_hundred():
     """Twenty orthogonal two-sided directions: P(max z² < t) = (1 − p)^20 with p of a χ² of one degree."""
     directions = tuple(Direction(f"e{k}", "s", two_sided=True) for k in range(20))
     seen = screened(np.eye(20), np.zeros(20), directions)
-    passed = 1.0 - stats.chi2.cdf(seen.threshold(rounds.FALSE_ALARM), 1) ** 20
+    passed = 1.0 - stats.chi2.cdf(seen.threshold(policy.FALSE_ALARM), 1) ** 20
     assert passed == pytest.approx(0.01, abs=0.0065)  # five standard errors of 60 among 6000 draws
 
 
-@pytest.mark.parametrize(("p", "named"), [(5e-4, ["unknown"]), (2e-3, [])])
-def test_a_misfit_without_a_name_is_called_unknown_below_one_in_a_thousand(monkeypatch, p, named):
-    monkeypatch.setattr(rounds.unknown, "alarm", lambda forward, fit: SimpleNamespace(p=p))
-    assert rounds._nothing(None, None).named == named
+@pytest.mark.parametrize(("p", "sure"), [(5e-4, True), (2e-3, False)])
+def test_a_misfit_without_a_name_is_called_unknown_below_one_in_a_thousand(p, sure):
+    assert left.sure(SimpleNamespace(p=p)) is sure
 
 
 # --- limits

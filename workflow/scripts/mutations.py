@@ -28,7 +28,7 @@ MUTATIONS = (
         "_ONE_SIDED, _TWO_SIDED = 1.645",
         "_ONE_SIDED, _TWO_SIDED = 0.0",
     ),
-    ("NULL_ALARM is 0", "rounds.py", "NULL_ALARM = 1e-3", "NULL_ALARM = 0.0"),
+    ("NULL_ALARM is 0", "policy.py", "NULL_ALARM = 1e-3", "NULL_ALARM = 0.0"),
     ("occam_strength is 0", "evidence.py", "return math.log(min(1.0, factor))", "return 0.0"),
     (
         "separation is constant",
@@ -38,7 +38,7 @@ MUTATIONS = (
     ),
     ("temper is 1 in the formula", "calibration.py", "self.temper * value", "1.0 * value"),
     ("temper is 1 in the package", "calibration.json", None, None),
-    ("FALSE_ALARM is 0.05", "rounds.py", "FALSE_ALARM = 0.01", "FALSE_ALARM = 0.05"),
+    ("FALSE_ALARM is 0.05", "policy.py", "FALSE_ALARM = 0.01", "FALSE_ALARM = 0.05"),
 )
 TESTS = ("tests/discover/test_linear_gaussian.py", "tests/discover/test_statistics.py")
 
