@@ -4,6 +4,8 @@ Every card is simulated twice, with the chosen step and with half of it: the dif
 between the two is its numerical error.
 """
 
+import os
+import zipfile
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -12,9 +14,11 @@ import numpy as np
 from sonicvacuum.blas import one_thread
 from sonicvacuum.card import Card
 from sonicvacuum.effects import CATALOGUE, Catalogue, Setup
-from sonicvacuum.files import InputError, replacing
+from sonicvacuum.files import InputError, check_file, replacing
+from sonicvacuum.files import reading as reading_file
 from sonicvacuum.gauges import Gauge, needed, reading
 from sonicvacuum.gauges.base import Recorded
+from sonicvacuum.physics import validity
 from sonicvacuum.physics.assemble import assemble
 from sonicvacuum.physics.chain import Chain
 from sonicvacuum.physics.extent import Extent, TooLargeError, estimate
@@ -39,6 +43,7 @@ class Study:
         bodies: recorded bodies, none where every gauge reads a force.
         motion: (2, 2, samples, bodies, runs) velocity in m/s and acceleration in m/s² of those bodies, with
             the chosen step and with half of it.
+        warnings: what is doubtful about the motion, one sentence each.
         catalogue: knows the card's effects.
     """
 
@@ -52,6 +57,7 @@ class Study:
     momentum: np.ndarray
     bodies: tuple[int, ...] = ()
     motion: np.ndarray | None = None
+    warnings: tuple[str, ...] = ()
     catalogue: Catalogue = CATALOGUE
 
     @cached_property
@@ -153,9 +159,11 @@ def run(card: Card, catalogue: Catalogue = CATALOGUE, limits: bool = True) -> St
     if card.striker.aim is not None:
         speeds = _aimed(card, speeds, catalogue)
     contacts = recorded_contacts(card)
-    plain, refined = (
-        _simulate(card, speeds, contacts, catalogue, refine, audit=refine == 1.0) for refine in (1.0, 2.0)
-    )
+    try:
+        plain, refined = (_simulate(card, speeds, contacts, catalogue, r, audit=r == 1.0) for r in (1.0, 2.0))
+        warnings = _doubts(card, set_up(card, speeds, catalogue), plain)
+    except (FloatingPointError, validity.MeaninglessError) as error:
+        raise InputError(f"{card.name}: {error}") from None
     return Study(
         card=card,
         speeds=speeds,
@@ -167,8 +175,18 @@ def run(card: Card, catalogue: Catalogue = CATALOGUE, limits: bool = True) -> St
         momentum=plain.momentum,
         bodies=plain.bodies,
         motion=np.array([(h.velocity, h.acceleration) for h in (plain, refined)]) if plain.bodies else None,
+        warnings=warnings,
         catalogue=catalogue,
     )
+
+
+def _doubts(card, setup, history):
+    """What is doubtful about a simulation, see `physics.validity`."""
+    surfaces = [bead.surface for bead in card.specimen.bodies.kinds]
+    found = validity.warnings(setup.chain, history, {s.name: s.yield_Pa for s in surfaces})
+    for gauge in setup.sensors:
+        found.append(validity.unseen(gauge.id, reading(gauge, history, card.beads), card.interval_s))
+    return tuple(told for told in found if told)
 
 
 def _simulate(card, speeds, contacts, catalogue=CATALOGUE, refine=1.0, audit=False) -> History:
@@ -210,20 +228,50 @@ def save(study: Study, path) -> None:
             refined=study.refined,
             energy=study.energy,
             momentum=study.momentum,
+            **({"warnings": np.array(study.warnings)} if study.warnings else {}),
             **({"bodies": np.array(study.bodies), "motion": study.motion} if study.bodies else {}),
         )
 
 
 def load(card: Card, path, catalogue: Catalogue = CATALOGUE) -> Study:
     """The study that `save` wrote for this card; InputError where the file is not one."""
-    try:
-        with np.load(path) as data:
-            parts = dict(data)
-    except (OSError, ValueError) as error:
-        raise InputError(
-            f"{path}: not a saved simulation ({error}); run sonicvacuum simulate again"
-        ) from None
-    time = np.arange(len(parts["force"])) * card.interval_s
-    contacts = tuple(int(c) for c in parts.pop("contacts"))
-    bodies = tuple(int(b) for b in parts.pop("bodies", ()))
-    return Study(card=card, time=time, contacts=contacts, bodies=bodies, catalogue=catalogue, **parts)
+    with reading_file(path, "run sonicvacuum simulate again"):
+        parts = _arrays(path)
+        time = np.arange(len(parts["force"])) * card.interval_s
+        contacts = tuple(int(c) for c in parts.pop("contacts"))
+        bodies = tuple(int(b) for b in parts.pop("bodies", ()))
+        warnings = tuple(str(w) for w in parts.pop("warnings", ()))
+        known = {"bodies": bodies, "warnings": warnings, "catalogue": catalogue}
+        study = Study(card=card, time=time, contacts=contacts, **known, **parts)
+        _check_whole(study)
+    return study
+
+
+def _arrays(path):
+    """Arrays of an .npz file; the directory is held against the file before anything is unpacked."""
+    check_file(path)
+    with zipfile.ZipFile(path) as listing:
+        if sum(part.file_size for part in listing.infolist()) > 2 * os.path.getsize(path):
+            raise ValueError("it is packed, which simulate never does")
+    with np.load(path, allow_pickle=False) as data:
+        return dict(data)
+
+
+def _check_whole(study):
+    """ValueError for arrays of other shapes than the card's, or numbers that are none."""
+    card, runs = study.card, len(study.card.striker.speeds_m_s)
+    samples = int(np.floor(card.duration_s / card.interval_s * (1.0 + 1e-12))) + 1
+    force = (samples, len(study.contacts), runs)
+    if study.contacts != recorded_contacts(card):
+        raise ValueError("other contacts than the card's are recorded")
+    for name, shape in (("speeds", (runs,)), ("force", force), ("refined", force)):
+        if getattr(study, name).shape != shape:
+            raise ValueError(f"{name} has the shape {getattr(study, name).shape}, the card's is {shape}")
+    for name in ("speeds", "force", "refined", "energy", "momentum"):
+        array = getattr(study, name)
+        if array.dtype != np.float64 or not np.isfinite(array).all():
+            raise ValueError(f"{name} holds what is no finite number")
+    if study.bodies:
+        moved = (2, 2, samples, len(study.bodies), runs)
+        if study.motion.shape != moved or not np.isfinite(study.motion).all():
+            raise ValueError("motion is not that of the recorded bodies")

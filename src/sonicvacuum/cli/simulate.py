@@ -32,4 +32,6 @@ def simulate(card, model, no_limits, out, own):
         resolved = with_model(resolved, model, known)
     with progress():
         simulated = study.run(resolved, known, limits=not no_limits)
+    for told in simulated.warnings:
+        click.echo(f"Warning: {resolved.name}: {told}", err=True)
     study.save(simulated, out)

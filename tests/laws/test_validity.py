@@ -1,0 +1,67 @@
+"""What leaves the range of its physics says so: each condition provoked, and none where all is well."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from engine_cases import DURATION, coated
+
+from sonicvacuum.effects import Setup, effect
+from sonicvacuum.physics import validity
+from sonicvacuum.physics.bodies import Body, Elastic
+from sonicvacuum.physics.run import simulate
+
+ALL = range(22)
+
+
+def told(chain, yields=None, duration=DURATION, **options):
+    return validity.warnings(chain, simulate(chain, ALL, duration, 1e-6, audit=True, **options), yields)
+
+
+def test_an_ordinary_impact_is_not_doubtful():
+    assert told(coated(), {"coating": 59e6}) == []
+
+
+def test_an_overlap_beyond_the_law_is_told_with_its_size():
+    # δ of an impact goes as K^(-2/5): at 15 GPa 1/150 of R*, at 10 MPa 1/8 of it.
+    (warning,) = told(coated(modulus=1e7), duration=6e-3)
+    assert "of its effective radius: contact laws hold for less than 0.1" in warning
+
+
+def test_an_overlap_of_a_radius_is_refused():
+    with pytest.raises(validity.MeaninglessError, match="times its effective radius"):
+        told(coated(modulus=1e4, speed=5.0), duration=6e-3)
+
+
+def test_a_step_too_long_and_energy_from_nothing_are_told():
+    warnings = told(coated(), step=1e-5, method="verlet")
+    assert any("radians of the fastest" in w for w in warnings)
+    assert any("energy is off by" in w for w in warnings)
+
+
+def test_forces_that_are_no_numbers_are_refused():
+    chain = coated()
+    history = simulate(chain, ALL, DURATION, 1e-6)
+    force = history.force.copy()
+    force[100, 3] = np.nan
+    with pytest.raises(validity.MeaninglessError, match="contact 3 in run 0"):
+        validity.warnings(chain, replace(history, force=force))
+
+
+def test_yielding_is_told_unless_the_law_yields():
+    (warning,) = told(coated(modulus=193e9), {"coating": 50e6})
+    assert "times the yield strength" in warning
+    plastic = effect("plastic-contact").apply(Setup(coated(modulus=193e9)), residual_fraction=0.1).chain
+    assert told(plastic, {"coating": 50e6}) == []
+
+
+def test_a_coating_pressed_through_is_told():
+    thin = Body(Elastic("coating", 1e8, 0.388), 0.44e-3, 2.43e-3, coating=1e-6)
+    assert any("coatings of 1 um" in w for w in told(coated(modulus=1e8, bodies=thin), duration=2e-3))
+
+
+def test_a_window_that_ends_too_soon_is_told():
+    rise = np.linspace(0.0, 1.0, 50)[:, None]
+    assert "before the pulse has passed g" in validity.unseen("g", rise, 1e-6)
+    assert "ends after 49 us" in validity.unseen("g", np.zeros((50, 1)), 1e-6)
+    assert validity.unseen("g", np.sin(np.pi * rise), 1e-6) == ""
