@@ -16,7 +16,7 @@ COMPILE := pip compile --quiet --universal --generate-hashes --no-emit-index-url
 	--custom-compile-command "make lock"
 
 .DELETE_ON_ERROR:
-.PHONY: all env test reproduce bench study lock clean help
+.PHONY: all env test fuzz reproduce bench study lock clean help
 
 all: env  ## build the environment, then run the whole pipeline
 	$(BIN)/snakemake --cores $(CORES)
@@ -51,6 +51,9 @@ test: env  ## check format, style, types, import contracts, and run the tests
 	$(BIN)/lint-imports --no-logo
 	$(BIN)/mypy
 	$(BIN)/pytest
+
+fuzz: env  ## try 5500 damaged files of every kind that users hand over; table in results/fuzz.csv
+	$(BIN)/python tests/fuzz/mutants.py results/fuzz.csv 5500
 
 reproduce: env  ## regenerate figures' numbers and ledger in a clean folder and compare with those in git
 	$(BIN)/snakemake --cores $(CORES) reproduce

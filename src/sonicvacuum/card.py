@@ -103,8 +103,8 @@ class CardSensor(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     id: str
     kind: str
     bead: int | None = None
-    droop_s: float | None = None
-    lowpass_s: float = 0.0
+    droop_s: Positive | None = None
+    lowpass_s: NonNegative = 0.0
 
     @property
     def gauge(self) -> Gauge:

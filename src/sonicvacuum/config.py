@@ -91,6 +91,11 @@ def card(config: Config, case: str, variant: str, path="config.yaml") -> Card:
         isinstance(variants, dict) and all(isinstance(v, dict | None) for v in variants.values())
     ):
         raise InputError(f"{path}: cases.{case}.variants: expected name: {{overrides}}, one line each")
+    for name in variant_names(written):
+        if not (isinstance(name, str) and re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_-]*", name)):
+            raise InputError(
+                f"{path}: cases.{case}.variants: {name!r} becomes a file's name: use letters, digits, _ and -"
+            )
     if variant not in variant_names(written):
         known = ", ".join(variant_names(written))
         raise InputError(f"{path}: cases.{case}: no variant {variant!r}; known: {known}")

@@ -5,6 +5,7 @@ import math
 import os
 import re
 import stat
+import textwrap
 import zipfile
 import zlib
 from contextlib import contextmanager
@@ -12,6 +13,8 @@ from pathlib import Path
 from typing import Any
 
 import msgspec
+
+from sonicvacuum.numerals import number_cure
 
 # No file written by hand comes near: config.yaml expands to 860 values on 9 levels.
 LARGEST_YAML = 4 << 20
@@ -225,7 +228,7 @@ def explain(
     if found and found.group(1):
         return f"{path}: {place}: a key here is not allowed: {problem[0].lower()}{problem[1:]}"
     value = _value_at(content, inner)
-    shown = "" if value is _ABSENT else f"is {value!r}: "
+    shown = "" if value is _ABSENT else f"is {textwrap.shorten(repr(value), 200)}: "
     return f"{path}: {place}: {shown}{problem[0].lower()}{problem[1:]}{number_cure(value)}"
 
 
@@ -269,17 +272,3 @@ def _value_at(content, inner):
         except (KeyError, IndexError, ValueError, TypeError):
             return _ABSENT
     return content
-
-
-def number_cure(value: Any) -> str:
-    """What to write instead of text or a truth value where a number is wanted; nothing for other values."""
-    if isinstance(value, str) and re.fullmatch(r"[-+]?\d+(\.\d*)?[eE][-+]?\d+", value):
-        mantissa, exponent = re.split("[eE]", value)
-        mantissa = mantissa if "." in mantissa else mantissa + ".0"
-        sign = exponent if exponent[0] in "+-" else "+" + exponent
-        return f"; YAML reads this as text: write {mantissa}e{sign}"
-    if isinstance(value, bool):
-        return "; YAML reads bare yes, no, on, off as true and false: write a number, or quote the word"
-    if isinstance(value, str):
-        return "; write a number without quotes or unit" if re.match(r"^[\d.+-]", value) else ""
-    return ""

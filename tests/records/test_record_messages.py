@@ -42,7 +42,7 @@ WRONG_KEYS = [
     ({"runs__1__striker__material": "cheese"}, ["runs[1].striker.material", "'cheese'", "not in the table"]),
     ({"sensors__0__bead": 11}, ["sensors[0].bead", "11", "10 beads"]),
     ({"sensors__0__bead": None}, ["sensors[0].bead", "missing"]),
-    ({"sensors__2__bead": 10}, ["sensors[2].bead", "remove the key"]),
+    ({"sensors__2__bead": 10}, ["sensors[2].bead", "drop the key"]),
     ({"sensors__1__id": "near"}, ["sensors[1].id", "'near'", "must differ"]),
     ({"sensors__1__id": "time_us"}, ["sensors[1].id", "column of the times"]),
     ({"runs__1__id": "slow"}, ["runs[1].id", "'slow'", "must differ"]),

@@ -172,7 +172,7 @@ MISTAKES = [
     (["chain", "beads"], 2, "sensors[0].bead", "2 beads"),
     (["chain", "orientation"], False, "chain.orientation", "YAML reads"),
     (["sensors", 0, "bead"], ..., "sensors[0].bead", "embedded"),
-    (["sensors", 1, "bead"], 2, "sensors[1].bead", "remove"),
+    (["sensors", 1, "bead"], 2, "sensors[1].bead", "drop"),
     (["sensors"], [], "sensors", "[]"),
     (["title"], ..., "title", "missing"),
     (["variants"], ["soft"], "variants", "overrides"),

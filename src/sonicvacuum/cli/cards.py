@@ -3,14 +3,13 @@
 import msgspec
 
 from sonicvacuum.card import Card, check, load
-from sonicvacuum.files import InputError, explain
+from sonicvacuum.files import InputError, explain, read_text
 from sonicvacuum.laboratory.ranges import LaboratoryError
 
 
 def read_card(path) -> Card:
     """The card in a JSON file; InputError where it is not one."""
-    with open(path, "rb") as stream:
-        text = stream.read()
+    text = read_text(path).encode()
     try:
         found = load(text)
         check(found)

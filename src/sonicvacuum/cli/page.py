@@ -20,8 +20,8 @@ def page(folders, own):
     for folder in map(Path, folders):
         check_out(folder)
         # What is not a discovery's folder is refused before anything is drawn.
+        section(folder, known)
         with reading(folder, "run sonicvacuum discover again"):
-            section(folder, known)
             illustrate(folder, known)
 
 

@@ -42,10 +42,9 @@ class Comparison(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 def read_model(path, catalogue: Catalogue = CATALOGUE) -> Model:
     """The model of a `model.json`, whose effects a catalogue holds; InputError names file and key."""
     try:
-        text = Path(path).read_bytes()
+        with reading(path, "sonicvacuum discover writes a model.json"):
+            text = Path(path).read_bytes().decode()
         found = msgspec.json.decode(text, type=Model)
-    except OSError as error:
-        raise InputError(f"{path}: {error.strerror}; give the path of a model.json") from None
     except (msgspec.DecodeError, msgspec.ValidationError) as error:
         raise InputError(f"{path}: not a model ({error}); sonicvacuum discover writes one") from None
     for name, given in found.effects.items():

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from sonicvacuum.effects.catalogue import EMPTY, Catalogue
-from sonicvacuum.files import number_cure
+from sonicvacuum.numerals import number_cure
 from sonicvacuum.physics.chain import Chain
 from sonicvacuum.physics.laws import Term
 

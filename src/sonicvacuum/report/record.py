@@ -64,6 +64,11 @@ def section(folder, catalogue: Catalogue = CATALOGUE) -> dict:
     for name in verdict.parameters:
         check_source(folder / "verdict.json", name, verdict.sources, catalogue)
     tables = {name: _rows(folder / f"{name}.csv") for name in ("where", "candidates", "gap", "limits")}
+    with reading(folder, "run sonicvacuum discover again"):
+        return _told(folder, verdict, model, tables, catalogue)
+
+
+def _told(folder, verdict, model, tables, catalogue):
     name = verdict.record
     return {
         "name": name,
