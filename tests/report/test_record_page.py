@@ -7,9 +7,11 @@ import pytest
 from made_verdicts import KINDS, WITHOUT_TRACES, gaps, model, verdict, write
 from msgspec.structs import replace
 
+from sonicvacuum.discover.verdict import write_json
 from sonicvacuum.figures import disagreement, discovery, posterior, style
 from sonicvacuum.files import InputError
 from sonicvacuum.report import record, words
+from sonicvacuum.report.record import write_page
 
 
 class Page(HTMLParser):
@@ -242,3 +244,22 @@ def test_all_significant_comparisons_are_counted_and_not_only_those_kept():
 def test_every_picture_is_described(folders):
     text = (folders["single"] / "index.html").read_text()
     assert len(re.findall(r'<svg role="img" aria-label=', text)) == len(re.findall("<svg", text))
+
+
+def test_what_leaves_the_range_of_the_physics_stands_on_the_page(tmp_path):
+    folder = write(tmp_path / "made", "single")
+    told = "contact 3 is pressed by 200 um, 0.17 of its <effective> radius"
+    write_json(verdict(warnings=[told]), folder / "verdict.json")
+    page = write_page(folder).read_text(encoding="utf-8")
+    assert "Beware: contact 3 is pressed by 200 um, 0.17 of its &lt;effective&gt; radius." in page
+
+
+def test_a_name_of_any_kind_leaves_ids_whole(tmp_path):
+    folder = write(tmp_path / "made", "single")
+    (folder / "gap.svg").write_text('<svg width="100pt"><g id="a"/><use href="#a"/></svg>')
+    write_json(verdict(record='"><script>x</script> µ'), folder / "verdict.json")
+    page = write_page(folder).read_text(encoding="utf-8")
+    assert "<script>" not in page
+    (id,) = re.findall(r'<g id="([^"]*-gap[^"]*)"', page)
+    assert re.fullmatch(r"[A-Za-z0-9_.-]+", id)
+    assert f'href="#{id}"' in page

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from msgspec import UNSET
 
 from sonicvacuum.blas import one_thread
 from sonicvacuum.discover import (
@@ -24,6 +25,7 @@ from sonicvacuum.discover.problem import together
 from sonicvacuum.discover.rounds import Investigation, investigate
 from sonicvacuum.discover.verdict import Verdict
 from sonicvacuum.effects import CATALOGUE, Catalogue
+from sonicvacuum.physics import validity
 from sonicvacuum.physics.run import available_threads
 from sonicvacuum.records import Record
 
@@ -90,8 +92,26 @@ def discover(*records: Record, threads: int | None = None, catalogue: Catalogue 
         simulations=forward.chains + (found.counted.forward.chains if found.counted else 0),
         fit=verdict.goodness_of_fit(*fits, found.smooth or forward.experiment.model_floor_rel or 0.0, wider),
         sources=verdict.sources(catalogue),
+        warnings=_doubts(found, records[0]) or UNSET,
     )
     return Result(records[0], found, places, after, limits, result)
+
+
+def _doubts(found: Investigation, record: Record) -> list[str]:
+    """What in the motion of the final model leaves the range of its physics, see `physics.validity`."""
+    forward, final = found.forward, found.final
+    surfaces = [bead.surface for bead in record.specimen.bodies.kinds]
+    yields = {surface.name: surface.yield_Pa for surface in surfaces}
+    doubts = []
+    for batch in forward.experiment.batches:
+        nominal = forward.nominal(batch, final.nu[None])
+        setup = final.hypothesis.change(final.u[None])(nominal, np.zeros(len(batch.runs), dtype=int))
+        history = forward.simulate(batch, setup).history
+        try:
+            doubts += validity.warnings(setup.chain, history, yields)
+        except validity.MeaninglessError as error:
+            doubts.append(str(error))
+    return list(dict.fromkeys(doubts))
 
 
 def _limits(found: Investigation, fit: goodness.Goodness) -> tuple[list[degenerate.Limit], float]:

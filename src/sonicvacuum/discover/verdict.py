@@ -131,6 +131,7 @@ class Verdict(_Part, kw_only=True):
         alarms: p-value of what each step leaves.
         timing_s: seconds by step.
         simulations: chains simulated.
+        warnings: what in the final model leaves the range of its physics; left out where nothing does.
         sources: id → source of the effects of the user's own that were searched; absent without any.
         fit: goodness of fit; None in verdicts written before it was tested.
     """
@@ -151,6 +152,7 @@ class Verdict(_Part, kw_only=True):
     timing_s: dict[str, float]
     simulations: int
     sources: Sources = UNSET
+    warnings: list[str] | UnsetType = UNSET
     fit: GoodnessOfFit | None = None
 
     @property

@@ -41,6 +41,8 @@ def warnings(chain: Chain, history: History, yields: Mapping[str, float | None] 
         MeaninglessError: for overlaps of a bead's radius or more, or forces that are no numbers.
     """
     check_forces(history)
+    if not history.contacts:
+        return []
     force = _largest(chain, history)
     depth = np.stack([chain.depth_at(c, force[k][None])[0] for k, c in enumerate(history.contacts)])
     found = [overlap(chain, history, depth), layer(chain, depth), coarse_step(chain, history, force, depth)]

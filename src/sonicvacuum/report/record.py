@@ -87,6 +87,7 @@ def _told(folder, verdict, model, tables, catalogue):
         "experiment": words.experiment(verdict.next_experiment, tables["where"]),
         "decided": words.decided(verdict),
         "simulations": verdict.simulations,
+        "warnings": verdict.warnings or [],
         "pictures": _pictures(folder, name),
     }
 
