@@ -156,7 +156,7 @@ def test_a_file_that_is_no_history_is_named(monkeypatch, capsys, card, tmp_path)
     history.write_text("nothing")
     outputs = ("--signals", tmp_path / "s.csv", "--metrics", tmp_path / "m.csv")
     shown = failing(monkeypatch, capsys, "paper", "observe", card, history, *outputs)
-    assert "h.npz: not a saved simulation" in shown
+    assert "h.npz: damaged, or not what is read here" in shown
     assert not (tmp_path / "s.csv").exists()
 
 
