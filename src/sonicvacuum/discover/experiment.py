@@ -11,15 +11,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from sonicvacuum.discover.nuisances import Shared
 from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.gauges import Gauge
 from sonicvacuum.laboratory.bodies import Bodies
 from sonicvacuum.physics.chain import Chain
-
-# Of the bead material's modulus where a record does not say: a handbook value of a metal or polymer is
-# seldom better.
-MODULUS_REL_SIGMA = 0.05
-
 
 @dataclass(frozen=True)
 class Scalar:
@@ -43,6 +39,7 @@ class RunData:
         speed_rel_sigma: standard error of the striker's speed, relative.
         present: (S, T) which readings count; None: all. A gauge that this run lacks, a sample that was lost
             or must not be believed is False: it contributes to no sum and to no count.
+        shift: s, about which the trigger shift is searched; 0 but where time zero is not known.
     """
 
     id: str
@@ -51,6 +48,7 @@ class RunData:
     scalars: tuple[Scalar, ...] = ()
     speed_rel_sigma: float = 0.0
     present: np.ndarray | None = None
+    shift: float = 0.0
 
     @property
     def samples(self) -> int:
@@ -89,7 +87,8 @@ class Batch:
 
 @dataclass(frozen=True)
 class Smooth:
-    """A smooth discrepancy between model and data, counted as noise (`smooth`).
+    """What varies slowly and counts as noise: a discrepancy between model and data (`smooth`), baselines and
+    drifts (`slow`).
 
     Attributes:
         size: its standard deviation as a share of each trace's peak.
@@ -133,6 +132,9 @@ class Experiment:
             still felt, for searches that start far from the data.
         smooth: the smooth discrepancy that counts as noise; None: none.
         model_floor_rel: its size as the record states it; None: to be inferred.
+        shared: nuisances that all runs share, besides the modulus of the beads and the gains.
+        slow: baselines and drifts that count as noise; None: none.
+        notes: what was left out of the data, one line each.
     """
 
     name: str
@@ -151,6 +153,9 @@ class Experiment:
     integrated: bool = False
     smooth: Smooth | None = None
     model_floor_rel: float | None = None
+    shared: tuple[Shared, ...] = ()
+    slow: Smooth | None = None
+    notes: tuple[str, ...] = ()
 
     @property
     def beads(self) -> int:
@@ -170,14 +175,19 @@ class Experiment:
         lanes = len(readings)
         if not data.has_signals:
             return scalars / errors
-        white = readings / self.sigma[:, None]
-        white = whitened_gaps(white, self.correlation, data.present)
+        white = self.noise_whitened(run, readings)
+        if self.slow:
+            white = self.slow.whiten(run, white)
         if self.integrated:
             white = np.cumsum(white, axis=-1) / math.sqrt(white.shape[-1])
             white = white if data.present is None else white * data.present
         elif self.smooth:
             white = self.smooth.whiten(run, white)
         return np.concatenate([white.reshape(lanes, -1), scalars / errors], axis=1)
+
+    def noise_whitened(self, run: int, readings: np.ndarray) -> np.ndarray:
+        """(L, S, T) readings of a run over the noise of single samples."""
+        return whitened_gaps(readings / self.sigma[:, None], self.correlation, self.runs[run].present)
 
     def length(self, run: int) -> int:
         """Length of a run's whitened data: a place for every sample, counting or not, and every scalar."""

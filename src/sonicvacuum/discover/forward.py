@@ -1,13 +1,12 @@
 """The simulator as a function of parameters: predictions of all data of an experiment, lane by lane, with
 their slopes.
 
-A *lane* is one complete experiment with its own parameters; every run of it is one chain of the stepper. The
-nuisances are the striker's speed and the trigger of each run, the gain of each gauge and the modulus of the
-bead material, all in units of their standard errors; trigger and gain act on readings without further
-simulation.
+A *lane* is one complete experiment with its own parameters; every run of it is one chain of the stepper.
+Nuisances (`nuisances`) stand in units of their standard errors; times and gains act on readings without
+further simulation.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -15,6 +14,7 @@ import numpy as np
 from sonicvacuum.discover import gauges, scalars
 from sonicvacuum.discover.experiment import Experiment
 from sonicvacuum.discover.hypothesis import Hypothesis
+from sonicvacuum.discover.nuisances import Layout
 from sonicvacuum.effects import Setup
 from sonicvacuum.forward import Seen, see, virtual
 
@@ -22,41 +22,6 @@ from sonicvacuum.forward import Seen, see, virtual
 # that all data together change by about this many standard errors, and collinear columns come out collinear.
 LARGEST_STEP, STEP_AIM = 3e-3, 10.0
 CHUNK = 512  # chains simulated in one call, to bound the memory
-
-
-@dataclass(frozen=True)
-class Layout:
-    """Where the nuisances stand in a vector of them: speeds, triggers, gains, modulus."""
-
-    runs: int
-    gauges: int
-
-    @property
-    def size(self) -> int:
-        """Number of nuisances."""
-        return 2 * self.runs + self.gauges + 1
-
-    def speed(self, run):
-        """Place of a run's speed."""
-        return run
-
-    def trigger(self, run):
-        """Place of a run's trigger shift."""
-        return self.runs + run
-
-    @property
-    def gains(self) -> np.ndarray:
-        """(S,) places of the gains."""
-        return 2 * self.runs + np.arange(self.gauges)
-
-    @property
-    def modulus(self) -> int:
-        """Place of the modulus."""
-        return self.size - 1
-
-    def local(self, run) -> np.ndarray:
-        """(S + 3,) places of the nuisances that touch one run: modulus, speed, trigger, gains."""
-        return np.array([self.modulus, self.speed(run), self.trigger(run), *self.gains])
 
 
 class Forward:
@@ -69,7 +34,7 @@ class Forward:
 
     def __init__(self, experiment: Experiment, threads: int = 1):
         self.experiment, self.threads, self.simulations = experiment, threads, 0
-        self.layout = Layout(len(experiment.runs), len(experiment.gauges))
+        self.layout = Layout(len(experiment.runs), len(experiment.gauges), experiment.shared)
         self.strengths: dict[tuple, np.ndarray] = {}
         self._coarse = None
 
@@ -107,11 +72,12 @@ class Forward:
 
     @cached_property
     def nuisance_sigma(self) -> np.ndarray:
-        """(q,) standard errors: relative for speeds, gains and modulus, s for triggers; 0: known exactly."""
+        """(q,) standard errors: of logarithms of ratios, of times in s; 0: known exactly."""
         e = self.experiment
         speeds = [r.speed_rel_sigma for r in e.runs]
         triggers = [e.trigger_sigma if r.has_signals else 0.0 for r in e.runs]
-        return np.array([*speeds, *triggers, *e.gain_rel_sigma, e.modulus_rel_sigma])
+        others = [one.sigma for one in e.shared]
+        return np.array([*speeds, *triggers, *e.gain_rel_sigma, e.modulus_rel_sigma, *others])
 
     def columns(
         self,
@@ -134,8 +100,7 @@ class Forward:
                 collinear.
 
         Returns:
-            For each run (L, c, M): prediction, p derivatives to u, those to modulus, speed, trigger and
-            gains (as `Layout.local`).
+            For each run (L, c, M): prediction, p derivatives to u, those to nuisances as in `Layout.local`.
         """
         u, nu = np.atleast_2d(u), np.atleast_2d(nu)
         once = self._assemble(hypothesis, u, nu, places, 1.0, steps)
@@ -147,9 +112,10 @@ class Forward:
         return once
 
     def _assemble(self, hypothesis, u, nu, places, stretch, steps):
-        """Stack base, parameter, modulus and speed lanes, simulate them at once, take differences."""
+        """Stack base, parameter, nuisance and speed lanes, simulate them at once, take differences."""
         lanes, p = u.shape
-        sets = p + 3
+        simulated = self.layout.simulated
+        sets = p + 2 + len(simulated)
         many_u, many_nu = np.repeat(u, sets, axis=0), np.repeat(nu, sets, axis=0)
         if steps is None:
             steps = np.broadcast_to([c.step for c in hypothesis.coordinates], u.shape)
@@ -157,32 +123,52 @@ class Forward:
         for k in range(p):
             towards = np.where(u[:, k] + steps[:, k] > hypothesis.coordinates[k].high, -1.0, 1.0)
             many_u[1 + k :: sets, k] += steps[:, k] * towards
-        sigma = self.nuisance_sigma
-        runs = len(self.experiment.runs)
         h = stretch * self.step
-        for run in range(runs):
-            many_nu[p + 2 :: sets, run] += h / sigma[run] if sigma[run] else 0.0
-        modulus = self.layout.modulus
-        many_nu[p + 1 :: sets, modulus] += h / sigma[modulus] if sigma[modulus] else 0.0
+        self._displace(many_nu, p, sets, h)
         many_places = None if places is None else np.repeat(places, sets, axis=0)
         found = self.sampled(hypothesis, many_u, many_nu, many_places, rate_of=sets)
         divide = many_u.reshape(lanes, sets, p)[:, 1 : 1 + p] - u[:, None]
         divide = np.einsum("lkk->lk", divide) if p else np.zeros((lanes, 0))
         result = []
-        for run, (value, rate) in enumerate(found):
+        for run, (value, timing) in enumerate(found):
             value = value.reshape(lanes, sets, -1)
             base = value[:, :1]
             slopes = (value[:, 1 : 1 + p] - base) / divide[..., None]
-            young = (value[:, p + 1 : p + 2] - base) * (sigma[modulus] / h)
-            speed = (value[:, p + 2 :] - base) * (sigma[run] / h)
-            trigger = -rate[:, None] * sigma[self.layout.trigger(run)]
-            gains = self._gain_columns(run, base[:, 0])
-            nuisances = np.concatenate([young, speed, trigger, gains], axis=1)
+            departures = (value[:, 1 + p :] - base) / h
+            nuisances = self._nuisance_columns(run, base[:, 0], departures, timing)
             self._like_nuisances(hypothesis, run, places, slopes, nuisances)
             columns = np.concatenate([base, slopes, nuisances], axis=1)
             columns[:, 1:, self.counts(run)] = 0.0
             result.append(columns)
         return result
+
+    def _displace(self, many_nu, p, sets, h):
+        """Move the simulated nuisances and, in the last lane of a set, the speeds by the relative step h."""
+        sigma, runs = self.nuisance_sigma, len(self.experiment.runs)
+        for k, place in enumerate(self.layout.simulated):
+            many_nu[1 + p + k :: sets, place] += h / sigma[place] if sigma[place] else 0.0
+        for place in self.layout.other("speed-common") or range(runs):
+            many_nu[sets - 1 :: sets, place] += h / sigma[place] if sigma[place] else 0.0
+
+    def _nuisance_columns(self, run, value, departures, timing):
+        """(L, S + 3 + others, M) changes of the data of a run with its nuisances, as in `Layout.local`.
+
+        Args:
+            run: index of the run.
+            value: (L, M) predictions.
+            departures: (L, simulated + 1, M) slopes to the simulated ones, relative, and to the speeds.
+            timing: (L, 1 + clock + delays, M) slopes to time zero, clock and delays.
+        """
+        layout, sigma = self.layout, self.nuisance_sigma
+        gains = self._gain_columns(run, value)
+        own = {place: departures[:, k] for k, place in enumerate(layout.simulated)}
+        own |= {layout.speed(run): departures[:, -1], layout.trigger(run): timing[:, 0]}
+        own |= {place: gains[:, s] for s, place in enumerate(layout.gains)}
+        own |= dict.fromkeys(layout.other("speed-common"), departures[:, -1])
+        own |= dict.fromkeys(layout.other("gain-common"), gains.sum(axis=1))
+        timed = [*layout.other("clock"), *layout.other("delay")]
+        own |= {place: timing[:, 1 + k] for k, place in enumerate(timed)}
+        return np.stack([own[place] * sigma[place] for place in layout.local(run)], axis=1)
 
     def nuisance_column(self, acts_like: str, run: int, place):
         """Where the nuisance stands that a ratio acts like, and its standard error.
@@ -200,8 +186,13 @@ class Forward:
         if acts_like == "gain":
             errors = sigma[self.layout.gains]
             return (3 + place, errors[place][:, None]) if np.all(errors > 0.0) else None
-        at, own = {"modulus": (0, self.layout.modulus), "speed": (1, self.layout.speed(run))}[acts_like]
-        return (np.full(len(place), at), np.full((len(place), 1), sigma[own])) if sigma[own] else None
+        common = self.layout.other("speed-common")
+        known = {"modulus": [self.layout.modulus], "speed": [self.layout.speed(run), *common]}[acts_like]
+        own = next((k for k in known if sigma[k]), None)
+        if own is None:
+            return None
+        at = int(np.flatnonzero(self.layout.local(run) == own)[0])
+        return np.full(len(place), at), np.full((len(place), 1), sigma[own])
 
     def _like_nuisances(self, hypothesis, run, places, slopes, nuisances):
         """Take the slopes of parameters that act exactly as a nuisance does from its column.
@@ -217,7 +208,7 @@ class Forward:
                     slopes[:, column] = nuisances[lanes, found[0]] / found[1]
 
     def _gain_columns(self, run, value):
-        """(L, S, M) change of the data of a run with the gain of each gauge, times its standard error."""
+        """(L, S, M) change of the data of a run with the logarithm of the gain of each gauge."""
         e, data = self.experiment, self.experiment.runs[run]
         gauges_, samples = len(e.gauges), len(data.time)
         columns = np.zeros((len(value), gauges_, value.shape[1]))
@@ -226,10 +217,12 @@ class Forward:
             for k, one in enumerate(data.scalars):
                 at = gauges_ * samples + k
                 columns[:, s, at] = value[:, at] * scalars.gain_power(one, e.gauges[s].id)
-        return columns * e.gain_rel_sigma[:, None]
+        return columns
 
     def sampled(self, hypothesis, u, nu, places=None, rate_of: int = 0, change=None):
-        """For each run whitened predictions (L, M) and their time derivative for every `rate_of`-th lane."""
+        """For each run whitened predictions (L, M) and, for every `rate_of`-th lane, slopes to time zero, clock
+        and delays (·, n, M).
+        """
         change = change or hypothesis.change(u, places)
         runs = len(self.experiment.runs)
         values = [[] for _ in range(runs)]
@@ -255,27 +248,59 @@ class Forward:
 
     def _data(self, batch, run, k, runs, seen, nu, rate_of):
         e, data, layout = self.experiment, self.experiment.runs[run], self.layout
-        gain = np.exp(nu[:, layout.gains] * e.gain_rel_sigma)
-        lanes_of = slice(k, None, runs)
-        signals = seen.readings[lanes_of] * gain[..., None]
-        measured = scalars.predict(e, run, lanes_of, seen, signals)
-        lanes = len(nu)
-        empty = np.zeros((lanes, len(e.gauges), 0))
-        value, rate = empty, empty[:: rate_of or lanes]
+        signals = seen.readings[k::runs] * self._gain(nu)[..., None]
+        measured = scalars.predict(e, run, slice(k, None, runs), seen, signals)
+        lanes, sigma = len(nu), self.nuisance_sigma
+        value = np.zeros((lanes, len(e.gauges), 0))
+        times = 1 + len(layout.other("clock")) + len(layout.other("delay"))
+        timing = np.zeros((len(value[:: rate_of or lanes]), times, *value.shape[1:]))
         if data.has_signals:
-            shift = nu[:, layout.trigger(run)] * self.nuisance_sigma[layout.trigger(run)]
-            value, rate = gauges.shifted(signals, batch.interval, data.time, shift, rate_of or lanes)
+            shift = data.shift + nu[:, layout.trigger(run)] * sigma[layout.trigger(run)]
+            value, timing = self._at_record(batch, data, signals, shift, nu, rate_of or lanes)
         flat = e.whiten(run, value, measured)
-        return flat, e.whiten(run, rate, np.zeros((len(rate), measured.shape[1])))
+        parts = timing.reshape(-1, *value.shape[1:])
+        rates = e.whiten(run, parts, np.zeros((len(parts), measured.shape[1])))
+        return flat, rates.reshape(len(timing), times, -1)
+
+    def _gain(self, nu):
+        """(L, S) gains of the gauges over the nominal ones."""
+        sigma, layout = self.nuisance_sigma, self.layout
+        common = sum((nu[:, k] * sigma[k] for k in layout.other("gain-common")), start=np.zeros(len(nu)))
+        return np.exp(nu[:, layout.gains] * sigma[layout.gains] + common[:, None])
+
+    def _at_record(self, batch, data, signals, shift, nu, rate_of):
+        """(L, S, T) readings at recorded times and (·, n, S, T) slopes to time zero, clock and delays.
+
+        The clock's error is taken to first order: it moves no sample by more than a part of a pulse.
+        """
+        layout, sigma = self.layout, self.nuisance_sigma
+        clock, delays = layout.other("clock"), layout.other("delay")
+        late = np.zeros((len(nu), signals.shape[1]))
+        gauges_ = [layout.others[k - layout.modulus - 1].gauge for k in delays]
+        late[:, gauges_] = nu[:, delays] * sigma[delays]
+        parts = [
+            gauges.shifted(signals[:, own], batch.interval, data.time, shift + delay, 1 if clock else rate_of)
+            for own, delay in ([(slice(None), late[:, 0])] if not delays else _by_gauge(late))
+        ]
+        value, rate = (np.concatenate(p, axis=1) for p in zip(*parts, strict=True))
+        slopes = [-rate]
+        for k in clock:
+            slopes.append(-rate * (data.time - shift[:, None])[:, None])
+            value = value + (nu[:, k] * sigma[k])[:, None, None] * slopes[1]
+            slopes = [s[::rate_of] for s in slopes]
+        slopes += [slopes[0] * (np.arange(signals.shape[1]) == s)[:, None] for s in gauges_]
+        return value, np.stack(slopes, axis=1)
 
     def nominal(self, batch, nu) -> Setup:
         """Setup of all lanes of a batch (lane-major, run-minor) with the nuisances in force."""
-        sigma, runs = self.nuisance_sigma, np.array(batch.runs)
+        sigma, runs, layout = self.nuisance_sigma, np.array(batch.runs), self.layout
         lanes = len(nu)
         chain = batch.chain.take(np.tile(np.arange(len(runs)), lanes))
         speed = chain.speed * np.exp(nu[:, runs] * sigma[runs]).ravel()
-        stiffer = np.repeat(np.exp(nu[:, self.layout.modulus] * sigma[self.layout.modulus]), len(runs))
+        stiffer = np.repeat(np.exp(nu[:, layout.modulus] * sigma[layout.modulus]), len(runs))
         chain = replace(chain, speed=speed).stiffened(chain.first.surface.name, stiffer)
+        for place, one in enumerate(layout.others, start=layout.modulus + 1):
+            chain = one.change(chain, np.repeat(np.exp(nu[:, place] * sigma[place]), len(runs)))
         return Setup(chain, batch.gauges or self.experiment.gauges, self.experiment.catalogue)
 
     def simulate(self, batch, setup: Setup) -> Seen:
@@ -291,3 +316,8 @@ class Forward:
             threads=self.threads,
             forgiving=True,
         )
+
+
+def _by_gauge(late):
+    """(slice, (L,) delay) of each gauge."""
+    return [(slice(s, s + 1), late[:, s]) for s in range(late.shape[1])]

@@ -119,7 +119,7 @@ def _with(experiment, batch, run, chain, faster: float = 1.0):
     time = run.time[0] + step * np.arange(samples)
     data = RunData("next", time, np.zeros((len(experiment.gauges), samples)), (), run.speed_rel_sigma)
     new = Batch(chain, (0,), batch.interval, batch.duration + step * (samples - len(run.time)))
-    return replace(experiment, runs=(data,), batches=(new,), smooth=None)
+    return replace(experiment, runs=(data,), batches=(new,), smooth=None, slow=None)
 
 
 def separation(old: Forward, new: Forward, best, rival) -> float:
@@ -138,10 +138,9 @@ def separation(old: Forward, new: Forward, best, rival) -> float:
 
 
 def _shared(old, new, fit):
-    """(q,) nuisances of the new run: gains and modulus as fitted, speed and trigger at zero."""
+    """(q,) nuisances of the new run: what is shared as fitted, speed and trigger at zero."""
     nu = np.zeros(new.layout.size)
-    nu[new.layout.gains] = fit.nu[old.layout.gains]
-    nu[new.layout.modulus] = fit.nu[old.layout.modulus]
+    nu[new.layout.shared] = fit.nu[old.layout.shared]
     return nu
 
 
@@ -151,12 +150,12 @@ def _precision(old, new, fit):
     """
     _, hessian = fit.normal.total()
     free = fit.normal.free
-    kept = np.array([*range(free), free + old.layout.modulus, *(free + old.layout.gains)])
+    kept = np.array([*range(free), *(free + old.layout.shared)])
     covariance = np.linalg.pinv(hessian[0], rcond=1e-12, hermitian=True)[np.ix_(kept, kept)]
     known = np.linalg.pinv(covariance, rcond=1e-12, hermitian=True)
-    count = free + 3 + len(new.experiment.gauges)
+    count = len(kept) + 2
     result = np.eye(count)
-    # Columns run: parameters, modulus, speed, trigger, gains; the first and the last are shared.
+    # Columns run: parameters, modulus, speed, trigger, gains and others; all but speed and trigger are shared.
     shared = np.array([*range(free + 1), *range(free + 3, count)])
     result[np.ix_(shared, shared)] = known
     return result

@@ -2,7 +2,8 @@
 stretch.
 
 The noise that a record states is compared with what its traces show before the pulse arrives. Where that is
-larger, or correlated from sample to sample, it is taken instead.
+larger, or correlated from sample to sample, it is taken instead. Spikes and samples that were cut off are
+left out (`masks`).
 """
 
 import math
@@ -12,14 +13,16 @@ from dataclasses import replace
 import numpy as np
 
 from sonicvacuum.discover.experiment import (
-    MODULUS_REL_SIGMA,
     Batch,
     Experiment,
     RunData,
     Scalar,
     lag_one,
 )
-from sonicvacuum.discover.gains import with_gains
+from sonicvacuum.discover.masks import cut, spikes
+from sonicvacuum.discover.nuisances import MODULUS_REL_SIGMA, shared
+from sonicvacuum.discover.slow import slow
+from sonicvacuum.discover.start import started
 from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.files import InputError
 from sonicvacuum.records.assemble import assemble, chain_of, duration_of, interval_of
@@ -29,36 +32,45 @@ from sonicvacuum.records.record import Record
 MODEL_FLOOR = 1e-4
 # The quiet stretch ends well before the first sample that exceeds the larger of these.
 _QUIET_SIGMAS, _QUIET_PEAK, _QUIET_SHARE = 6.0, 0.03, 0.7
-_FEWEST = 40
+_FEWEST, _LEAST = 40, 12
 # Deviations from the stated white noise count from so many standard errors on.
 _SURE = 4.0
 
 
 def experiment(record: Record, catalogue: Catalogue = CATALOGUE) -> Experiment:
-    """The data set of a record, which may lack effects of a catalogue; gauges of unknown gain start at that
-    which the data ask for.
+    """The data set of a record, which may lack effects of a catalogue; gains and time zeros that are not known
+    start at what the data ask for.
     """
-    return with_gains(_experiment(record, catalogue))
+    return _ready(_experiment(record, catalogue), (record,))
+
+
+def _ready(data: Experiment, records) -> Experiment:
+    """The data set with baselines and drifts in its noise, and with a start for what is not known."""
+    unknown = any(not math.isfinite(r.trigger_sigma_s) for r in records)
+    return started(replace(data, slow=slow(data)), unknown)
 
 
 def _experiment(record, catalogue):
     runs = tuple(_run(record, run) for run in record.runs)
     sigma, correlation = noise((record,))
     named = record.modulus_rel_sigma(record.specimen.first.surface.name)
+    parts = batches(record)
     return Experiment(
         name=record.name or record.title,
         runs=runs,
-        batches=batches(record),
+        batches=parts,
         gauges=record.gauges,
         sigma=sigma,
         correlation=correlation,
         gain_rel_sigma=np.array([g.log_gain_sigma for g in record.gauges]),
         trigger_sigma=record.trigger_width_s,
-        modulus_rel_sigma=named or MODULUS_REL_SIGMA,
+        modulus_rel_sigma=MODULUS_REL_SIGMA if named is None else named,
         diameter=record.specimen.diameters,
         record=record,
         catalogue=catalogue,
         model_floor_rel=record.model_floor_rel,
+        shared=shared(record, parts[0].chain),
+        notes=_notes(record, runs),
     )
 
 
@@ -79,7 +91,8 @@ def together(records: Sequence[Record], catalogue: Catalogue = CATALOGUE) -> Exp
     turned = len({r.specimen.gravity_m_s2 for r in records}) > 1
     excluded = tuple(e.id for e in catalogue if turned and e.depends_on_orientation)
     sigma, correlation = noise(records)
-    return with_gains(replace(first, sigma=sigma, correlation=correlation, excluded=excluded))
+    whole = replace(first, sigma=sigma, correlation=correlation, excluded=excluded)
+    return _ready(whole, records)
 
 
 def _check_alike(record, other, seen: Experiment):
@@ -116,13 +129,36 @@ def _joined(first: Experiment, record, other: Experiment) -> Experiment:
 def _run(record, run):
     signals = run.signals
     time = signals.time_s if signals else np.zeros(0)
-    found = [signals and signals.readings.get(g.id) for g in record.gauges]
-    gauges = [np.zeros(len(time)) if r is None else r for r in found]
-    readings = np.array(gauges).reshape(len(record.gauges), len(time))
-    there = np.array([r is not None for r in found])
-    present = None if signals is None or there.all() else np.repeat(there[:, None], len(time), axis=1)
+    shape = (len(record.gauges), len(time))
+    readings, present = np.zeros(shape), np.zeros(shape, dtype=bool)
+    for s, gauge in enumerate(record.gauges):
+        if signals and gauge.id in signals.readings:
+            readings[s] = signals.readings[gauge.id]
+            present[s] = believed(readings[s], gauge.sigma)
     scalars = tuple(Scalar(o.quantity, o.value, _error(o), o.options) for o in run.observables)
-    return RunData(run.id, time, readings, scalars, run.striker.speed_rel_sigma, present)
+    there = None if present.all() else present
+    return RunData(run.id, time, readings, scalars, run.striker.speed_rel_sigma, there)
+
+
+def believed(trace: np.ndarray, sigma: float) -> np.ndarray:
+    """(T,) whether a sample counts: it is neither a spike nor cut off."""
+    noise_ = max(sigma, flicker(trace))
+    return ~(spikes(trace, noise_) | cut(trace, noise_))
+
+
+def _notes(record, runs):
+    """What was left out, gauge by gauge."""
+    notes = []
+    for s, gauge in enumerate(record.gauges):
+        counts = {"spikes": 0, "samples cut off at the end of the range": 0}
+        for run in record.runs:
+            if run.signals and gauge.id in run.signals.readings:
+                trace = run.signals.readings[gauge.id]
+                noise_ = max(gauge.sigma, flicker(trace))
+                for what, find in zip(counts, (spikes, cut), strict=True):
+                    counts[what] += int(np.count_nonzero(find(trace, noise_)))
+        notes += [f"{gauge.id}: {n} {what} left out" for what, n in counts.items() if n]
+    return tuple(notes)
 
 
 def _error(observable):
@@ -155,15 +191,18 @@ def noise(records: Sequence[Record]) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _traces(records, gauge):
+    """Its traces, what is not believed left out."""
     runs = [r for record in records for r in record.runs if r.signals and gauge.id in r.signals.readings]
-    return [r.signals.readings[gauge.id] for r in runs]
+    traces = [r.signals.readings[gauge.id] for r in runs]
+    return [t[believed(t, gauge.sigma)] for t in traces]
 
 
 def _quiet_of(records, gauge):
     """The quiet stretches of a gauge that are long enough."""
     traces = _traces(records, gauge)
     sigma = gauge.sigma or max(map(flicker, traces), default=0.0)
-    return [q for t in traces if len(q := _quiet(t, sigma)) >= _FEWEST]
+    quiet = [q for t in traces if len(q := _quiet(t, sigma)) >= _LEAST]
+    return quiet if sum(map(len, quiet)) >= _FEWEST else []
 
 
 def _sigma(records, gauge, quiet):

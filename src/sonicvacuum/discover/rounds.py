@@ -109,7 +109,7 @@ def investigate(experiment: Experiment, threads: int = 1) -> Investigation:
     decision = case.decide() if passes else case.nothing()
     alike = explanations.aliases(forward, null, found) if passes else []
     odds, more = _odds(found, decision, alike)
-    reasons = [*decision.reasons, *more]
+    reasons = [*decision.reasons, *more, *experiment.notes]
     given = {**vars(decision), "reasons": reasons}
     del given["beside"], given["left"]
     return Investigation(forward, null, scores, threshold, found, odds, alike=alike, **given)

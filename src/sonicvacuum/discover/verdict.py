@@ -234,8 +234,8 @@ def model(found: Investigation) -> Model:
         record=e.name,
         effects={k: {n: float(v) for n, v in p.items()} for k, p in fit.hypothesis.values(fit.u).items()},
         speed_ratio={r.id: float(np.exp(shift[layout.speed(k)])) for k, r in enumerate(e.runs)},
-        trigger_us={r.id: float(shift[layout.trigger(k)] * 1e6) for k, r in enumerate(e.runs)},
-        gain={g.id: float(np.exp(shift[at])) for g, at in zip(e.gauges, layout.gains, strict=True)},
+        trigger_us={r.id: float((r.shift + shift[layout.trigger(k)]) * 1e6) for k, r in enumerate(e.runs)},
+        gain={g.id: float(g.gain * np.exp(shift[at])) for g, at in zip(e.gauges, layout.gains, strict=True)},
         modulus_ratio=float(np.exp(shift[layout.modulus])),
         sources=sources(e.catalogue, fit.hypothesis.ids),
     )

@@ -50,6 +50,10 @@ def chain_of(record: Record, runs: list[Run]) -> Chain:
 def duration_of(record: Record, runs: list[Run], chain: Chain) -> float:
     """Time in s to simulate: the runs' traces and room for the trigger, or what their scalars need."""
     ends = [r.signals.time_s[-1] + TRIGGER_ROOM * record.trigger_width_s for r in runs if r.signals]
+    if not math.isfinite(record.trigger_sigma_s):
+        # Wherever time zero is: what the trace shows begins before the wave has passed the chain.
+        spans = [r.signals.time_s[-1] - r.signals.time_s[0] for r in runs if r.signals]
+        ends = [max(spans) + passage_of(chain, 1)] if spans else []
     if any(r.observables for r in runs):
         counted = any(o.quantity in REFLECTED for r in runs for o in r.observables)
         ends.append(passage_of(chain, COUNTING if counted else CROSSINGS))

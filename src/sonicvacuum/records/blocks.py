@@ -33,9 +33,9 @@ class SourceBlock(_Block, kw_only=True):
 
 
 class RecordMaterialBlock(MaterialBlock, kw_only=True):
-    """Overrides of the table of materials, and one standard error of the modulus relative to it."""
+    """Overrides of the table of materials, and one standard error of the modulus relative to it; 0: exact."""
 
-    modulus_rel_sigma: NonNegative = 0.0
+    modulus_rel_sigma: NonNegative | None = None
 
 
 class RecordChainBlock(ChainBlock, kw_only=True):

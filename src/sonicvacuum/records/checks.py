@@ -67,7 +67,7 @@ def _materials(record):
         if name not in used:
             yield f"materials.{name}: nothing in the record is made of it"
     touching = record.specimen.first.surface.name
-    if not record.modulus_rel_sigma(touching):
+    if record.modulus_rel_sigma(touching) is None:
         yield f"materials.{touching}: no modulus_rel_sigma; say how well the modulus is known"
 
 

@@ -143,10 +143,10 @@ class Record:
         """Effect → odds against its usual prior; 0 excludes it."""
         return self.block.priors
 
-    def modulus_rel_sigma(self, name: str) -> float:
-        """Relative standard error of a material's modulus, 0 where the record gives none."""
+    def modulus_rel_sigma(self, name: str) -> float | None:
+        """Relative standard error of a material's modulus, 0: exact, None where the record gives none."""
         given = self.block.materials.get(name)
-        return 0.0 if given is None else given.modulus_rel_sigma
+        return None if given is None else given.modulus_rel_sigma
 
     @cached_property
     def gauges(self) -> tuple[Gauge, ...]:

@@ -62,7 +62,7 @@ def _check_materials(block):
     for name, given in block.materials.items():
         if given.modulus_GPa is not None:
             ranges.check_modulus(f"materials.{name}", name, given.modulus_GPa)
-        ranges.RELATIVE.check(f"materials.{name}.modulus_rel_sigma", given.modulus_rel_sigma)
+        ranges.RELATIVE.check(f"materials.{name}.modulus_rel_sigma", given.modulus_rel_sigma or 0.0)
 
 
 def _check_sensors(block):

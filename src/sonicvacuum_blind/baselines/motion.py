@@ -71,7 +71,7 @@ def true_plan(record: Record, run: Run, truth: dict) -> Plan:
     plan, errors = nominal(record, run), truth["errors_sigma"]
     place = [r.id for r in record.runs].index(run.id)
     speed = 1.0 + run.striker.speed_rel_sigma * errors["speeds"][place]
-    stiffness = 1.0 + record.modulus_rel_sigma(plan.bead.name) * errors["modulus"]
+    stiffness = 1.0 + (record.modulus_rel_sigma(plan.bead.name) or 0.0) * errors["modulus"]
     plan = replace(plan, speed=plan.speed * speed, modulus_ratio=stiffness)
     known = foreign.BY_ID if truth["kind"] == "foreign" else catalogue.BY_ID
     for one in truth["hidden"]:

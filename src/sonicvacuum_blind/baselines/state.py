@@ -51,7 +51,7 @@ def name(case: Case, quieter: float = 1.0) -> str:
     stiffness, chosen = select(made)
     if chosen:
         return list(EFFECTS.values())[chosen[0]]
-    sigma = record.modulus_rel_sigma(record.specimen.first.surface.name)
+    sigma = record.modulus_rel_sigma(record.specimen.first.surface.name) or 0.0
     return "dynamic-modulus" if abs(np.log(stiffness)) > CUT * sigma else NONE
 
 

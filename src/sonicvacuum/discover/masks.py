@@ -1,0 +1,75 @@
+"""Samples that must not be believed: spikes of the recorder, and readings cut off at the end of its range.
+
+Both are seen in the trace itself, before anything is simulated. A pulse is smooth over a few samples; a spike
+is not. What is masked contributes to no sum and no count (`RunData.present`).
+"""
+
+import numpy as np
+
+# A spike stands out from the cubic through its four neighbours by so many standard deviations ...
+SPIKE_SIGMAS = 7.0
+# ... and by more than the neighbours differ among themselves: a steep or narrow pulse is no spike.
+SPIKE_RANGE = 1.0
+# The cubic's value is (−a + 4 b + 4 c − d)/6; with the sample's own noise its variance is 1 + 34/36.
+_SPREAD = np.sqrt(1.0 + 34.0 / 36.0)
+# A pair of spikes side by side is found in two passes.
+PASSES = 3
+# Fewest equal samples at an extreme that are taken for a cut.
+FEWEST_CUT = 3
+# A cut hides a peak that overshoots it by more than so many steps of the recorder, or standard deviations; a
+# smooth peak of few steps does not.
+CUT_STEPS, CUT_SIGMAS = 5.0, 6.0
+
+
+def spikes(trace: np.ndarray, sigma: float) -> np.ndarray:
+    """(T,) whether each sample of a trace (T,) is a spike, the noise of a sample being sigma."""
+    found = np.zeros(len(trace), dtype=bool)
+    if len(trace) < 8:
+        return found
+    for _ in range(PASSES):
+        kept = np.flatnonzero(~found)
+        new = kept[_standing_out(trace[kept], sigma)]
+        if not len(new):
+            break
+        found[new] = True
+    return found
+
+
+def _standing_out(trace, sigma):
+    """Places where a trace departs from its neighbours, the farthest of any that touch."""
+    one, two, three, four = trace[:-4], trace[1:-3], trace[3:-1], trace[4:]
+    far = np.abs(trace[2:-2] - (4.0 * (two + three) - one - four) / 6.0)
+    around = np.stack([one, two, three, four])
+    room = SPIKE_SIGMAS * _SPREAD * sigma + SPIKE_RANGE * (around.max(axis=0) - around.min(axis=0))
+    excess = np.pad(np.where(far > room, far, 0.0), 2)
+    highest = np.max([excess[:-4], excess[1:-3], excess[3:-1], excess[4:]], axis=0)
+    return 2 + np.flatnonzero((excess[2:-2] > 0.0) & (excess[2:-2] >= highest))
+
+
+def cut(trace: np.ndarray, sigma: float) -> np.ndarray:
+    """(T,) whether each sample of a trace (T,) is cut off at its largest or smallest reading."""
+    return _cut_above(trace, sigma) | _cut_above(-trace, sigma)
+
+
+def _cut_above(trace, sigma):
+    found = np.zeros(len(trace), dtype=bool)
+    if len(trace) < 8 or not trace.max() > CUT_SIGMAS * sigma:
+        return found
+    top = trace == trace.max()
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], top.astype(int), [0]])))
+    step = float(np.diff(np.unique(trace)).min()) if len(np.unique(trace)) > 1 else 0.0
+    for first, end in edges.reshape(-1, 2):
+        if end - first >= FEWEST_CUT and _hidden(trace, first, end) > max(CUT_STEPS * step, CUT_SIGMAS * sigma):
+            found[first:end] = True
+    return found
+
+
+def _hidden(trace, first, end):
+    """By how much a parabola with the slopes on both sides of a plateau overshoots it."""
+    count = end - first
+    before, after = max(0, first - count), min(len(trace), end + count) - 1
+    if before >= first or after < end:
+        return 0.0
+    rise = (trace[first] - trace[before]) / (first - before)
+    fall = (trace[end - 1] - trace[after]) / (after - end + 1)
+    return 0.25 * count * min(rise, fall) if min(rise, fall) > 0.0 else 0.0

@@ -1,0 +1,181 @@
+"""What a laboratory does not know exactly, and what is no effect: nuisances, each with its standard error.
+
+Every run has the speed of its striker and its time zero, every gauge its gain, the beads their modulus; these
+always have a place. Besides, a record may leave open what all runs share (`Shared`): the modulus of every
+other material, masses and sizes of all beads or of the striker, the speed of all runs and the gain of all
+gauges together, the recorder's clock, the delay of a channel. A nuisance is a natural logarithm of a ratio,
+or a time, in units of its standard error, so that its Gaussian prior is N(0, 1); an error of 0 means exact,
+and costs nothing. Baseline and drift act linearly on the readings, and are marginalised as noise (`slow`).
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from sonicvacuum.physics.chain import Chain
+from sonicvacuum.records.record import Record, Tolerances
+
+# Of a modulus where a record does not say: a handbook value of a metal or polymer is seldom better.
+MODULUS_REL_SIGMA = 0.05
+# Where a record does not say. Bodies are weighed and measured, and their sizes are what the record is about:
+# a tolerance is the user's to state. A common error of the speeds or of the gains is part of the single ones,
+# which the record states, unless it says that there is one.
+DEFAULTS = Tolerances(
+    bead_mass_rel=0.0,
+    bead_diameter_rel=0.0,
+    striker_mass_rel=0.0,
+    speed_common_rel=0.0,
+    gain_common_rel=0.0,
+)
+# A material whose modulus nobody stated an error of counts only if that error moves the stiffness of a
+# contact by more than this: steel behind a polymer does not.
+NEGLIGIBLE = 3e-3
+
+
+@dataclass(frozen=True)
+class Shared:
+    """One nuisance that all runs share.
+
+    Attributes:
+        kind: "modulus", "bead-mass", "bead-diameter", "striker-mass", "speed-common", "gain-common",
+            "clock" or "delay".
+        sigma: standard error: of the natural logarithm, of the clock's relative error, in s for delays.
+        of: the material of a modulus, the gauge of a delay.
+        gauge: index of that gauge.
+    """
+
+    kind: str
+    sigma: float
+    of: str = ""
+    gauge: int | None = None
+
+    @property
+    def simulated(self) -> bool:
+        """Whether it needs a simulation of its own; the common speed takes that of the single ones."""
+        return self.kind in CHANGES and self.kind != "speed-common"
+
+    def change(self, chain: Chain, ratio) -> Chain:
+        """The chains with the nuisance at a ratio (lanes,); as they are, where it acts on readings only."""
+        return CHANGES[self.kind](chain, self.of, ratio) if self.kind in CHANGES else chain
+
+
+def _heavier(chain, _, ratio):
+    return replace(chain, bodies=chain.bodies.replaced(lambda b: replace(b, mass=b.mass * ratio)))
+
+
+def _larger(chain, _, ratio):
+    return replace(chain, bodies=chain.bodies.replaced(lambda b: replace(b, radius=b.radius * ratio)))
+
+
+# Kind → (chains, material, ratio (lanes,)) → chains, for those that act on the chain itself.
+CHANGES: dict[str, Callable] = {
+    "modulus": lambda chain, name, ratio: chain.stiffened(name, ratio),
+    "bead-mass": _heavier,
+    "bead-diameter": _larger,
+    "striker-mass": lambda chain, _, ratio: replace(chain, striker_mass=chain.striker_mass * ratio),
+    "speed-common": lambda chain, _, ratio: replace(chain, speed=chain.speed * ratio),
+}
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Where the nuisances stand in a vector of them: speeds, triggers, gains, modulus, what else is shared."""
+
+    runs: int
+    gauges: int
+    others: tuple[Shared, ...] = ()
+
+    @property
+    def size(self) -> int:
+        """Number of nuisances."""
+        return 2 * self.runs + self.gauges + 1 + len(self.others)
+
+    def speed(self, run):
+        """Place of a run's speed."""
+        return run
+
+    def trigger(self, run):
+        """Place of a run's trigger shift."""
+        return self.runs + run
+
+    @property
+    def gains(self) -> np.ndarray:
+        """(S,) places of the gains."""
+        return 2 * self.runs + np.arange(self.gauges)
+
+    @property
+    def modulus(self) -> int:
+        """Place of the modulus."""
+        return 2 * self.runs + self.gauges
+
+    def other(self, kind: str) -> list[int]:
+        """Places of the other shared ones of a kind."""
+        return [self.modulus + 1 + k for k, one in enumerate(self.others) if one.kind == kind]
+
+    @property
+    def simulated(self) -> list[int]:
+        """Places of those that take a simulation of their own each: moduli, masses, sizes."""
+        own = [self.modulus + 1 + k for k, one in enumerate(self.others) if one.simulated]
+        return [self.modulus, *own]
+
+    @property
+    def shared(self) -> np.ndarray:
+        """Places of what does not belong to one run, in the order in which they stand in `local`."""
+        return np.array([self.modulus, *self.gains, *range(self.modulus + 1, self.size)])
+
+    def local(self, run) -> np.ndarray:
+        """(S + 3 + others,) places of the nuisances that touch one run: modulus, speed, trigger, gains,
+        others.
+        """
+        modulus, *others = self.shared
+        return np.array([modulus, self.speed(run), self.trigger(run), *others])
+
+
+def shared(record: Record, chain: Chain) -> tuple[Shared, ...]:
+    """What the runs of a record share besides the beads' modulus and the gains; nothing that is exact.
+
+    `chain` are its nominal chains.
+    """
+    given, default = record.tolerances, DEFAULTS
+
+    def tolerance(name):
+        stated = getattr(given, name)
+        return getattr(default, name) if stated is None else stated
+
+    found = [
+        *(Shared("modulus", sigma, name) for name, sigma in _moduli(record, chain).items()),
+        *(Shared(kind, tolerance(kind.replace("-", "_") + "_rel")) for kind in _BODIES),
+        Shared("speed-common", tolerance("speed_common_rel")),
+        Shared("gain-common", tolerance("gain_common_rel")),
+        Shared("clock", record.clock_rel_sigma),
+        *(Shared("delay", g.delay_sigma_s, g.id, k) for k, g in enumerate(record.gauges)),
+    ]
+    ball = ("bead-mass", "bead-diameter") if record.beads == 0 else ()
+    return tuple(one for one in found if one.sigma > 0.0 and one.kind not in ball)
+
+
+_BODIES = ("bead-mass", "bead-diameter", "striker-mass")
+
+
+def _moduli(record, chain) -> dict[str, float]:
+    """Material → standard error of its modulus, for materials that touch, the first bead's left aside."""
+    surfaces = {s.surface.name: s.surface for s in chain.solids}
+    cores = {s.core.name: s.core for s in chain.solids if s.core}
+    first = chain.first.surface.name
+    own = surfaces.pop(first)
+    found = {}
+    for name in surfaces | cores:
+        stated = record.modulus_rel_sigma(name)
+        if name == first or (stated is None and name not in surfaces):
+            continue
+        if stated is None and _share(surfaces[name], own) * MODULUS_REL_SIGMA < NEGLIGIBLE:
+            continue
+        found[name] = MODULUS_REL_SIGMA if stated is None else stated
+    return found
+
+
+def _share(surface, other) -> float:
+    """Share of a contact's compliance that one side has: d log K / d log E."""
+    one, two = ((1.0 - s.poisson**2) / float(np.ravel(s.modulus)[0]) for s in (surface, other))
+    return one / (one + two)
