@@ -153,6 +153,10 @@ class Case:
         final = several.moved(self.forward, grown.best.fit) if grown.size.size else grown.best.fit
         gain = self.null.objective - final.objective
         behind = _behind(gain, most)
+        if behind > 0.0 and grown.size.size:
+            # Slopes far from the data promise too much: held against each other under what stays unexplained.
+            shape, most = unknown.simplest(grown.forward, grown.null)
+            behind = _behind(grown.null.objective - grown.best.fit.objective, most)
         after = left(self.forward, final, self.known, behind=behind) if effects else seen
         alarms["set"] = after.p
         if len(effects) > 1:

@@ -17,6 +17,7 @@ from sonicvacuum.gauges import Gauge
 from sonicvacuum.laboratory.bodies import Bodies
 from sonicvacuum.physics.chain import Chain
 
+
 @dataclass(frozen=True)
 class Scalar:
     """One observable of a run: SI value and standard error; `options` as `observe.quantities` takes them."""

@@ -59,7 +59,9 @@ def _cut_above(trace, sigma):
     edges = np.flatnonzero(np.diff(np.concatenate([[0], top.astype(int), [0]])))
     step = float(np.diff(np.unique(trace)).min()) if len(np.unique(trace)) > 1 else 0.0
     for first, end in edges.reshape(-1, 2):
-        if end - first >= FEWEST_CUT and _hidden(trace, first, end) > max(CUT_STEPS * step, CUT_SIGMAS * sigma):
+        if end - first >= FEWEST_CUT and _hidden(trace, first, end) > max(
+            CUT_STEPS * step, CUT_SIGMAS * sigma
+        ):
             found[first:end] = True
     return found
 

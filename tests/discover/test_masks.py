@@ -1,0 +1,53 @@
+"""Spikes and cut samples are found, pulses are left alone."""
+
+import numpy as np
+import pytest
+from made_records import made
+
+from sonicvacuum.discover.masks import cut, spikes
+from sonicvacuum.discover.problem import experiment
+from sonicvacuum.records import Record, Signals
+
+SIGMA = 0.01
+
+
+def pulse(width, samples=400, seed=0, sigma=SIGMA):
+    """Two pulses, (cos)^6 as a solitary wave has it, in noise."""
+    phase = (np.arange(samples)[:, None] - np.array([100.3, 250.8])) / width
+    clean = (np.cos(np.clip(phase, -np.pi / 2, np.pi / 2)) ** 6) @ np.array([1.0, 0.6])
+    return clean + sigma * np.random.default_rng(np.random.SeedSequence(seed)).normal(size=samples)
+
+
+@pytest.mark.parametrize("width", [4.0, 10.0, 40.0])
+def test_a_pulse_is_neither_spike_nor_cut(width):
+    for seed in range(20):
+        trace = pulse(width, seed=seed)
+        assert not spikes(trace, SIGMA).any() and not cut(trace, SIGMA).any()
+
+
+@pytest.mark.parametrize("at", [[20], [20, 21], [20, 180, 390]])
+def test_spikes_are_found_and_nothing_else(at):
+    trace = pulse(20.0)
+    trace[at] += 30.0 * SIGMA * np.array([1.0, -1.0, 1.0])[: len(at)]
+    np.testing.assert_array_equal(np.flatnonzero(spikes(trace, SIGMA)), at)
+
+
+def test_a_cut_peak_is_found_and_a_coarse_one_is_left():
+    trace = pulse(30.0, sigma=1e-4)
+    high = np.minimum(trace, 0.7)
+    np.testing.assert_array_equal(cut(high, 1e-4), trace >= 0.7)
+    coarse = np.round(pulse(60.0, sigma=1e-4) * 64.0) / 64.0
+    assert not cut(coarse, 1e-4).any()
+
+
+def test_what_is_masked_is_said_and_does_not_count():
+    record, _ = made(seed=2)
+    signals = {}
+    for run, one in record.signals.items():
+        readings = {g: r.copy() for g, r in one.readings.items()}
+        readings["g7"][[5, 600]] += 5.0
+        signals[run] = Signals(one.time_us, readings)
+    e, clean = experiment(Record(record.block, signals, "spiky")), experiment(record)
+    assert e.notes == ("g7: 4 spikes left out",)
+    assert [e.size(k) for k in (0, 1)] == [clean.size(k) - 2 for k in (0, 1)]
+    np.testing.assert_allclose(e.sigma, clean.sigma, rtol=0.01)  # two samples in hundreds
