@@ -220,8 +220,8 @@ class Forward:
         return columns
 
     def sampled(self, hypothesis, u, nu, places=None, rate_of: int = 0, change=None):
-        """For each run whitened predictions (L, M) and, for every `rate_of`-th lane, slopes to time zero, clock
-        and delays (·, n, M).
+        """For each run whitened predictions (L, M) and, for every `rate_of`-th lane, slopes (·, n, M) to time
+        zero, clock and delays.
         """
         change = change or hypothesis.change(u, places)
         runs = len(self.experiment.runs)

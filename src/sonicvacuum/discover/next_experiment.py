@@ -155,7 +155,7 @@ def _precision(old, new, fit):
     known = np.linalg.pinv(covariance, rcond=1e-12, hermitian=True)
     count = len(kept) + 2
     result = np.eye(count)
-    # Columns run: parameters, modulus, speed, trigger, gains and others; all but speed and trigger are shared.
+    # Columns run: parameters, modulus, speed, trigger, gains, others; speed and trigger are its own.
     shared = np.array([*range(free + 1), *range(free + 3, count)])
     result[np.ix_(shared, shared)] = known
     return result

@@ -80,7 +80,7 @@ CHANGES: dict[str, Callable] = {
 
 @dataclass(frozen=True)
 class Layout:
-    """Where the nuisances stand in a vector of them: speeds, triggers, gains, modulus, what else is shared."""
+    """Where the nuisances stand in a vector of them: speeds, triggers, gains, modulus, others."""
 
     runs: int
     gauges: int

@@ -38,8 +38,8 @@ _SURE = 4.0
 
 
 def experiment(record: Record, catalogue: Catalogue = CATALOGUE) -> Experiment:
-    """The data set of a record, which may lack effects of a catalogue; gains and time zeros that are not known
-    start at what the data ask for.
+    """The data set of a record, which may lack effects of a catalogue; unknown gains and time zeros start at
+    what the data ask for.
     """
     return _ready(_experiment(record, catalogue), (record,))
 
@@ -149,7 +149,7 @@ def believed(trace: np.ndarray, sigma: float) -> np.ndarray:
 def _notes(record, runs):
     """What was left out, gauge by gauge."""
     notes = []
-    for s, gauge in enumerate(record.gauges):
+    for gauge in record.gauges:
         counts = {"spikes": 0, "samples cut off at the end of the range": 0}
         for run in record.runs:
             if run.signals and gauge.id in run.signals.readings:

@@ -75,12 +75,13 @@ def discover(*records: Record, threads: int | None = None, catalogue: Catalogue 
     proposal = next_experiment.propose(found, alike)
     clock.mark("next experiment")
     named = verdict.named_effects(found)
+    counted = found.counted or found
     result = Verdict(
         record=found.forward.experiment.name,
         named=found.named,
         probabilities=found.probabilities,
         confusable=alike,
-        parameters=verdict.parameters(found.counted.final if found.counted else final) if named else {},
+        parameters=verdict.parameters(counted.final) if named else {},
         gap=verdict.gaps(found.null, final, found.sizes, before, left),
         where=verdict.where(places),
         upper_limits=verdict.upper_limits(limits),
@@ -93,6 +94,7 @@ def discover(*records: Record, threads: int | None = None, catalogue: Catalogue 
         fit=verdict.goodness_of_fit(*fits, found.smooth or forward.experiment.model_floor_rel or 0.0, wider),
         sources=verdict.sources(catalogue),
         warnings=_doubts(found, records[0]) or UNSET,
+        nuisances=verdict.nuisances(counted.forward, counted.final),
     )
     return Result(records[0], found, places, after, limits, result)
 

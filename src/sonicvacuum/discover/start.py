@@ -1,4 +1,4 @@
-"""A first estimate of the gains and of the time zeros that nobody knows, so that a search starts near the data.
+"""A first estimate of gains and time zeros that nobody knows, so that a search starts near the data.
 
 The nominal model is simulated once. Where time zero is not known, a run is shifted to where its predicted
 readings, all gauges together, resemble the measured ones most. The gain of an uncalibrated gauge is the

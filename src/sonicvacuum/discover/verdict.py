@@ -14,6 +14,7 @@ from msgspec import UNSET, Struct, UnsetType
 
 from sonicvacuum.discover.degenerate import Limit
 from sonicvacuum.discover.explanations import key
+from sonicvacuum.discover.forward import Forward
 from sonicvacuum.discover.goodness import Goodness
 from sonicvacuum.discover.heldout import HeldOut
 from sonicvacuum.discover.locate import Place
@@ -90,6 +91,20 @@ class GoodnessOfFit(_Part, kw_only=True):
     wider: float
 
 
+class Known(_Part, kw_only=True):
+    """What the data say of something that the record leaves open, and no effect.
+
+    Attributes:
+        value: over the recorded one; a delay in µs, a clock's relative error.
+        sigma: its standard error, relative; of delays in µs.
+        prior: the error that the record states; null where it is unknown.
+    """
+
+    value: float
+    sigma: float
+    prior: float | None
+
+
 class Next(_Part, kw_only=True):
     """The change of the experiment that best separates rivals; `delta_chi2` as predicted."""
 
@@ -134,6 +149,8 @@ class Verdict(_Part, kw_only=True):
         warnings: what in the final model leaves the range of its physics; left out where nothing does.
         sources: id → source of the effects of the user's own that were searched; absent without any.
         fit: goodness of fit; None in verdicts written before it was tested.
+        nuisances: what the record leaves open besides speeds, time zeros, the beads' modulus and stated gains
+            → what is found of it in the extended model; absent without any.
     """
 
     format: int = 1
@@ -154,6 +171,7 @@ class Verdict(_Part, kw_only=True):
     sources: Sources = UNSET
     warnings: list[str] | UnsetType = UNSET
     fit: GoodnessOfFit | None = None
+    nuisances: dict[str, Known] | UnsetType = UNSET
 
     @property
     def probability(self) -> float | None:
@@ -210,6 +228,24 @@ def parameters(fit: Fit) -> dict[str, dict[str, Value]]:
         first += len(component.free)
         result[component.effect.id] = values
     return result
+
+
+def nuisances(forward: Forward, fit: Fit) -> dict[str, Known] | UnsetType:
+    """What a fit says of uncalibrated gains and of what else the runs share."""
+    layout, e = forward.layout, forward.experiment
+    value = fit.nu * forward.nuisance_sigma
+    error = np.sqrt(np.diag(fit.covariance)[len(fit.u) :]) * forward.nuisance_sigma
+    found = {}
+    for gauge, at in zip(e.gauges, layout.gains, strict=True):
+        if not gauge.calibrated:
+            ratio = float(gauge.gain * np.exp(value[at]))
+            found[f"gain {gauge.id}"] = Known(value=ratio, sigma=float(error[at]), prior=None)
+    for at, one in enumerate(layout.others, start=layout.modulus + 1):
+        scale = 1e6 if one.kind == "delay" else 1.0
+        here = value[at] * scale if one.kind in ("delay", "clock") else np.exp(value[at])
+        name = f"{one.kind} {one.of}".strip()
+        found[name] = Known(value=float(here), sigma=float(error[at]) * scale, prior=one.sigma * scale)
+    return found or UNSET
 
 
 def gap(before: float, after: float) -> Gap:
