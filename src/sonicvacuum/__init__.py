@@ -18,6 +18,11 @@ The signals of Fig. 3(a) of that paper, gauge by gauge, in N over s:
     study = sv.simulate(card)
     signals = study.readings()
 
+What ten steel beads of 20 mm will show, before they are bought:
+
+    seen = sv.predict(beads=10, diameter="20mm", material="bearing-steel", speed=0.5)
+    print(seen.wave_speed_m_s, seen.gauges)
+
 Everything below is loaded when it is first used; importing the package loads nothing else.
 
 >>> import sonicvacuum as sv
@@ -37,6 +42,7 @@ if TYPE_CHECKING:
     from sonicvacuum.files import InputError
     from sonicvacuum.physics import solitary, theory
     from sonicvacuum.physics.chain import Chain
+    from sonicvacuum.prediction import predict
     from sonicvacuum.records import Record
 
 # Name → module, or module:attribute.
@@ -48,6 +54,7 @@ _PUBLIC = {
     "case": "sonicvacuum.api:case",
     "compare": "sonicvacuum.api:compare",
     "discover": "sonicvacuum.discover",
+    "predict": "sonicvacuum.prediction:predict",
     "read": "sonicvacuum.api:read",
     "read_case": "sonicvacuum.api:read_case",
     "simulate": "sonicvacuum.api:simulate",
@@ -63,6 +70,7 @@ __all__ = [
     "case",
     "compare",
     "discover",
+    "predict",
     "read",
     "read_case",
     "simulate",

@@ -11,6 +11,7 @@ from ball import RECORD
 
 import sonicvacuum as sv
 from sonicvacuum import api, blas
+from sonicvacuum.prediction import measure
 
 
 def python(code, **environment):
@@ -36,7 +37,7 @@ def test_importing_loads_nothing_and_every_public_name_is_there():
         _ = sv.nothing
 
 
-@pytest.mark.parametrize("module", [sv, api])
+@pytest.mark.parametrize("module", [sv, api, measure])
 def test_the_examples_hold(module):
     failed, tried = doctest.testmod(module)
     assert tried > 0

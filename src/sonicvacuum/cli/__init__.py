@@ -21,6 +21,7 @@ VERBS = {
     "effects": "sonicvacuum.cli.card:effects",
     "schema": "sonicvacuum.cli.card:schema",
     "simulate": "sonicvacuum.cli.simulate:simulate",
+    "predict": "sonicvacuum.cli.predict:predict",
     "record": "sonicvacuum.cli.record:record",
     "discover": "sonicvacuum.cli.discover:discover",
     "page": "sonicvacuum.cli.page:page",

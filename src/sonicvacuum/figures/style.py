@@ -17,6 +17,12 @@ from sonicvacuum.files import replacing
 SINGLE, DOUBLE = 85.0, 175.0  # widths of a journal column and of a page, mm
 DOTS_PER_INCH = 300
 GREY, BAND = "#595959", "#d9d9d9"
+# Format of a picture → what is written into it about its making.
+METADATA = {
+    "svg": {"Date": None, "Creator": None},
+    "png": {"Software": None},
+    "pdf": {"CreationDate": None, "Creator": None, "Producer": None},
+}
 
 _SETTINGS = {
     "font.family": "DejaVu Sans",  # comes with matplotlib, so it is the same everywhere
@@ -109,11 +115,12 @@ def title(figure: Figure, left_mm: float, text: str) -> None:
     figure.text(left_mm / width, 1.0 - 3.0 / height, text, fontweight="bold", va="center")
 
 
-def save(figure: Figure, svg, png) -> None:
-    """Write a figure as SVG and PNG; no date, no version, fixed ids."""
+def save(figure: Figure, *paths) -> None:
+    """Write a figure, by the ending of each path as SVG, PNG or PDF; no date, no version, fixed ids."""
     with context():
-        for path, metadata in ((svg, {"Date": None, "Creator": None}), (png, {"Software": None})):
+        for path in paths:
+            kind = str(path).rsplit(".", 1)[-1].lower()
             content = BytesIO()
-            figure.savefig(content, format=str(path).rsplit(".", 1)[-1], dpi=DOTS_PER_INCH, metadata=metadata)
+            figure.savefig(content, format=kind, dpi=DOTS_PER_INCH, metadata=METADATA[kind])
             with replacing(path, "wb") as stream:
                 stream.write(content.getvalue())
