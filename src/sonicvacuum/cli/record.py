@@ -21,11 +21,16 @@ def new(folder):
 
 @record.command()
 @click.argument("folders", nargs=-1, required=True, type=click.Path())
-def check(folders):
-    """Read the records in FOLDERS and say what is in them and what looks suspicious."""
+@click.option("--json", "as_json", is_flag=True, help="Print JSON, in SI units.")
+def check(folders, as_json):
+    """Say what is in the records in FOLDERS, what the nominal model expects, what looks suspicious.
+
+    Arrival, amplitude, speed and width of each gauge and run stand beside those of the nominal model; slips
+    of the set-up that they betray are named, the window to record and the time of a search estimated.
+    """
     from sonicvacuum.records import commands
 
-    click.echo(commands.check(folders))
+    click.echo(commands.check(folders, as_json))
 
 
 record.add_command(import_)

@@ -6,9 +6,9 @@ from pathlib import Path
 
 from sonicvacuum.files import InputError, replacing
 from sonicvacuum.records.blocks import RunBlock, schema
-from sonicvacuum.records.checks import warnings
 from sonicvacuum.records.reader import FILE, read
 from sonicvacuum.records.record import Record, Run
+from sonicvacuum.records.review import content, lines, review
 
 
 def template() -> str:
@@ -38,16 +38,20 @@ def new(folder) -> Path:
     return file
 
 
-def check(folders) -> str:
-    """Summaries of records, one after the other; InputError for the first that cannot be read."""
-    return "\n".join(summary(read(folder)) for folder in folders)
+def check(folders, as_json: bool = False) -> str:
+    """Summaries of records, one after the other, or as JSON; InputError for the first that cannot be read."""
+    records = [read(folder) for folder in folders]
+    if as_json:
+        found = [content(review(record)) for record in records]
+        return json.dumps({"format": 1, "records": found}, indent=1, ensure_ascii=False, allow_nan=False)
+    return "\n".join(map(summary, records))
 
 
 def summary(record: Record) -> str:
     """What is in a record, and what in it looks suspicious."""
     kind = "one ball on a wall" if record.beads == 0 else f"{record.beads} beads"
     gauges = ", ".join(f"{g.id} ({'wall' if g.bead is None else f'bead {g.bead}'})" for g in record.gauges)
-    lines = [
+    said = [
         f"{record.name}: {record.title}",
         f"  {kind} of {_beads(record.specimen)}, {record.block.chain.orientation}; "
         f"gauges: {gauges or 'none'}",
@@ -57,9 +61,7 @@ def summary(record: Record) -> str:
             for line in _run(record, run, block)
         ),
     ]
-    found = warnings(record)
-    lines += [f"  warning: {w}" for w in found] or ["  nothing suspicious"]
-    return "\n".join(lines)
+    return "\n".join([*said, *lines(review(record))])
 
 
 def _beads(specimen):

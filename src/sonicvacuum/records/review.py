@@ -1,0 +1,110 @@
+"""All that `record check` says of a record, as data and in words: the two say the same."""
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from sonicvacuum.records.checks import warnings
+from sonicvacuum.records.expected import Expected, Feature, expected
+from sonicvacuum.records.record import Record
+from sonicvacuum.records.suspects import suspects
+
+# A search in a record of four runs, three gauges and 480 samples takes 12 s on one core (measured by `make
+# bench`, table in the README); it grows with their product. Records of that size differ by a factor of four.
+SECONDS_PER_VALUE = 12.0 / (4 * 3 * 480)
+LEAST_SECONDS = 2.0
+UNCERTAIN = 4.0
+# SI unit → the one in which people read it, and its factor.
+_SHOWN = {"s": ("us", 1e6)}
+_TITLES = {"arrival": "peak at", "amplitude": "peak", "duration_half": "half width", "speed": "speed",
+           "width_half": "width"}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Review:
+    """One record, looked at.
+
+    Attributes:
+        record: its folder's name.
+        title: its title.
+        expected: each number that the nominal model expects beside the measured one.
+        warnings: what in the files looks suspicious by itself.
+        suspects: what looks so against the nominal model.
+        discover_s: rough time of `discover` on one core.
+    """
+
+    record: str
+    title: str
+    expected: Expected
+    warnings: tuple[str, ...]
+    suspects: tuple[str, ...]
+    discover_s: float
+
+
+def review(record: Record) -> Review:
+    """Look at a record that can be read."""
+    seen = expected(record)
+    return Review(
+        record=record.name,
+        title=record.title,
+        expected=seen,
+        warnings=tuple(warnings(record)),
+        suspects=tuple(suspects(record, seen)),
+        discover_s=max(LEAST_SECONDS, SECONDS_PER_VALUE * _values(record)),
+    )
+
+
+def _values(record):
+    """Samples of all traces, and scalars."""
+    traces = sum(s.samples * len(s.readings) for s in record.signals.values())
+    return traces + sum(len(run.observables) for run in record.runs)
+
+
+def content(found: Review) -> dict[str, Any]:
+    """The review as JSON: format 1, SI units, null where traces or model do not give a number."""
+    return {
+        "record": found.record,
+        "title": found.title,
+        "features": [asdict(f) for f in found.expected.features],
+        "windows_s": [asdict(w) for w in found.expected.windows],
+        "warnings": list(found.warnings),
+        "suspects": list(found.suspects),
+        "discover_s": {
+            "estimate": found.discover_s,
+            "low": found.discover_s / UNCERTAIN,
+            "high": found.discover_s * UNCERTAIN,
+        },
+    }
+
+
+def lines(found: Review) -> list[str]:
+    """The comparison in words: one line for each gauge of each run, then the slips, then the time."""
+    said = []
+    for run in dict.fromkeys(f.run for f in found.expected.features):
+        said.append(f"  run {run}, measured (the nominal model):")
+        features = [f for f in found.expected.features if f.run == run]
+        for gauge in dict.fromkeys(f.gauge for f in features):
+            said.append(f"    {gauge}: " + "; ".join(_told(f) for f in features if f.gauge == gauge))
+        said += [
+            f"    recorded {_span(w.recorded)}, needed {_span(w.needed)}"
+            for w in found.expected.windows
+            if w.run == run
+        ]
+    said += [f"  warning: {w}" for w in found.warnings]
+    said += [f"  check your set-up: {s}" for s in found.suspects]
+    said += [] if found.warnings or found.suspects else ["  nothing suspicious"]
+    low, high = found.discover_s / UNCERTAIN, found.discover_s * UNCERTAIN
+    return [*said, f"  discover will take some {low:.2g} to {high:.2g} s on one core (a rough estimate)"]
+
+
+def _told(feature: Feature):
+    """`peak 5.4 N (5.38)`."""
+    unit, factor = _SHOWN.get(feature.unit, (feature.unit, 1.0))
+    expected, measured = (
+        "–" if n is None else f"{n * factor:.4g}" for n in (feature.expected, feature.measured)
+    )
+    start = f" from {feature.start}" if feature.quantity == "speed" else ""
+    return f"{_TITLES[feature.quantity]}{start} {measured} {unit} ({expected})"
+
+
+def _span(window):
+    return f"{window[0] * 1e6:.4g} to {window[1] * 1e6:.4g} us"

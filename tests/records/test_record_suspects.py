@@ -1,0 +1,121 @@
+"""Slips of the set-up that traces betray: each is made on purpose, and must be the one that is named."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from record_cases import BALL, CONTENT, STRIKER, TRACES, content, made, put
+
+from sonicvacuum.records import Record, Signals
+from sonicvacuum.records.commands import check, summary
+from sonicvacuum.records.expected import expected
+from sonicvacuum.records.reader import parse
+from sonicvacuum.records.review import review
+from sonicvacuum.records.suspects import suspects
+
+
+def slip(traces=TRACES, change=None, **changes):
+    """What is said of a record whose keys are not those with which its traces were made."""
+    signals = {run: change(s) if change else s for run, s in traces.items()}
+    record = Record(parse(content(**changes)), signals, "slipped")
+    return suspects(record, expected(record))
+
+
+def one(said, *parts):
+    """Whether one sentence for each run, or one in all, has the parts, and nothing else is said."""
+    assert 1 <= len(said) <= 2, said
+    assert all(part in line for line in said for part in parts), said
+
+
+def scaled(factor, *gauges):
+    """Change of traces: readings times a factor."""
+    return lambda s: Signals(
+        s.time_us, {g: r * (factor if g in gauges else 1.0) for g, r in s.readings.items()}
+    )
+
+
+def test_of_a_sound_record_nothing_is_said_and_numbers_agree():
+    seen = expected(made())
+    assert suspects(made(), seen) == []
+    assert {f.quantity for f in seen.features} == {
+        "arrival", "amplitude", "duration_half", "speed", "width_half"
+    }  # fmt: skip
+    # The noise is 1 % of the smallest peak; speeds and widths are differences of such times.
+    assert all(f.ratio == pytest.approx(1.0, rel=0.03) for f in seen.features)
+    assert suspects(made(BALL), expected(made(BALL))) == []
+
+
+@pytest.mark.parametrize(("shift_us", "word"), [(-25.0, "early"), (40.0, "late")])
+def test_a_trigger_off_by_more_than_its_error_is_told(shift_us, word):
+    def late(s):
+        return Signals(s.time_us + shift_us, s.readings)
+
+    said = [line for line in slip(change=late) if "begins" not in line]
+    one(said, f"{abs(shift_us):.0f}"[:1], f"us too {word} at every gauge", "write trigger_sigma_us: unknown")
+    assert not [s for s in slip(change=late, trigger_sigma_us="unknown") if "trigger" in s]
+
+
+def test_volts_are_told_from_a_striker():
+    volts = slip(change=scaled(0.08, "near", "far", "wall"))
+    one(volts, "peaks are 0.080", "are they in V, mN or kN?")
+    # Traces of a ball four times as fast as the record says.
+    fast = [
+        r | {"striker": STRIKER | {"speed_m_s": 4.0 * r["striker"]["speed_m_s"]}} for r in CONTENT["runs"]
+    ]
+    one(slip(made(runs=fast).signals), "are the striker's mass, material and speed right?")
+
+
+def test_one_gauge_off_is_told_from_all():
+    one(slip(change=scaled(5.0, "far")), "gauge far: its peaks are 4.99 times")
+    assert slip(change=scaled(5.0, "far"), sensors__1__gain_rel_sigma="unknown") == []
+
+
+@pytest.mark.parametrize(("sensor", "bead", "said"), [(0, 4, 3), (1, 5, 6), (1, 7, 6)])
+def test_a_bead_counted_wrongly_is_named_with_the_right_one(sensor, bead, said):
+    found = slip(**{f"sensors__{sensor}__bead": bead})
+    gauge = CONTENT["sensors"][sensor]["id"]
+    one(found, f"gauge {gauge}: its pulses come when they should at bead {said}, not at bead {bead}")
+
+
+def test_a_softer_chain_is_no_slip():
+    """What discover is for: a modulus half as large."""
+    assert slip(made().signals) == []
+
+
+def test_masses_are_held_against_densities():
+    one(slip(chain__bead__mass_g=0.6), "chain.bead.mass_g: is 0.6 g", "of stainless-steel weighs 0.4518 g")
+
+
+def test_a_window_too_short_is_told_with_the_one_needed():
+    def cut(s):
+        return Signals(s.time_us[:420], {g: r[:420] for g, r in s.readings.items()})
+
+    one(slip(change=cut), "ends at 94.75 us", "are needed for the pulse at every gauge: record longer")
+
+
+def test_text_and_json_say_the_same(tmp_path):
+    folder = put(tmp_path, chain__bead__mass_g=0.6)
+    told = json.loads(check([folder], as_json=True))
+    assert set(told) == {"format", "records"}
+    (found,) = told["records"]
+    assert set(found) == {
+        "record", "title", "features", "windows_s", "warnings", "suspects", "discover_s"
+    }  # fmt: skip
+    assert set(found["features"][0]) == {
+        "run", "gauge", "start", "quantity", "unit", "expected", "measured"
+    }  # fmt: skip
+    text = check([folder])
+    assert all(line in text for line in (*found["suspects"], *found["warnings"]))
+    assert "near: peak at" in text
+    assert "needed" in text
+    assert found["discover_s"]["low"] < found["discover_s"]["estimate"] < found["discover_s"]["high"]
+
+
+def test_a_gauge_without_a_pulse_has_no_number():
+    quiet = TRACES["fast"]
+    still = replace(quiet, readings=quiet.readings | {"far": np.zeros(quiet.samples)})
+    record = Record(parse(content()), dict(TRACES) | {"fast": still}, "still")
+    missing = [f for f in review(record).expected.features if f.measured is None]
+    assert {(f.run, "far" in (f.gauge, f.start)) for f in missing} == {("fast", True)}
+    assert "far: peak at – us" in summary(record)
