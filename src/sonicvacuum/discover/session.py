@@ -21,8 +21,8 @@ from sonicvacuum.discover import (
     singles,
     verdict,
 )
-from sonicvacuum.discover.problem import together
-from sonicvacuum.discover.rounds import Investigation, investigate
+from sonicvacuum.discover.faults import competition
+from sonicvacuum.discover.rounds import Investigation
 from sonicvacuum.discover.verdict import Verdict
 from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.physics import validity
@@ -59,7 +59,8 @@ def discover(*records: Record, threads: int | None = None, catalogue: Catalogue 
         InputError: for records that cannot be simulated or do not belong together.
     """
     clock = Clock()
-    found = investigate(together(records, catalogue), threads or available_threads())
+    outcome = competition.discover(records, catalogue, threads or available_threads())
+    found = outcome.found
     clock.mark("search")
     forward = found.forward
     places = locate.locate(forward, found.null)
@@ -87,7 +88,7 @@ def discover(*records: Record, threads: int | None = None, catalogue: Catalogue 
         upper_limits=verdict.upper_limits(limits),
         not_testable=sorted({one.effect for one in limits if not one.testable}),
         next_experiment=proposal,
-        reasons=found.reasons,
+        reasons=[*found.reasons, *verdict.corrections(outcome.findings)],
         alarms=found.alarms,
         timing_s=clock.seconds(),
         simulations=forward.chains + (found.counted.forward.chains if found.counted else 0),
@@ -96,7 +97,7 @@ def discover(*records: Record, threads: int | None = None, catalogue: Catalogue 
         warnings=_doubts(found, records[0]) or UNSET,
         nuisances=verdict.nuisances(counted.forward, counted.final),
     )
-    return Result(records[0], found, places, after, limits, result)
+    return Result(outcome.record, found, places, after, limits, result)
 
 
 def _doubts(found: Investigation, record: Record) -> list[str]:

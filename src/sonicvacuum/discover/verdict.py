@@ -6,7 +6,9 @@ are null.
 
 import csv
 import math
+from collections.abc import Iterable
 from pathlib import Path
+from typing import Literal
 
 import msgspec
 import numpy as np
@@ -16,12 +18,17 @@ from sonicvacuum.discover.degenerate import Limit
 from sonicvacuum.discover.explanations import key
 from sonicvacuum.discover.forward import Forward
 from sonicvacuum.discover.goodness import Goodness
+from sonicvacuum.discover.faults.found import Finding
+from sonicvacuum.discover.faults.table import FAULTS
 from sonicvacuum.discover.heldout import HeldOut
 from sonicvacuum.discover.locate import Place
 from sonicvacuum.discover.refit import Fit
 from sonicvacuum.discover.rounds import Investigation
 from sonicvacuum.effects import Catalogue
 from sonicvacuum.files import replacing
+
+
+FaultId = Literal[tuple(FAULTS)]
 
 
 class _Part(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -125,6 +132,16 @@ class Source(_Part, kw_only=True):
 Sources = dict[str, Source] | UnsetType
 
 
+class Fault(_Part, kw_only=True):
+    """One slip of the laboratory; `sensor` one id or several, null where it concerns none."""
+
+    fault: FaultId
+    run: str | None
+    sensor: str | list[str] | None
+    probability: float
+    value: float | None
+
+
 class Verdict(_Part, kw_only=True):
     """The verdict on one record, format 1.
 
@@ -205,6 +222,26 @@ class Model(_Part, kw_only=True):
     gain: dict[str, float]
     modulus_ratio: float
     sources: Sources = UNSET
+
+
+def faults(findings: Iterable[Finding]) -> list[Fault]:
+    """Slips as they are written."""
+    return [
+        Fault(
+            fault=f.fault,
+            run=f.run,
+            sensor=list(f.sensor) if isinstance(f.sensor, tuple) else f.sensor,
+            probability=f.probability,
+            value=f.value,
+        )
+        for f in sorted(findings, key=lambda f: -f.probability)
+    ]
+
+
+def corrections(findings: Iterable[Finding]) -> list[str]:
+    """What is said of a record that was put right, one line; nothing of one that was not."""
+    right = dict.fromkeys(f.fault for f in findings if f.corrected)
+    return [f"all else is of the record put right: {', '.join(right)}"] if right else []
 
 
 def sources(catalogue: Catalogue, ids=None) -> Sources:

@@ -1,0 +1,147 @@
+"""What a slip makes of a record, undone: (record, value) → the record put right.
+
+Sizes are logarithms of ratios; numbers of beads, ids and shifts in microseconds are as they are.
+"""
+
+import math
+from dataclasses import replace
+
+import msgspec
+import numpy as np
+
+from sonicvacuum.records import Record, Signals
+
+
+def _block(record: Record, **given) -> Record:
+    return replace(record, block=msgspec.structs.replace(record.block, **given))
+
+
+def _scaled(body, key, ratio):
+    """A bead's block, or a change of one, with one of its numbers times a ratio."""
+    value = getattr(body, key, None)
+    return msgspec.structs.replace(body, **{key: value * ratio}) if isinstance(value, float | int) else body
+
+
+def beads(record: Record, key: str, log_ratio: float) -> Record:
+    """All beads with their mass or diameter times a ratio."""
+    chain, ratio = record.block.chain, math.exp(log_ratio)
+    given = {"bodies": {n: _scaled(b, key, ratio) for n, b in chain.bodies.items()}}
+    if chain.bead is not None:
+        given["bead"] = _scaled(chain.bead, key, ratio)
+    if chain.pattern is not None:
+        given["pattern"] = [_scaled(b, key, ratio) for b in chain.pattern]
+    return _block(record, chain=msgspec.structs.replace(chain, **given))
+
+
+def strikers(record: Record, key: str, log_ratio: float, runs=None) -> Record:
+    """The strikers of some runs, or of all, with mass or speed times a ratio."""
+
+    def changed(run):
+        if runs is not None and run.id not in runs:
+            return run
+        return msgspec.structs.replace(run, striker=_scaled(run.striker, key, math.exp(log_ratio)))
+
+    return _block(record, runs=[changed(r) for r in record.block.runs])
+
+
+def bead_count(record: Record, by: int, from_wall: bool = False) -> Record:
+    """A chain with so many beads more; gauges stay where they are as counted from one end or the other."""
+    chain = record.block.chain
+    changed = msgspec.structs.replace(chain, beads=chain.beads + by)
+    sensors = record.block.sensors
+    if from_wall:
+        sensors = [
+            s if s.bead is None else msgspec.structs.replace(s, bead=s.bead + by) for s in record.block.sensors
+        ]
+    return _block(record, chain=changed, sensors=sensors)
+
+
+def gauge_moved(record: Record, id: str, by: int) -> Record:
+    """A gauge so many beads further on."""
+    moved = [
+        msgspec.structs.replace(s, bead=s.bead + by) if s.id == id else s for s in record.block.sensors
+    ]
+    return _block(record, sensors=moved)
+
+
+def gauges_swapped(record: Record, one: str, two: str) -> Record:
+    """The readings of two gauges exchanged; noise and gain stay with the cables."""
+    names = {one: two, two: one}
+
+    def swapped(signals):
+        return Signals(signals.time_us, {names.get(k, k): v for k, v in signals.readings.items()})
+
+    return replace(record, signals={k: swapped(s) for k, s in record.signals.items()})
+
+
+def runs_swapped(record: Record, one: str, two: str) -> Record:
+    """The strikers of two runs exchanged."""
+    strikers_ = {r.id: r.striker for r in record.block.runs}
+    names = {one: two, two: one}
+    runs = [
+        msgspec.structs.replace(r, striker=strikers_[names[r.id]]) if r.id in names else r
+        for r in record.block.runs
+    ]
+    return _block(record, runs=runs)
+
+
+def gains(record: Record, log_ratio: float) -> Record:
+    """All readings over a ratio, with their noise."""
+    ratio = math.exp(-log_ratio)
+    sensors = [_scaled_noise(s, ratio) for s in record.block.sensors]
+    signals = {
+        k: Signals(s.time_us, {g: v * ratio for g, v in s.readings.items()}) for k, s in record.signals.items()
+    }
+    return replace(_block(record, sensors=sensors), signals=signals)
+
+
+def _scaled_noise(sensor, ratio):
+    for key in sensor.__struct_fields__:
+        if key.startswith("sigma_"):
+            sensor = _scaled(sensor, key, ratio)
+    return sensor
+
+
+def clock(record: Record, log_ratio: float) -> Record:
+    """Recorded times over a ratio."""
+    ratio = math.exp(-log_ratio)
+    return replace(
+        record, signals={k: Signals(s.time_us * ratio, s.readings) for k, s in record.signals.items()}
+    )
+
+
+def time_zero(record: Record, late_us: dict[str, float], sigma_us: float) -> Record:
+    """Times of each run put later by so many microseconds, and known only so well from there on."""
+    signals = {
+        k: Signals(s.time_us + late_us.get(k, 0.0), s.readings) for k, s in record.signals.items()
+    }
+    given = record.block.trigger_sigma_us
+    wider = given if given == "unknown" else max(given, sigma_us)
+    return replace(_block(record, trigger_sigma_us=wider), signals=signals)
+
+
+def delayed(record: Record, id: str, late_us: float) -> Record:
+    """One gauge's readings put earlier by so many microseconds."""
+
+    def shifted(signals):
+        if id not in signals.readings:
+            return signals
+        samples = late_us * 1e-6 / signals.interval_s
+        return Signals(
+            signals.time_us, {**signals.readings, id: earlier(signals.readings[id], samples)}
+        )
+
+    return replace(record, signals={k: shifted(s) for k, s in record.signals.items()})
+
+
+def earlier(trace: np.ndarray, samples: float) -> np.ndarray:
+    """A trace put earlier by so many samples, its ends held.
+
+    The whole part moves samples, the rest goes by the Fourier transform, which keeps white noise white; the
+    straight line between both ends is taken off meanwhile, so that nothing wraps around with a step.
+    """
+    whole = round(samples)
+    moved = trace[np.clip(np.arange(len(trace)) + whole, 0, len(trace) - 1)]
+    straight = np.linspace(moved[0], moved[-1], len(moved))
+    turn = np.exp(2j * np.pi * np.fft.rfftfreq(len(moved)) * (samples - whole))
+    return straight + np.fft.irfft(np.fft.rfft(moved - straight) * turn, len(moved))

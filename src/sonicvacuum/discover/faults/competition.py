@@ -1,0 +1,282 @@
+"""Slips and effects in competition for the same misfit: what is put right, what is said of it, how sure it is.
+
+First what traces show by themselves is put right. Then, while the nominal model leaves a misfit, every slip is
+looked at; one that takes away nearly all of it is put right before any effect is searched for. The search for
+effects follows, and what it finds is weighed against the best of the other slips: the evidence of all
+explanations of the record as it is against that of all explanations of the record put right. Where effects
+leave a misfit, slips are looked at once more beside them.
+"""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.stats import chi2 as chi_squared
+
+from sonicvacuum.discover import evidence
+from sonicvacuum.discover.experiment import Experiment
+from sonicvacuum.discover.faults import policy
+from sonicvacuum.discover.faults.examine import examine
+from sonicvacuum.discover.faults.found import Bench, Finding
+from sonicvacuum.discover.faults.judging import Judge, Judged, Model, noise_volume
+from sonicvacuum.discover.faults.slips import hypotheses
+from sonicvacuum.discover.faults.table import FAULTS
+from sonicvacuum.discover.faults.timing import time_zero, with_starts
+from sonicvacuum.discover.forward import Forward
+from sonicvacuum.discover.hypothesis import Hypothesis
+from sonicvacuum.discover.problem import together
+from sonicvacuum.discover.rounds import Investigation, investigate, nominal
+from sonicvacuum.effects import CATALOGUE, Catalogue
+from sonicvacuum.records import Record
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What was found, slips and effects.
+
+    Attributes:
+        found: effects, of the record put right.
+        findings: slips, most probable first.
+        record: the (first) record put right.
+        simulations: chains simulated for the slips.
+    """
+
+    found: Investigation
+    findings: tuple[Finding, ...]
+    record: Record
+    simulations: int = 0
+
+
+def predicted(experiment: Experiment, threads: int = 1) -> dict[str, dict[str, np.ndarray]]:
+    """Run → gauge → (T,) reading of the nominal model at the recorded numbers, for the gauges of each run."""
+    bare = tuple(replace(r, present=None, scalars=()) for r in experiment.runs)
+    forward = Forward(replace(experiment, runs=bare, correlation=np.zeros(len(experiment.gauges))), threads)
+    found = forward.sampled(Hypothesis(), np.zeros((1, 0)), np.zeros((1, forward.layout.size)))
+    result = {}
+    for run, (value, _) in zip(experiment.runs, found, strict=True):
+        rows = value[0].reshape(len(experiment.gauges), -1) * experiment.sigma[:, None]
+        result[run.id] = {
+            g.id: row
+            for s, (g, row) in enumerate(zip(experiment.gauges, rows, strict=True))
+            if run.has_signals and (run.present is None or run.present[s].any())
+        }
+    return {k: v for k, v in result.items() if v}
+
+
+def discover(records: Sequence[Record], catalogue: Catalogue = CATALOGUE, threads: int = 1) -> Outcome:
+    """Slips and effects of one record, or of records taken together.
+
+    Of several records only what traces show by themselves is looked for: they share a chain and its gauges,
+    and each has its own slips.
+    """
+    benches, findings = [], []
+    for record in records:
+        seen = predicted(together((record,), catalogue), threads) if record.signals else {}
+        bench, own = examine(record, seen)
+        benches.append(bench)
+        findings += own
+    if len(records) > 1 or not benches[0].record.signals:
+        return Outcome(_investigated(benches, catalogue, threads), tuple(findings), benches[0].record)
+    return Search(benches[0], catalogue, threads, findings).run()
+
+
+def _investigated(benches, catalogue, threads):
+    experiment = together([b.record for b in benches], catalogue)
+    lost = {at: rows for b in benches for at, rows in b.lost.items()}
+    return investigate(Bench(benches[0].record, lost).masked(experiment), threads)
+
+
+class Search:
+    """Slips of one record that only the model can tell, in competition with effects."""
+
+    def __init__(self, bench: Bench, catalogue: Catalogue, threads: int, plain: list[Finding]):
+        self.bench, self.catalogue, self.threads = bench, catalogue, threads
+        self.findings, self.simulations = list(plain), 0
+
+    def make(self, bench: Bench) -> Experiment:
+        """The data set of a record as far as it was put right."""
+        return bench.masked(together((bench.record,), self.catalogue))
+
+    def run(self) -> Outcome:
+        """Slips that leave nothing to doubt, then effects, then the rest of the slips against them."""
+        for _ in range(policy.MOST):
+            model = self._nominal()
+            ranked = self._ranked(model) if suspicious(model) else []
+            if not ranked or not _obvious(ranked[0], model):
+                break
+            self._accept(ranked, ranked[0])
+        else:
+            ranked = []
+        found = self._investigate()
+        for _ in range(policy.MOST):
+            better = self._instead(found, model, ranked)
+            if better is None:
+                break
+            found, model, ranked = better
+        order = sorted(self.findings, key=lambda f: -f.probability)
+        return Outcome(found, tuple(order), self.bench.record, self.simulations)
+
+    def _nominal(self) -> Model:
+        forward = Forward(self.make(self.bench), self.threads)
+        return Model(self.bench, forward, nominal(forward))
+
+    def _investigate(self) -> Investigation:
+        return investigate(self.make(self.bench), self.threads)
+
+    def _ranked(self, model: Model) -> list[Judged]:
+        """Slips that gain enough beside a model, fitted, the likeliest first."""
+        judge, record = Judge(model, self.make), model.bench.record
+        seen = predicted(self.make(model.bench), self.threads)
+        done = {(f.fault, f.run, f.sensor) for f in self.findings}
+        slips = [s for s in with_starts(hypotheses(record), record, seen)]
+        slips = [s for s in slips if (s.fault, s.run, s.sensor) not in done]
+        shifted = [] if any(f.fault == "time-zero" for f in self.findings) else time_zero(record, seen)
+        looked = sorted((judge.look(s) for s in slips), key=lambda j: -j.log_odds)
+        worth = [j for j in looked if j.gain > policy.LEAST_GAIN][: policy.FOLLOWED]
+        whole = [judge.look(s) for s in shifted]
+        followed = [judge.follow(j) for j in [*worth, *whole]]
+        self.simulations += judge.simulations
+        kept = [j for j in followed if j.gain > policy.LEAST_GAIN and j.log_odds > 0.0]
+        return sorted(kept, key=lambda j: -j.log_odds)
+
+    def _accept(self, ranked: list[Judged], chosen: Judged, share: float = 1.0) -> None:
+        """Put a slip right; its rivals are said as far as they are probable."""
+        odds = np.array([j.log_odds for j in ranked])
+        weights = np.exp(odds - odds.max())
+        weights /= weights.sum()
+        for judged, weight in zip(ranked, weights, strict=True):
+            p = min(float(weight) * share, policy.PLAIN)
+            if p >= policy.SHOWN or judged is chosen:
+                finding = judged.slip.finding(judged.size, p)
+                self.findings.append(replace(finding, corrected=judged is chosen))
+        self.bench = chosen.model.bench
+
+    def _instead(self, found: Investigation, model: Model, ranked: list[Judged]):
+        """The investigation of the record with one slip more put right, where that explains it better."""
+        left = unexplained(found)
+        rivals = ranked
+        if left and found.final is not found.null:
+            beside = Model(self.bench, found.forward, found.final)
+            rivals = [*ranked, *self._beside(beside, found)]
+        if not rivals:
+            return None
+        rivals = sorted(rivals, key=lambda j: -j.log_odds)
+        return self._weighed(found, rivals, left)
+
+    def _beside(self, model: Model, found: Investigation) -> list[Judged]:
+        """Slips beside the effects that were found, as if beside the nominal model: their gain included."""
+        own = found.null.objective - found.final.objective
+        weight = weight_of(found) - math.log(evidence.PRIOR_NONE)
+        return [
+            replace(j, gain=j.gain + own, log_bayes=j.log_bayes + weight) for j in self._ranked(model)
+        ]
+
+    def _weighed(self, found, rivals, left):
+        best, as_is = rivals[0], weight_of(found)
+        put_right = best.log_odds + math.log(evidence.PRIOR_NONE)
+        same = [j for j in rivals if _alias(j, found)]
+        if same:
+            self._share(found, [j for j in rivals if j.gain > same[0].gain - ALIKE], same[0])
+            return None
+        if not left and put_right < as_is - math.log(1.0 / policy.SHOWN):
+            return None
+        bench = self.bench
+        before = list(self.findings)
+        self._accept(rivals, best)
+        after = self._investigate()
+        base = best.log_odds if best.model.fit.hypothesis.components == () else self._base(best, found, after)
+        odds = base + weight_of(after) - as_is
+        p = 1.0 / (1.0 + math.exp(-max(min(odds, 700.0), -700.0)))
+        if p > 0.5 and not self._hollow(found, after):
+            self.findings = [
+                f if f in before else replace(f, probability=min(f.probability * p, policy.PLAIN))
+                for f in self.findings
+            ]
+            return after, self._nominal(), []
+        self.bench, self.findings = bench, before
+        if p >= policy.SHOWN and not self._hollow(found, after):
+            self._share(found, [best], None, p)
+        return None
+
+    def _base(self, best, found, after):
+        """Log odds of a slip by the nominal models of the record with and without it."""
+        gain = found.null.objective - after.null.objective
+        if not best.slip.continuous:
+            gain += noise_volume(found.forward.experiment) - noise_volume(after.forward.experiment)
+        own = best.log_bayes - 0.5 * best.gain
+        return 0.5 * gain + min(own, 0.0) + policy.log_prior(best.slip.alternatives)
+
+    def _hollow(self, found, after):
+        """Whether what is left after a slip is nearly all that was left before."""
+        if not unexplained(after):
+            return False
+        size = float(found.sizes.sum())
+        before, now = (max(f.final.objective - size, 1.0) for f in (found, after))
+        return now > policy.LEFT * before
+
+    def _share(self, found: Investigation, rivals: list[Judged], alias: Judged | None, p: float = 1.0):
+        """Say slips that explain as well as the effects named, and take their share from these.
+
+        With `alias`, the slip among them that moves the data exactly as the effect: both weigh the same.
+        """
+        odds = np.array([j.log_odds for j in rivals] + ([alias.log_odds] if alias else []))
+        weights = np.exp(odds - odds.max())
+        weights *= p / weights.sum()
+        for judged, weight in zip(rivals, weights, strict=False):
+            if weight >= policy.SHOWN:
+                self.findings.append(judged.slip.finding(judged.size, float(weight)))
+        share, taken = float(weights[: len(rivals)].sum()), 0.0
+        for name in found.probabilities:
+            if name not in ("none", "unknown"):
+                taken += share * found.probabilities[name]
+                found.probabilities[name] *= 1.0 - share
+        found.probabilities["none"] = found.probabilities.get("none", 0.0) + taken
+        names = " or ".join(dict.fromkeys(j.slip.fault for j in rivals))
+        found.reasons.append(f"a slip, {names}, explains these data as well: none is missing where it was made")
+
+
+def suspicious(model: Model) -> bool:
+    """Whether a nominal fit leaves more than its noise, or strains its nuisances."""
+    one, e = model.fit, model.forward.experiment
+    size = sum(e.size(r) for r in range(len(e.runs)))
+    misfit = float(one.normal.chi2.sum()) - size
+    strained = float(one.nu @ one.nu)
+    return misfit > policy.SUSPICIOUS * math.sqrt(2.0 * size) or strained > chi_squared.isf(
+        1e-3, len(one.nu)
+    )
+
+
+def _obvious(judged: Judged, model: Model) -> bool:
+    """Whether a slip takes away nearly all misfit by itself."""
+    e = model.forward.experiment
+    size = sum(e.size(r) for r in range(len(e.runs)))
+    excess = model.fit.objective - size
+    return judged.gain > policy.SURE_GAIN and judged.gain > policy.SHARE * excess and not FAULTS[
+        judged.slip.fault
+    ].alias
+
+
+def unexplained(found: Investigation) -> bool:
+    """Whether something is left that nothing found explains."""
+    return "unknown" in found.named
+
+
+def weight_of(found: Investigation) -> float:
+    """Log of prior times evidence of all explanations of a record together, against its nominal model's."""
+    logs = evidence.log_weights({c.effect: c.log_bayes for c in found.candidates})
+    each = math.log((1.0 - evidence.PRIOR_NONE - evidence.PRIOR_UNKNOWN) / len(logs))
+    sets = [len(c.effects) * each + c.log_bayes for c in found.pairs]
+    return float(np.logaddexp.reduce([*logs.values(), *sets]))
+
+
+# Slips and an effect within this Δχ² explain alike.
+ALIKE = 9.0
+
+
+def _alias(judged: Judged, found: Investigation) -> bool:
+    """Whether a slip moves these data exactly as the one effect that is named."""
+    effect = FAULTS[judged.slip.fault].alias
+    if found.named != [effect] or judged.model is None:
+        return False
+    return judged.gain > found.null.objective - found.final.objective - ALIKE

@@ -1,0 +1,163 @@
+"""A record looked through trace by trace: what its traces show by themselves is put right and said."""
+
+from collections import defaultdict
+from dataclasses import replace
+
+import msgspec
+import numpy as np
+
+from sonicvacuum.discover.faults import expected, policy, traces
+from sonicvacuum.discover.faults.found import Bench, Finding
+from sonicvacuum.discover.faults.table import FAULTS
+from sonicvacuum.discover.problem import flicker
+from sonicvacuum.records import Record, Signals
+
+
+def examine(record: Record, predicted: dict[str, dict[str, np.ndarray]] | None = None):
+    """Slips that traces show by themselves.
+
+    Args:
+        record: as read.
+        predicted: run id → gauge id → (T,) reading of the nominal model; without it, gauges without a pulse
+            and gauges of the wrong sign are not looked for.
+
+    Returns:
+        The `Bench` with what was put right, and the findings.
+    """
+    look = _Look(record, predicted or {})
+    for run in record.runs:
+        if run.signals is not None:
+            look.run(run)
+    return look.bench(), look.findings()
+
+
+class _Look:
+    """One pass over a record."""
+
+    def __init__(self, record, predicted):
+        self.record, self.predicted = record, predicted
+        self.readings = {k: dict(s.readings) for k, s in record.signals.items()}
+        self.lost, self.seen, self.rests = {}, defaultdict(dict), defaultdict(dict)
+        self.silent, self.blank = set(), []
+
+    def run(self, run):
+        """All traces of one run."""
+        own = {g.id: g for g in self.record.gauges if g.id in run.signals.readings}
+        for id, gauge in own.items():
+            self._sample_slips(run.id, gauge)
+        self._against_the_model(run.id, own)
+        for id, gauge in own.items():
+            if (run.id, id) not in self.silent:
+                self._quiet_slips(run, gauge)
+
+    def _sample_slips(self, run, gauge):
+        """Spikes and clipping: samples that are masked."""
+        trace = self.readings[run][gauge.id]
+        held = traces.clipped(trace, gauge.sigma or flicker(trace))
+        at = traces.spikes(trace, gauge.sigma) & ~held
+        if at.any():
+            self.readings[run][gauge.id] = traces.without_spikes(trace, at)
+            self.seen["spikes", gauge.id][run] = float(at.sum())
+        if held.any():
+            self.seen["gauge-clipped", gauge.id][run] = float(trace[held][0])
+        if at.any() or held.any():
+            self.lost[run, gauge.id] = at | held
+
+    def _against_the_model(self, run, own):
+        """No pulse where the model has one, or a pulse upside down."""
+        own = {id: g for id, g in own.items() if id in self.predicted.get(run, {})}
+        judged = {
+            id: expected.verdict(self.readings[run][id], self.predicted[run][id], g.sigma)
+            for id, g in own.items()
+        }
+        silent = [id for id, word in judged.items() if word == "silent"]
+        if own and len(silent) == len(own):
+            self.blank.append(run)
+        self.silent |= {(run, id) for id in silent}
+        for id, word in judged.items():
+            if word == "silent" and len(silent) < len(own):
+                self.seen["gauge-dead", id][run] = None
+            if word == "inverted":
+                self.seen["gauge-inverted", id][run] = None
+                self.readings[run][id] = -self.readings[run][id]
+
+    def _quiet_slips(self, run, gauge):
+        """What the stretch before the pulse shows: a line, a slope, a level, the size of the noise."""
+        trace = self.readings[run.id][gauge.id]
+        stretch = traces.quiet(trace, gauge.sigma)
+        hum = traces.pickup(stretch)
+        if hum:
+            cycles, (cosine, sine) = hum
+            angle = 2.0 * np.pi * cycles * np.arange(len(trace))
+            trace = trace - cosine * np.cos(angle) - sine * np.sin(angle)
+            self.seen["pickup", gauge.id][run.id] = 1e-3 * cycles / run.signals.interval_s
+            stretch = trace[: len(stretch)]
+        slope = traces.drift(stretch, gauge.sigma)
+        if slope is not None:
+            self.seen["drift", gauge.id][run.id] = slope * len(trace)
+            trace = trace - traces.line(stretch, np.arange(len(trace)))
+            stretch = trace[: len(stretch)]
+        ratio = traces.noise_ratio(stretch, gauge.sigma)
+        if ratio is not None:
+            self.seen["noise-misstated", gauge.id][run.id] = ratio
+        self.rests[gauge.id][run.id] = traces.rest(stretch, gauge.sigma)
+        self.readings[run.id][gauge.id] = trace
+
+    def bench(self) -> Bench:
+        """The record without what is wrong in its traces."""
+        self._baselines()
+        if len(self.blank) == len(self.predicted):
+            # Nothing was measured at all: there is nothing to put right.
+            return Bench(self.record)
+        for run, id in self.silent:
+            self.readings[run].pop(id, None)
+        signals = {
+            k: Signals(s.time_us, self.readings[k])
+            for k, s in self.record.signals.items()
+            if k not in self.blank and self.readings[k]
+        }
+        gone = [k for k in self.record.signals if k not in signals]
+        lost = {at: rows for at, rows in self.lost.items() if at not in self.silent}
+        changed = bool(self.seen) or bool(gone)
+        return Bench(_without_runs(self.record, signals, gone) if changed else self.record, lost)
+
+    def _baselines(self):
+        """Levels that differ from run to run; one level in all runs is an effect, sensor-offset's neighbour."""
+        for id, found in self.rests.items():
+            sure = {k: (m, e) for k, (m, e) in found.items() if np.isfinite(e)}
+            if len(sure) < 2:
+                continue
+            means, errors = np.array(list(sure.values())).T
+            common = float(np.average(means, weights=errors**-2.0))
+            for run, mean, error in zip(sure, means, errors, strict=True):
+                others = float(np.median(means))
+                if abs(mean - others) > traces.SURE * error and abs(mean) > traces.SURE * error:
+                    self.seen["baseline", id][run] = mean
+                    self.readings[run][id] = self.readings[run][id] - (mean - min(others, common, key=abs))
+
+    def findings(self) -> list[Finding]:
+        """One finding for a gauge whose runs all show it, else one for each run."""
+        result = [
+            Finding("run-without-impact", run, probability=policy.PLAIN, corrected=True) for run in self.blank
+        ]
+        for (fault, id), runs in self.seen.items():
+            having = [k for k, s in self.record.signals.items() if id in s.readings and k not in self.blank]
+            everywhere = len(runs) == len(having)
+            for run, value in [(None, _shared(fault, runs))] if everywhere else runs.items():
+                result.append(Finding(fault, run, id, value, policy.PLAIN, FAULTS[fault].corrected))
+        return result
+
+
+def _shared(fault, runs):
+    """One value for all runs: how many spikes, the median of everything else."""
+    values = [v for v in runs.values() if v is not None]
+    if not values:
+        return None
+    return float(sum(values)) if fault == "spikes" else float(np.median(values))
+
+
+def _without_runs(record, signals, gone):
+    """The record with new traces; a run that lost all of them is left out, unless its scalars say something."""
+    blocks = [r for r in record.block.runs if r.id not in gone or r.observables]
+    kept = [r if r.id not in gone else msgspec.structs.replace(r, signals=None) for r in blocks]
+    return replace(record, block=msgspec.structs.replace(record.block, runs=kept), signals=signals)

@@ -1,0 +1,206 @@
+"""How much better a model fits the record when a slip is put right: a linear look, then a fit.
+
+Records that differ in a slip differ in their data and in their noise, so that not χ² but −2 log L is
+compared: χ², the penalty of the nuisances, and the logarithm of the noise of every sample that counts.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from sonicvacuum.discover.experiment import Experiment
+from sonicvacuum.discover.faults import policy
+from sonicvacuum.discover.faults.found import Bench
+from sonicvacuum.discover.faults.slips import Slip
+from sonicvacuum.discover.forward import Forward
+from sonicvacuum.discover.refit import Fit, fit
+from sonicvacuum.records import Record
+
+# Steps of the search for a size, and the Δχ² below which a step is the last.
+STEPS, LAST = 6, 0.3
+# Farthest size from where the search starts, in prior widths.
+LONGEST = 5.0
+
+
+@dataclass(frozen=True)
+class Model:
+    """A model fitted to a record: predictor, fit and −2 log L up to a constant of the raw data."""
+
+    bench: Bench
+    forward: Forward
+    fit: Fit
+
+    @property
+    def objective(self) -> float:
+        """−2 log L with the nuisances' prior."""
+        return self.fit.objective + noise_volume(self.forward.experiment)
+
+
+@dataclass(frozen=True)
+class Judged:
+    """A slip beside a model of the record with it.
+
+    Attributes:
+        slip: the hypothesis.
+        size: where it fits best.
+        gain: Δ(−2 log L) against the model of the record as it is.
+        log_bayes: natural log of the Bayes factor against it, prior of the slip left aside.
+        model: fitted to the record put right; None after the linear look.
+    """
+
+    slip: Slip
+    size: float
+    gain: float
+    log_bayes: float
+    model: Model | None = None
+
+    @property
+    def log_odds(self) -> float:
+        """Log of prior times Bayes factor."""
+        return self.log_bayes + policy.log_prior(self.slip.alternatives)
+
+
+def noise_volume(experiment: Experiment) -> float:
+    """Σ log σ² of all samples that count, their correlation included."""
+    sigma2 = experiment.sigma**2 * (1.0 - experiment.correlation**2)
+    counts = sum(
+        np.full(len(sigma2), len(r.time)) if r.present is None else r.present.sum(axis=1)
+        for r in experiment.runs
+    )
+    return float(np.sum(counts * np.log(sigma2))) if len(sigma2) else 0.0
+
+
+class Judge:
+    """Judges slips of one record beside one model of it.
+
+    Attributes:
+        model: of the record as it is.
+        make: record → data set; masks included.
+    """
+
+    def __init__(self, model: Model, make: Callable[[Bench], Experiment]):
+        self.model, self.make = model, make
+        self.simulations = 0
+        self._own = self._residuals(model.bench.record)
+
+    def _bench(self, record: Record) -> Bench:
+        return Bench(record, self.model.bench.lost)
+
+    def _forward(self, record):
+        return Forward(self.make(self._bench(record)), self.model.forward.threads)
+
+    def _residuals(self, record, afresh=False):
+        """Residuals and slopes of every run for a changed record, and its Σ log σ².
+
+        At the model's parameters; with `afresh` at nuisances of zero as well, (starts, runs) then.
+        """
+        forward, one = self._forward(record), self.model.fit
+        starts = np.stack([one.nu, 0.0 * one.nu][: 1 + afresh])
+        columns = forward.columns(one.hypothesis, np.repeat(one.u[None], len(starts), axis=0), starts)
+        self.simulations += forward.chains
+        found = []
+        for lane, nu in enumerate(starts):
+            parts = [c[lane].copy() for c in columns]
+            for run, part in enumerate(parts):
+                part[0] = forward.data(run) - part[0]
+            found.append((parts, nu))
+        return found, noise_volume(forward.experiment)
+
+    def look(self, slip: Slip) -> Judged:
+        """Gain as the slopes have it: one simulated experiment or two, no fit."""
+        (own,), volume = self._own
+        record, size = self.model.bench.record, slip.start
+        if slip.continuous and not size:
+            ((changed, _),), _ = self._residuals(slip.change(record, slip.step))
+            extra = [(a[0] - b[0]) / slip.step for a, b in zip(own[0], changed, strict=True)]
+            after, size = self._with_size(own, extra, slip)
+            after += volume
+        else:
+            changed, own_volume = self._residuals(slip.change(record, size), afresh=True)
+            after = min(self._least(*one) for one in changed)
+            after += volume if slip.continuous else own_volume
+        gain = self._least(*own) + volume - after
+        return Judged(slip, size, gain, 0.5 * gain + _occam(slip, size, gain))
+
+    def _normal(self, parts, nu, extra=None):
+        """Gradient, Hessian and χ² over all runs; the size of a slip is the last unknown."""
+        one, layout = self.model.fit, self.model.forward.layout
+        p, q = len(one.u), layout.size
+        n = p + q + (extra is not None)
+        gradient, hessian, chi2 = np.zeros(n), np.zeros((n, n)), 0.0
+        for run, part in enumerate(parts):
+            rows = part[1:] if extra is None else np.vstack([part[1:], extra[run]])
+            where = np.concatenate([np.arange(p), p + layout.local(run), np.arange(p + q, n)])
+            gradient[where] += rows @ part[0]
+            hessian[np.ix_(where, where)] += rows @ rows.T
+            chi2 += float(part[0] @ part[0])
+        at = np.arange(p, p + q)
+        gradient[at] -= nu
+        hessian[at, at] += 1.0
+        return gradient, hessian, chi2 + float(nu @ nu)
+
+    def _least(self, parts, nu):
+        """Least χ² in the linearised model."""
+        gradient, hessian, value = self._normal(parts, nu)
+        return value - float(gradient @ np.linalg.solve(_ridged(hessian), gradient))
+
+    def _with_size(self, own, extra, slip):
+        """Least χ² with the size of a slip free, and the step to it."""
+        gradient, hessian, value = self._normal(*own, extra)
+        hessian[-1, -1] += (2.0 * slip.width) ** -2.0
+        step = np.linalg.solve(_ridged(hessian), gradient)
+        return value - float(gradient @ step), float(step[-1])
+
+    def follow(self, judged: Judged) -> Judged:
+        """The slip fitted: its size with all else, the record changed with it."""
+        slip = judged.slip
+        size, model = self._fitted(slip, judged.size)
+        for _ in range(STEPS if slip.continuous else 0):
+            inner = Judge(model, self.make)
+            new_size, new = self._fitted(slip, size + inner._step(slip), model.fit)
+            self.simulations += inner.simulations
+            gained = model.fit.objective - new.fit.objective
+            if gained > 0.0:
+                size, model = new_size, new
+            if gained < LAST:
+                break
+        gain = self._value(slip, self.model) - self._value(slip, model)
+        return Judged(slip, size, gain, 0.5 * gain + _occam(slip, size, gain), model)
+
+    def _step(self, slip):
+        """Step of a slip's size from a record that is changed already; sizes add up."""
+        (own,), _ = self._own
+        ((changed, _),), _ = self._residuals(slip.change(self.model.bench.record, slip.step))
+        extra = [(a[0] - b[0]) / slip.step for a, b in zip(own[0], changed, strict=True)]
+        return self._with_size(own, extra, slip)[1]
+
+    def _value(self, slip, model):
+        """−2 log L; without the volume of the noise for a change that only rescales."""
+        return model.fit.objective if slip.continuous else model.objective
+
+    def _fitted(self, slip, size, start: Fit | None = None):
+        far = LONGEST * slip.width
+        size = float(np.clip(size, slip.start - far, slip.start + far)) if slip.continuous else 0.0
+        bench = self._bench(slip.change(self.model.bench.record, size))
+        forward = Forward(self.make(bench), self.model.forward.threads)
+        one = start or self.model.fit
+        nu = np.stack([one.nu, 0.0 * one.nu][: 2 - bool(start)])
+        found = fit(forward, one.hypothesis, np.repeat(one.u[None], len(nu), axis=0), nu)
+        self.simulations += forward.chains
+        return size, Model(bench, forward, found)
+
+
+def _ridged(hessian):
+    """A matrix that can be solved with where a nuisance is known exactly."""
+    return hessian + 1e-9 * np.diag(np.maximum(np.diag(hessian), 1e-9))
+
+
+def _occam(slip, size, gain):
+    """Log of the Occam factor: width of the posterior times the prior's density at the size."""
+    if not slip.continuous:
+        return slip.occam
+    sigma = max(abs(size), 1e-12) / math.sqrt(max(gain, 1.0))
+    density = 1.0 / (math.pi * slip.width * (1.0 + (size / slip.width) ** 2))
+    return min(0.0, math.log(max(math.sqrt(2.0 * math.pi) * sigma * density, 1e-12)))

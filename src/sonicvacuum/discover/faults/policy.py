@@ -1,0 +1,32 @@
+"""Numbers that decide between a slip and an effect, each with its reason."""
+
+import math
+
+# Prior of one kind of slip; an effect of the catalogue has about twice as much, none thirty times. A
+# laboratory makes some slip in one record of five or so, and there are a score of kinds.
+PRIOR = 0.01
+# Δχ² that a slip has to gain over the nominal model before it is weighed: the largest of about fifty
+# alternatives (a score of kinds at their places) exceeds it by chance in one null of a thousand.
+LEAST_GAIN = 18.0
+# A slip is put right before any effect is searched for where it takes away this share of all misfit ...
+SHARE = 0.9
+# ... and gains so much that no prior matters.
+SURE_GAIN = 200.0
+# A slip that leaves more than this share of the misfit, whatever else is added, is no explanation.
+LEFT = 0.5
+# Slips that are followed to their minimum after a linear look at all of them.
+FOLLOWED = 4
+# No more slips than this are put right in one record: a record with more should be made anew.
+MOST = 3
+# Probabilities below this are not worth a line.
+SHOWN = 0.05
+# Probability of what the traces show by themselves, far beyond their noise; never 1.
+PLAIN = 0.999
+# χ² of the nominal model above its number of data, and of its nuisances above theirs, in standard deviations
+# of χ², from which slips are looked for.
+SUSPICIOUS = 3.0
+
+
+def log_prior(alternatives: int) -> float:
+    """Log prior of one slip of a kind that has so many alternatives in a record."""
+    return math.log(PRIOR / max(1, alternatives))

@@ -1,0 +1,160 @@
+"""The hypotheses: every slip that a record may hide and that only the model can tell."""
+
+import itertools
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+from sonicvacuum.discover.faults import changes
+from sonicvacuum.discover.faults.found import Finding
+from sonicvacuum.records import Record
+
+# Prior widths of continuous slips: logarithms of ratios, shifts in microseconds. Scales and light gates err
+# by a few percent, a clock by a few parts in a thousand; tails are those of a Cauchy distribution.
+WIDTH = {
+    "bead-mass": 0.05,
+    "bead-size": 0.03,
+    "striker-mass": 0.1,
+    "speed-common": 0.05,
+    "gain-common": 0.1,
+    "run-off": 0.1,
+    "clock": 0.01,
+    "gauge-delayed": 20.0,
+}
+
+
+@dataclass(frozen=True)
+class Slip:
+    """One hypothesis.
+
+    Attributes:
+        fault: key of `table.FAULTS`.
+        change: (record, size) → the record put right; sizes as in `changes`.
+        run, sensor: where, as in `Finding`.
+        alternatives: of the same kind in this record, this one among them.
+        width: prior width of the size; 0: there is no size, the change is whole.
+        step: for finite differences of the size.
+        value: size → value that is said.
+        occam: log of the prior's price for what the change itself took from the data.
+        start: size from which the search starts.
+    """
+
+    fault: str
+    change: Callable[[Record, float], Record]
+    run: str | None = None
+    sensor: str | tuple[str, ...] | None = None
+    alternatives: int = 1
+    width: float = 0.0
+    step: float = 1e-4
+    value: Callable[[float], float | None] = math.exp
+    occam: float = 0.0
+    start: float = 0.0
+
+    @property
+    def continuous(self) -> bool:
+        """Whether it has a size."""
+        return self.width > 0.0
+
+    def finding(self, size: float, probability: float = 1.0) -> Finding:
+        """What is said of it."""
+        return Finding(self.fault, self.run, self.sensor, self.value(size), probability)
+
+
+def hypotheses(record: Record) -> list[Slip]:
+    """All slips of a record, except those of time zero, which need the model's readings."""
+    return [*_discrete(record), *_sizes(record)]
+
+
+def _discrete(record):
+    embedded = [g for g in record.gauges if g.bead is not None]
+    yield from _swaps([g.id for g in record.gauges])
+    moves = [(g, by) for g in embedded for by in (-1, 1) if 1 <= g.bead + by <= record.beads]
+    taken = {g.bead for g in embedded}
+    for g, by in moves:
+        if g.bead + by in taken:
+            continue
+        yield Slip(
+            "gauge-misplaced",
+            partial(_ignoring, changes.gauge_moved, g.id, by),
+            sensor=g.id,
+            alternatives=len(moves),
+            value=partial(_constant, float(g.bead + by)),
+        )
+    yield from _counts(record, embedded)
+    yield from _exchanged(record)
+
+
+def _swaps(ids):
+    pairs = list(itertools.combinations(ids, 2))
+    for one, two in pairs:
+        change = partial(_ignoring, changes.gauges_swapped, one, two)
+        yield Slip("gauges-swapped", change, None, (one, two), len(pairs), value=partial(_constant, None))
+
+
+def _counts(record, embedded):
+    if record.beads < 2 or record.specimen.bodies.exceptions:
+        return
+    ends = (False, True) if embedded else (False,)
+    for by, from_wall in itertools.product((-1, 1), ends):
+        places = [g.bead + (by if from_wall else 0) for g in embedded]
+        if all(1 <= p <= record.beads + by for p in places):
+            change = partial(_ignoring, changes.bead_count, by, from_wall)
+            value = partial(_constant, float(record.beads + by))
+            yield Slip("bead-count", change, alternatives=2 * len(ends), value=value)
+
+
+def _exchanged(record):
+    pairs = [
+        (a, b)
+        for a, b in itertools.combinations(record.block.runs, 2)
+        if a.signals and b.signals and a.striker != b.striker
+    ]
+    for a, b in pairs:
+        change = partial(_ignoring, changes.runs_swapped, a.id, b.id)
+        value = partial(_constant, None)
+        yield Slip("runs-swapped", change, f"{a.id} and {b.id}", None, len(pairs), value=value)
+
+
+def _sizes(record):
+    def one(fault, change, alternatives=1, **where):
+        return Slip(fault, change, alternatives=alternatives, width=WIDTH[fault], **where)
+
+    yield one("bead-mass", partial(_keyed, changes.beads, "mass_g"))
+    yield one("bead-size", partial(_keyed, changes.beads, "diameter_mm"))
+    yield one("striker-mass", partial(_keyed, changes.strikers, "mass_g"))
+    yield one("speed-common", partial(_keyed, changes.strikers, "speed_m_s"))
+    runs = [r.id for r in record.block.runs]
+    if len(runs) > 1:
+        for run in runs:
+            yield one("run-off", partial(_one_speed, run), len(runs), run=run)
+    if record.signals:
+        yield one("gain-common", changes.gains)
+        yield one("clock", changes.clock, step=1e-3)
+    ids = [g.id for g in record.gauges] if record.signals else []
+    for id in ids if len(ids) > 1 else []:
+        yield one(
+            "gauge-delayed", partial(_late, id), len(ids), sensor=id, step=0.05, value=float
+        )
+
+
+def _ignoring(change, *given):
+    """Call with the record between what was given and a size that does not exist."""
+    *arguments, record, _ = given
+    return change(record, *arguments)
+
+
+def _keyed(change, key, record, size):
+    return change(record, key, size)
+
+
+def _one_speed(run, record, size):
+    return changes.strikers(record, "speed_m_s", size, (run,))
+
+
+def _late(id, record, size):
+    return changes.delayed(record, id, size)
+
+
+def _constant(value, _):
+    return value

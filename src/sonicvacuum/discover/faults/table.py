@@ -1,0 +1,119 @@
+"""The vocabulary of slips: id, what it is in the words of the bench, what to check there."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Fault:
+    """The header of one kind of slip.
+
+    Attributes:
+        id: canonical name, never given another meaning.
+        says: what it is; `{sensor}`, `{run}` and `{value}` stand for those of the record.
+        check: what to look at at the bench.
+        unit: of the value, "" where it is a ratio or a number.
+        corrected: whether the rest of the verdict is of the record put right.
+        alias: effect that moves the same data in the same way, "" where there is none.
+    """
+
+    id: str
+    says: str
+    check: str
+    unit: str = ""
+    corrected: bool = True
+    alias: str = ""
+
+
+FAULTS: dict[str, Fault] = {
+    f.id: f
+    for f in (
+        Fault(
+            "noise-misstated",
+            "the noise of {sensor} before the pulse is {value} times the stated one",
+            "check the stated noise and the channel's range",
+            corrected=False,
+        ),
+        Fault(
+            "spikes",
+            "{value} samples of {sensor} stand far off their neighbours",
+            "check shielding and connectors",
+        ),
+        Fault(
+            "drift",
+            "{sensor} drifts by {value} over the record before the pulse",
+            "check the coupling and the amplifier's time constant",
+        ),
+        Fault(
+            "baseline",
+            "{sensor} in run {run} does not rest at 0 but at {value}",
+            "check the channel's zero before each run",
+        ),
+        Fault(
+            "pickup",
+            "{sensor} picks up a steady oscillation at {value} kHz",
+            "check grounding, lamps, pumps and supplies",
+            "kHz",
+        ),
+        Fault("gauges-swapped", "gauges {sensor} look swapped", "check the cables and the channels' names"),
+        Fault("gauge-inverted", "gauge {sensor} has the wrong sign", "check its poles and the channel's sign"),
+        Fault(
+            "gauge-dead",
+            "gauge {sensor} shows no pulse where one must have passed",
+            "check its cable, amplifier and channel",
+        ),
+        Fault("gauge-clipped", "gauge {sensor} is cut off at {value}", "check the channel's range"),
+        Fault(
+            "gauge-delayed",
+            "gauge {sensor} is late by {value} us",
+            "check the delays set in its channel and its cable",
+            "us",
+        ),
+        Fault(
+            "gauge-misplaced",
+            "gauge {sensor} seems to sit in bead {value}",
+            "count the beads from the struck end",
+        ),
+        Fault(
+            "gain-common",
+            "all gauges read {value} times the force",
+            "check the calibration that all gauges share",
+        ),
+        Fault(
+            "runs-swapped",
+            "runs {run} look exchanged",
+            "check which file belongs to which striker speed",
+        ),
+        Fault("run-off", "run {run} was struck at {value} times the stated speed", "check that run's speed"),
+        Fault(
+            "run-without-impact",
+            "run {run} shows no pulse in any gauge",
+            "check whether the striker was let go and the recorder armed",
+        ),
+        Fault("bead-count", "the chain seems to have {value} beads", "count the beads"),
+        Fault("bead-mass", "the beads weigh {value} times the stated mass", "weigh the beads"),
+        Fault("bead-size", "the beads measure {value} times the stated diameter", "measure the beads"),
+        Fault(
+            "striker-mass",
+            "the striker weighs {value} times the stated mass",
+            "weigh the striker",
+            alias="striker-error",
+        ),
+        Fault(
+            "speed-common",
+            "all strikers move at {value} times the stated speed",
+            "check drop heights, or the distance between the light gates",
+            alias="striker-error",
+        ),
+        Fault(
+            "clock",
+            "the recorder's time runs {value} times as fast as stated",
+            "check the sampling interval",
+        ),
+        Fault(
+            "time-zero",
+            "the stated time zero is {value} us after the impact",
+            "check what the recorder was triggered on: the impact, or the arrival at a gauge",
+            "us",
+        ),
+    )
+}
