@@ -91,7 +91,10 @@ def discover(*records: Record, threads: int | None = None, catalogue: Catalogue 
         reasons=[*found.reasons, *verdict.corrections(outcome.findings)],
         alarms=found.alarms,
         timing_s=clock.seconds(),
-        simulations=forward.chains + (found.counted.forward.chains if found.counted else 0),
+        simulations=forward.chains
+        + outcome.simulations
+        + (found.counted.forward.chains if found.counted else 0),
+        faults=verdict.faults(outcome.findings),
         fit=verdict.goodness_of_fit(*fits, found.smooth or forward.experiment.model_floor_rel or 0.0, wider),
         sources=verdict.sources(catalogue),
         warnings=_doubts(found, records[0]) or UNSET,

@@ -168,6 +168,8 @@ class Verdict(_Part, kw_only=True):
         fit: goodness of fit; None in verdicts written before it was tested.
         nuisances: what the record leaves open besides speeds, time zeros, the beads' modulus and stated gains
             → what is found of it in the extended model; absent without any.
+        faults: slips of the laboratory, most probable first; where one is put right, all else is of the
+            record put right, and `reasons` says so.
     """
 
     format: int = 1
@@ -189,6 +191,7 @@ class Verdict(_Part, kw_only=True):
     warnings: list[str] | UnsetType = UNSET
     fit: GoodnessOfFit | None = None
     nuisances: dict[str, Known] | UnsetType = UNSET
+    faults: list[Fault] = []
 
     @property
     def probability(self) -> float | None:

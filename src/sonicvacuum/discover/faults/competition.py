@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.stats import chi2 as chi_squared
 
-from sonicvacuum.discover import evidence
+from sonicvacuum.discover import evidence, explanations
 from sonicvacuum.discover.experiment import Experiment
 from sonicvacuum.discover.faults import policy
 from sonicvacuum.discover.faults.examine import examine
@@ -264,10 +264,8 @@ def unexplained(found: Investigation) -> bool:
 
 def weight_of(found: Investigation) -> float:
     """Log of prior times evidence of all explanations of a record together, against its nominal model's."""
-    logs = evidence.log_weights({c.effect: c.log_bayes for c in found.candidates})
-    each = math.log((1.0 - evidence.PRIOR_NONE - evidence.PRIOR_UNKNOWN) / len(logs))
-    sets = [len(c.effects) * each + c.log_bayes for c in found.pairs]
-    return float(np.logaddexp.reduce([*logs.values(), *sets]))
+    logs = explanations.log_weights(found.candidates, found.combinations, found.alike)
+    return float(np.logaddexp.reduce(list(logs.values())))
 
 
 # Slips and an effect within this Δχ² explain alike.
