@@ -70,6 +70,13 @@ def _folders(records, out):
 
 
 def _sentence(verdict):
+    from sonicvacuum.report.words import share, slip
+
+    slips = "; ".join(f"{slip(f)} (probability {share(f.probability)})" for f in verdict.faults)
+    return f"check first: {slips}; missing: {_named(verdict)}" if slips else _named(verdict)
+
+
+def _named(verdict):
     if not verdict.named and verdict.sees_nothing:
         return "none, but no effect of the catalogue would show in these data"
     named = verdict.named or ["none"]

@@ -31,6 +31,19 @@ def check(folders, as_json):
     from sonicvacuum.records import commands
 
     click.echo(commands.check(folders, as_json))
+    if not as_json:
+        _echo_slips(folders)
+
+
+def _echo_slips(folders):
+    """What the traces alone betray, as `discover` would say it."""
+    from sonicvacuum.discover.faults.examine import examine
+    from sonicvacuum.records import read
+    from sonicvacuum.report.words import slip
+
+    for folder in folders:
+        for found in examine(read(folder))[1]:
+            click.echo(f"{folder}: check first: {slip(found)}")
 
 
 record.add_command(import_)

@@ -28,6 +28,8 @@ from sonicvacuum.effects import Catalogue
 from sonicvacuum.files import replacing
 
 
+# How the line begins that says which slips were put right.
+PUT_RIGHT = "all else is of the record put right"
 FaultId = Literal[tuple(FAULTS)]
 
 
@@ -244,7 +246,7 @@ def faults(findings: Iterable[Finding]) -> list[Fault]:
 def corrections(findings: Iterable[Finding]) -> list[str]:
     """What is said of a record that was put right, one line; nothing of one that was not."""
     right = dict.fromkeys(f.fault for f in findings if f.corrected)
-    return [f"all else is of the record put right: {', '.join(right)}"] if right else []
+    return [f"{PUT_RIGHT}: {', '.join(right)}"] if right else []
 
 
 def sources(catalogue: Catalogue, ids=None) -> Sources:

@@ -73,6 +73,8 @@ def _told(folder, verdict, model, tables, catalogue):
     return {
         "name": name,
         "headline": words.headline(verdict, catalogue) + words.moved_modulus(verdict, model),
+        "slips": words.slips(verdict),
+        "corrected": words.corrected(verdict),
         "where": words.where(verdict, tables["where"]),
         "parameters": _parameters(verdict, catalogue),
         "nuisances": words.nuisances(model),

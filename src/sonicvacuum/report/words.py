@@ -8,7 +8,8 @@ from collections import Counter
 
 from sonicvacuum.discover.explanations import key
 from sonicvacuum.discover.locate import DISCOVERY_RATE
-from sonicvacuum.discover.verdict import Gap, Model, Next, Verdict
+from sonicvacuum.discover.faults.table import FAULTS
+from sonicvacuum.discover.verdict import PUT_RIGHT, Fault, Gap, Model, Next, Verdict
 from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.report.tables import number
 
@@ -57,6 +58,32 @@ def joined(parts: list[str], last: str = "and") -> str:
 def plural(count: int, word: str) -> str:
     """Count and word."""
     return f"{count} {word}{'' if count == 1 else 's'}"
+
+
+def slips(verdict: Verdict) -> list[str]:
+    """What to check at the bench first, one line for each slip of the laboratory; most probable first."""
+    return [_slip(one) for one in verdict.faults]
+
+
+def _slip(one) -> str:
+    text = f"{slip(one)[0].upper()}{slip(one)[1:]}: {FAULTS[one.fault].check}"
+    return f"{text}. That it is so is {in_words(one.probability)}."
+
+
+def corrected(verdict: Verdict) -> str:
+    """That what follows is of the record put right, "" where nothing was."""
+    said = next((r for r in verdict.reasons if r.startswith(PUT_RIGHT)), "")
+    return f"{said[0].upper()}{said[1:]}." if said else ""
+
+
+def slip(one: Fault) -> str:
+    """One slip in a few words."""
+    header = FAULTS[one.fault]
+    sensors = [one.sensor] if isinstance(one.sensor, str) else (one.sensor or ["a gauge"])
+    value = "some" if one.value is None else f"{one.value:.4g}"
+    text = header.says.format(sensor=joined(list(sensors)), run=one.run or "all runs", value=value)
+    place = one.run and "{run}" not in header.says
+    return f"{text} in run {one.run}" if place else text
 
 
 def effects_of(verdict: Verdict) -> list[str]:

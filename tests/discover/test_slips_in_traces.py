@@ -1,0 +1,105 @@
+"""Slips that traces show by themselves: every kind is found, named with its place, and put right; pure noise
+and true effects raise none.
+"""
+
+import numpy as np
+import pytest
+from made_records import SIGMA, made
+from made_slips import altered
+
+from sonicvacuum.discover.faults import traces
+from sonicvacuum.discover.faults.competition import predicted
+from sonicvacuum.discover.faults.examine import examine
+from sonicvacuum.discover.problem import together
+
+TIME = np.arange(700.0)
+RNG = np.random.default_rng(np.random.SeedSequence(11))
+NOISE = RNG.normal(size=700)
+AT = RNG.choice(700, 3, replace=False)
+
+
+def spiked(trace):
+    """Three samples in 700, 2 N off."""
+    changed = trace.copy()
+    changed[AT] += 2.0
+    return changed
+
+
+# Fault → run and gauge it is made in (None: all), what is made of the trace, value expected (None: none).
+MADE = {
+    "gauge-dead": (None, "g7", lambda _: SIGMA * NOISE, None),
+    "gauge-inverted": ("v1", "wall", lambda y: -y, None),
+    "gauge-clipped": ("v1", "g4", lambda y: np.minimum(y, 3.0), 3.0),
+    "spikes": (None, "g7", spiked, 6.0),
+    "drift": (None, "wall", lambda y: y + 0.5 * TIME / 700.0, 0.5),
+    "baseline": ("v1", "g7", lambda y: y + 0.05, 0.05),
+    "pickup": (None, "wall", lambda y: y + 0.06 * np.cos(2.0 * np.pi * 0.0813 * TIME), 81.3),
+    "noise-misstated": (None, "wall", lambda y: y + 3.0 * SIGMA * NOISE, np.hypot(2.0, 3.0) / 2.0),
+}
+
+
+@pytest.fixture(scope="module")
+def model(empty):
+    """What the nominal model reads."""
+    return predicted(together((empty,)))
+
+
+@pytest.mark.parametrize("fault", MADE)
+def test_a_slip_in_a_trace_is_found_with_its_place(empty, model, fault):
+    run, gauge, change, value = MADE[fault]
+    _, found = examine(altered(empty, gauge, change, run), model)
+    (one,) = found
+    assert (one.fault, one.run, one.sensor) == (fault, run, gauge)
+    # The quiet stretch has 100 to 300 samples: noise to a fifteenth, a slope to a fifth of what was added.
+    assert value is None or one.value == pytest.approx(value, rel=0.2)
+
+
+def test_a_run_without_impact_is_left_out(empty, model):
+    record = empty
+    for gauge in ("g4", "g7", "wall"):
+        record = altered(record, gauge, lambda _: SIGMA * NOISE, "v0")
+    bench, (one,) = examine(record, model)
+    assert (one.fault, one.run, one.sensor) == ("run-without-impact", "v0", None)
+    assert [r.id for r in bench.record.runs] == ["v1"]
+
+
+def test_what_can_be_put_right_is(empty, model):
+    inverted, _ = examine(altered(empty, "g4", lambda y: -y), model)
+    assert inverted.record.signals["v0"].equals(empty.signals["v0"])
+    dead, _ = examine(altered(empty, "g7", lambda _: SIGMA * NOISE), model)
+    assert "g7" not in dead.record.signals["v0"].readings
+    spiky, _ = examine(altered(empty, "g7", spiked), model)
+    masked = spiky.masked(together((spiky.record,)))
+    assert masked.runs[0].present[1].sum() == 700 - 3
+    assert not masked.runs[0].present[1, AT].any()
+
+
+def test_a_record_without_slips_is_left_as_it_is(empty, model):
+    bench, found = examine(empty, model)
+    assert found == []
+    assert bench.record is empty
+
+
+def test_pure_noise_raises_no_alarm():
+    # 100 stretches of 300 samples: six standard errors and a line's p of 1e-6 let pass less than one in 1e4
+    # of them, so that a single alarm has a probability below 1 %.
+    rng = np.random.default_rng(np.random.SeedSequence(12))
+    for _ in range(100):
+        noise = rng.normal(size=300)
+        assert traces.noise_ratio(noise, 1.0) is None
+        assert traces.drift(noise, 1.0) is None
+        assert traces.pickup(noise) is None
+        assert not traces.spikes(noise, 1.0).any()
+        assert not traces.clipped(noise, 1.0).any()
+
+
+@pytest.mark.parametrize("effect", ["viscous-drag", "sensor-droop", "sensor-gain", "sensor-offset"])
+def test_true_effects_are_no_slips_of_traces(model, effect):
+    given = {
+        "viscous-drag": {"rate_per_s": 3000.0},
+        "sensor-droop": {"tau_us": 100.0},
+        "sensor-gain": {"gain_ratio": 1.3, "sensor": 1},
+        "sensor-offset": {"offset_fraction": 0.2, "sensor": 1},
+    }[effect]
+    record, _ = made([(effect, given)], seed=21)
+    assert examine(record, model)[1] == []

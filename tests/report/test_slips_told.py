@@ -1,0 +1,47 @@
+"""Slips of the laboratory on the page and in the sentence of the command line."""
+
+import msgspec
+import pytest
+from made_verdicts import KINDS, verdict, write
+
+from sonicvacuum.cli.discover import _sentence
+from sonicvacuum.discover.faults.table import FAULTS
+from sonicvacuum.discover.verdict import PUT_RIGHT, Fault, Verdict, write_json
+from sonicvacuum.report import record, words
+
+SWAPPED = Fault(fault="gauges-swapped", run=None, sensor=["g9", "g5"], probability=0.998, value=None)
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_every_slip_has_words_for_the_bench(fault):
+    one = Fault(fault=fault, run="v1", sensor="g4", probability=0.9, value=1.03)
+    (line,) = words.slips(verdict(faults=[one]))
+    assert FAULTS[fault].check in line
+    assert "{" not in line
+    everywhere = Fault(fault=fault, run=None, sensor=None, probability=0.9, value=None)
+    assert "None" not in words.slips(verdict(faults=[everywhere]))[0]
+
+
+def test_the_sentence_names_slips_first():
+    text = _sentence(verdict(faults=[SWAPPED]))
+    assert text.startswith("check first: gauges g9 and g5 look swapped (probability above 0.99); missing: kuwabara")
+
+
+def test_the_page_says_what_to_check_first_and_escapes_it(tmp_path):
+    folder = write(tmp_path / "one", next(iter(KINDS)))
+    odd = Fault(fault="run-off", run="<b>v1</b>", sensor=None, probability=0.9, value=1.2)
+    reasons = [f"{PUT_RIGHT}: gauges-swapped"]
+    write_json(verdict(faults=[SWAPPED, odd], reasons=reasons), folder / "verdict.json")
+    text = record.write_page(folder).read_text()
+    assert text.index("Check your set-up first") < text.index("Where they disagree")
+    assert "Gauges g9 and g5 look swapped: check the cables" in text
+    assert "<b>v1</b>" not in text
+    assert "All else is of the record put right: gauges-swapped." in text
+
+
+def test_verdicts_without_slips_and_of_older_days_are_read():
+    content = msgspec.to_builtins(verdict())
+    del content["faults"]
+    assert msgspec.convert(content, Verdict).faults == []
+    with pytest.raises(msgspec.ValidationError, match="faults"):
+        msgspec.convert({**content, "faults": [{**msgspec.to_builtins(SWAPPED), "fault": "gremlins"}]}, Verdict)
