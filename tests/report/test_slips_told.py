@@ -24,7 +24,9 @@ def test_every_slip_has_words_for_the_bench(fault):
 
 def test_the_sentence_names_slips_first():
     text = _sentence(verdict(faults=[SWAPPED]))
-    assert text.startswith("check first: gauges g9 and g5 look swapped (probability above 0.99); missing: kuwabara")
+    assert text.startswith(
+        "check first: gauges g9 and g5 look swapped (probability above 0.99); missing: kuwabara"
+    )
 
 
 def test_the_page_says_what_to_check_first_and_escapes_it(tmp_path):
@@ -44,4 +46,6 @@ def test_verdicts_without_slips_and_of_older_days_are_read():
     del content["faults"]
     assert msgspec.convert(content, Verdict).faults == []
     with pytest.raises(msgspec.ValidationError, match="faults"):
-        msgspec.convert({**content, "faults": [{**msgspec.to_builtins(SWAPPED), "fault": "gremlins"}]}, Verdict)
+        msgspec.convert(
+            {**content, "faults": [{**msgspec.to_builtins(SWAPPED), "fault": "gremlins"}]}, Verdict
+        )

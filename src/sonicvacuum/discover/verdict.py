@@ -16,17 +16,16 @@ from msgspec import UNSET, Struct, UnsetType
 
 from sonicvacuum.discover.degenerate import Limit
 from sonicvacuum.discover.explanations import key
-from sonicvacuum.discover.forward import Forward
-from sonicvacuum.discover.goodness import Goodness
 from sonicvacuum.discover.faults.found import Finding
 from sonicvacuum.discover.faults.table import FAULTS
+from sonicvacuum.discover.forward import Forward
+from sonicvacuum.discover.goodness import Goodness
 from sonicvacuum.discover.heldout import HeldOut
 from sonicvacuum.discover.locate import Place
 from sonicvacuum.discover.refit import Fit
 from sonicvacuum.discover.rounds import Investigation
 from sonicvacuum.effects import Catalogue
 from sonicvacuum.files import replacing
-
 
 # How the line begins that says which slips were put right.
 PUT_RIGHT = "all else is of the record put right"

@@ -7,8 +7,8 @@ import math
 from collections import Counter
 
 from sonicvacuum.discover.explanations import key
-from sonicvacuum.discover.locate import DISCOVERY_RATE
 from sonicvacuum.discover.faults.table import FAULTS
+from sonicvacuum.discover.locate import DISCOVERY_RATE
 from sonicvacuum.discover.verdict import PUT_RIGHT, Fault, Gap, Model, Next, Verdict
 from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.report.tables import number

@@ -51,16 +51,15 @@ def bead_count(record: Record, by: int, from_wall: bool = False) -> Record:
     sensors = record.block.sensors
     if from_wall:
         sensors = [
-            s if s.bead is None else msgspec.structs.replace(s, bead=s.bead + by) for s in record.block.sensors
+            s if s.bead is None else msgspec.structs.replace(s, bead=s.bead + by)
+            for s in record.block.sensors
         ]
     return _block(record, chain=changed, sensors=sensors)
 
 
 def gauge_moved(record: Record, id: str, by: int) -> Record:
     """A gauge so many beads further on."""
-    moved = [
-        msgspec.structs.replace(s, bead=s.bead + by) if s.id == id else s for s in record.block.sensors
-    ]
+    moved = [msgspec.structs.replace(s, bead=s.bead + by) if s.id == id else s for s in record.block.sensors]
     return _block(record, sensors=moved)
 
 
@@ -90,7 +89,8 @@ def gains(record: Record, log_ratio: float) -> Record:
     ratio = math.exp(-log_ratio)
     sensors = [_scaled_noise(s, ratio) for s in record.block.sensors]
     signals = {
-        k: Signals(s.time_us, {g: v * ratio for g, v in s.readings.items()}) for k, s in record.signals.items()
+        k: Signals(s.time_us, {g: v * ratio for g, v in s.readings.items()})
+        for k, s in record.signals.items()
     }
     return replace(_block(record, sensors=sensors), signals=signals)
 
@@ -112,9 +112,7 @@ def clock(record: Record, log_ratio: float) -> Record:
 
 def time_zero(record: Record, late_us: dict[str, float], sigma_us: float) -> Record:
     """Times of each run put later by so many microseconds, and known only so well from there on."""
-    signals = {
-        k: Signals(s.time_us + late_us.get(k, 0.0), s.readings) for k, s in record.signals.items()
-    }
+    signals = {k: Signals(s.time_us + late_us.get(k, 0.0), s.readings) for k, s in record.signals.items()}
     given = record.block.trigger_sigma_us
     wider = given if given == "unknown" else max(given, sigma_us)
     return replace(_block(record, trigger_sigma_us=wider), signals=signals)
@@ -127,9 +125,7 @@ def delayed(record: Record, id: str, late_us: float) -> Record:
         if id not in signals.readings:
             return signals
         samples = late_us * 1e-6 / signals.interval_s
-        return Signals(
-            signals.time_us, {**signals.readings, id: earlier(signals.readings[id], samples)}
-        )
+        return Signals(signals.time_us, {**signals.readings, id: earlier(signals.readings[id], samples)})
 
     return replace(record, signals={k: shifted(s) for k, s in record.signals.items()})
 

@@ -1,14 +1,14 @@
-"""Slips and effects in competition for the same misfit: what is put right, what is said of it, how sure it is.
+"""Slips and effects in competition for the same misfit: what is put right, what is said of it, how sure.
 
-First what traces show by themselves is put right. Then, while the nominal model leaves a misfit, every slip is
-looked at; one that takes away nearly all of it is put right before any effect is searched for. The search for
-effects follows, and what it finds is weighed against the best of the other slips: the evidence of all
+First what traces show by themselves is put right. Then, while the nominal model leaves a misfit, every slip
+is looked at; one that takes away nearly all of it is put right before any effect is searched for. The search
+for effects follows, and what it finds is weighed against the best of the other slips: the evidence of all
 explanations of the record as it is against that of all explanations of the record put right. Where effects
 leave a misfit, slips are looked at once more beside them.
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -26,6 +26,7 @@ from sonicvacuum.discover.faults.timing import time_zero, with_starts
 from sonicvacuum.discover.forward import Forward
 from sonicvacuum.discover.hypothesis import Hypothesis
 from sonicvacuum.discover.problem import together
+from sonicvacuum.discover.refit import polish
 from sonicvacuum.discover.rounds import Investigation, investigate, nominal
 from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.records import Record
@@ -101,30 +102,35 @@ class Search:
     def run(self) -> Outcome:
         """Slips that leave nothing to doubt, then effects, then the rest of the slips against them."""
         for _ in range(policy.MOST):
-            model = self._nominal()
-            ranked = self._ranked(model) if suspicious(model) else []
-            if not ranked or not _obvious(ranked[0], model):
+            model = self.nominal()
+            ranked = self.ranked(model) if suspicious(model) else []
+            if not ranked or not obvious(ranked[0], model):
                 break
             self._accept(ranked, ranked[0])
         else:
             ranked = []
         found = self._investigate()
         for _ in range(policy.MOST):
-            better = self._instead(found, model, ranked)
+            better = self._instead(found, ranked)
             if better is None:
                 break
-            found, model, ranked = better
+            found, ranked = better, []
         order = sorted(self.findings, key=lambda f: -f.probability)
         return Outcome(found, tuple(order), self.bench.record, self.simulations)
 
-    def _nominal(self) -> Model:
+    def nominal(self) -> Model:
+        """The nominal model of the record as far as it was put right."""
         forward = Forward(self.make(self.bench), self.threads)
-        return Model(self.bench, forward, nominal(forward))
+        found = nominal(forward)
+        # Far from the data nuisances creep; a slip must not be asked to do what they would have done.
+        found = found if found.settled else polish(forward, found)
+        self.simulations += forward.chains
+        return Model(self.bench, forward, found)
 
     def _investigate(self) -> Investigation:
         return investigate(self.make(self.bench), self.threads)
 
-    def _ranked(self, model: Model) -> list[Judged]:
+    def ranked(self, model: Model) -> list[Judged]:
         """Slips that gain enough beside a model, fitted, the likeliest first."""
         judge, record = Judge(model, self.make), model.bench.record
         seen = predicted(self.make(model.bench), self.threads)
@@ -152,24 +158,27 @@ class Search:
                 self.findings.append(replace(finding, corrected=judged is chosen))
         self.bench = chosen.model.bench
 
-    def _instead(self, found: Investigation, model: Model, ranked: list[Judged]):
+    def _instead(self, found: Investigation, ranked: list[Judged]) -> Investigation | None:
         """The investigation of the record with one slip more put right, where that explains it better."""
-        left = unexplained(found)
+        left, size = unexplained(found), float(found.sizes.sum())
         rivals = ranked
-        if left and found.final is not found.null:
-            beside = Model(self.bench, found.forward, found.final)
-            rivals = [*ranked, *self._beside(beside, found)]
-        if not rivals:
-            return None
+        if left:
+            # What is left is more than a slip that explains little of it.
+            rivals = [j for j in ranked if j.gain > policy.LEFT * (found.null.objective - size)]
+            if found.final is not found.null:
+                rivals += self._beside(Model(self.bench, found.forward, found.final), found)
         rivals = sorted(rivals, key=lambda j: -j.log_odds)
-        return self._weighed(found, rivals, left)
+        return self._weighed(found, rivals, left) if rivals else None
 
     def _beside(self, model: Model, found: Investigation) -> list[Judged]:
         """Slips beside the effects that were found, as if beside the nominal model: their gain included."""
         own = found.null.objective - found.final.objective
+        misfit = found.final.objective - float(found.sizes.sum())
         weight = weight_of(found) - math.log(evidence.PRIOR_NONE)
         return [
-            replace(j, gain=j.gain + own, log_bayes=j.log_bayes + weight) for j in self._ranked(model)
+            replace(j, gain=j.gain + own, log_bayes=j.log_bayes + weight)
+            for j in self.ranked(model)
+            if j.gain > policy.LEFT * misfit
         ]
 
     def _weighed(self, found, rivals, left):
@@ -193,7 +202,7 @@ class Search:
                 f if f in before else replace(f, probability=min(f.probability * p, policy.PLAIN))
                 for f in self.findings
             ]
-            return after, self._nominal(), []
+            return after
         self.bench, self.findings = bench, before
         if p >= policy.SHOWN and not self._hollow(found, after):
             self._share(found, [best], None, p)
@@ -233,7 +242,9 @@ class Search:
                 found.probabilities[name] *= 1.0 - share
         found.probabilities["none"] = found.probabilities.get("none", 0.0) + taken
         names = " or ".join(dict.fromkeys(j.slip.fault for j in rivals))
-        found.reasons.append(f"a slip, {names}, explains these data as well: none is missing where it was made")
+        found.reasons.append(
+            f"a slip, {names}, explains these data as well: none is missing where it was made"
+        )
 
 
 def suspicious(model: Model) -> bool:
@@ -242,19 +253,19 @@ def suspicious(model: Model) -> bool:
     size = sum(e.size(r) for r in range(len(e.runs)))
     misfit = float(one.normal.chi2.sum()) - size
     strained = float(one.nu @ one.nu)
-    return misfit > policy.SUSPICIOUS * math.sqrt(2.0 * size) or strained > chi_squared.isf(
-        1e-3, len(one.nu)
-    )
+    return misfit > policy.SUSPICIOUS * math.sqrt(2.0 * size) or strained > chi_squared.isf(1e-3, len(one.nu))
 
 
-def _obvious(judged: Judged, model: Model) -> bool:
+def obvious(judged: Judged, model: Model) -> bool:
     """Whether a slip takes away nearly all misfit by itself."""
     e = model.forward.experiment
     size = sum(e.size(r) for r in range(len(e.runs)))
     excess = model.fit.objective - size
-    return judged.gain > policy.SURE_GAIN and judged.gain > policy.SHARE * excess and not FAULTS[
-        judged.slip.fault
-    ].alias
+    return (
+        judged.gain > policy.SURE_GAIN
+        and judged.gain > policy.SHARE * excess
+        and not FAULTS[judged.slip.fault].alias
+    )
 
 
 def unexplained(found: Investigation) -> bool:

@@ -43,7 +43,7 @@ class _Look:
     def run(self, run):
         """All traces of one run."""
         own = {g.id: g for g in self.record.gauges if g.id in run.signals.readings}
-        for id, gauge in own.items():
+        for gauge in own.values():
             self._sample_slips(run.id, gauge)
         self._against_the_model(run.id, own)
         for id, gauge in own.items():
@@ -122,7 +122,7 @@ class _Look:
         return Bench(_without_runs(self.record, signals, gone) if changed else self.record, lost)
 
     def _baselines(self):
-        """Levels that differ from run to run; one level in all runs is an effect, sensor-offset's neighbour."""
+        """Levels that differ from run to run; one level in all runs is no slip of a run."""
         for id, found in self.rests.items():
             sure = {k: (m, e) for k, (m, e) in found.items() if np.isfinite(e)}
             if len(sure) < 2:
@@ -157,7 +157,7 @@ def _shared(fault, runs):
 
 
 def _without_runs(record, signals, gone):
-    """The record with new traces; a run that lost all of them is left out, unless its scalars say something."""
+    """The record with new traces; a run that lost all of them is left out, unless it has scalars."""
     blocks = [r for r in record.block.runs if r.id not in gone or r.observables]
     kept = [r if r.id not in gone else msgspec.structs.replace(r, signals=None) for r in blocks]
     return replace(record, block=msgspec.structs.replace(record.block, runs=kept), signals=signals)

@@ -133,9 +133,7 @@ def _sizes(record):
         yield one("clock", changes.clock, step=1e-3)
     ids = [g.id for g in record.gauges] if record.signals else []
     for id in ids if len(ids) > 1 else []:
-        yield one(
-            "gauge-delayed", partial(_late, id), len(ids), sensor=id, step=0.05, value=float
-        )
+        yield one("gauge-delayed", partial(_late, id), len(ids), sensor=id, step=0.05, value=float)
 
 
 def _ignoring(change, *given):

@@ -55,7 +55,9 @@ FAULTS: dict[str, Fault] = {
             "kHz",
         ),
         Fault("gauges-swapped", "gauges {sensor} look swapped", "check the cables and the channels' names"),
-        Fault("gauge-inverted", "gauge {sensor} has the wrong sign", "check its poles and the channel's sign"),
+        Fault(
+            "gauge-inverted", "gauge {sensor} has the wrong sign", "check its poles and the channel's sign"
+        ),
         Fault(
             "gauge-dead",
             "gauge {sensor} shows no pulse where one must have passed",

@@ -48,7 +48,14 @@ def time_zero(record: Record, predicted) -> list[Slip]:
     mean = float(np.mean(list(late.values())))
     occam = -len(late) * math.log(span / interval)
     return [
-        Slip("time-zero", change, None, _triggered(record, late, predicted, width), value=lambda _: mean, occam=occam)
+        Slip(
+            "time-zero",
+            change,
+            None,
+            _triggered(record, late, predicted, width),
+            value=lambda _: mean,
+            occam=occam,
+        )
     ]
 
 
@@ -67,7 +74,9 @@ def _triggered(record, late, predicted, width):
     off = {}
     for g in record.gauges:
         arrivals = [
-            abs(late[k] - _arrival(record.signals[k], predicted[k][g.id])) for k in late if g.id in predicted[k]
+            abs(late[k] - _arrival(record.signals[k], predicted[k][g.id]))
+            for k in late
+            if g.id in predicted[k]
         ]
         if len(arrivals) == len(late):
             off[g.id] = max(arrivals)

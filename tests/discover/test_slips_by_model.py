@@ -1,0 +1,112 @@
+"""Slips that only the model can tell: each is the likeliest of all hypotheses where it was made, with its
+place and size; nulls are not suspicious, and what is put right is the sound record.
+"""
+
+import numpy as np
+import pytest
+from made_records import made
+
+from sonicvacuum.discover.faults import changes, policy
+from sonicvacuum.discover.faults.competition import Search, obvious, suspicious
+from sonicvacuum.discover.faults.found import Bench
+from sonicvacuum.effects import CATALOGUE
+
+LATE = {"v0": 180.0, "v1": 150.0}
+# Slip → what is made of a sound record, then run, gauge and value of the likeliest hypothesis.
+OBVIOUS = {
+    "gauges-swapped": (lambda r: changes.gauges_swapped(r, "g4", "g7"), None, ("g4", "g7"), None),
+    "runs-swapped": (lambda r: changes.runs_swapped(r, "v0", "v1"), "v0 and v1", None, None),
+    "gauge-misplaced": (lambda r: changes.gauge_moved(r, "g7", 1), None, "g7", 7.0),
+    "bead-count": (lambda r: changes.bead_count(r, 1), None, None, 10.0),
+    "gauge-delayed": (lambda r: changes.delayed(r, "g7", -15.0), None, "g7", 15.0),
+    "time-zero": (
+        lambda r: changes.time_zero(r, {k: -v for k, v in LATE.items()}, 0.0), None, "g4", 165.0
+    ),
+}  # fmt: skip
+SIZES = {
+    "striker-mass": (lambda r: changes.strikers(r, "mass_g", -0.2), None, np.exp(0.2)),
+    "speed-common": (lambda r: changes.strikers(r, "speed_m_s", -0.2), None, np.exp(0.2)),
+    "run-off": (lambda r: changes.strikers(r, "speed_m_s", -0.2, ("v1",)), "v1", np.exp(0.2)),
+    "gain-common": (lambda r: changes.gains(r, -0.2), None, np.exp(0.2)),
+}
+
+
+def search(record):
+    """Search, nominal model and ranked slips of a record."""
+    one = Search(Bench(record), CATALOGUE, 1, [])
+    model = one.nominal()
+    return one, model, one.ranked(model)
+
+
+@pytest.mark.parametrize("fault", OBVIOUS)
+def test_a_slip_that_no_nuisance_absorbs_is_put_right_at_once(empty, fault):
+    change, run, gauge, value = OBVIOUS[fault]
+    _, model, ranked = search(change(empty))
+    best = ranked[0]
+    assert suspicious(model)
+    assert obvious(best, model)
+    found = best.slip.finding(best.size)
+    assert (found.fault, found.run, found.sensor) == (fault, run, gauge)
+    # Times are as good as a pulse is wide, about 25 us; sizes of fits are far better.
+    assert found.value == (
+        value if value is None else pytest.approx(value, abs=25.0 if run is None else 0.01)
+    )
+    size = sum(best.model.forward.experiment.size(k) for k in range(2))
+    # χ² of a sound record is its number of data within 5 standard deviations.
+    assert best.model.fit.objective == pytest.approx(size, abs=5.0 * np.sqrt(2.0 * size))
+
+
+@pytest.mark.parametrize("fault", SIZES)
+def test_a_size_beyond_its_error_is_among_the_likeliest(empty, fault):
+    change, run, value = SIZES[fault]
+    _, _, ranked = search(change(empty))
+    best = ranked[0]
+    same = next(j for j in ranked if j.slip.fault == fault and j.slip.run == run)
+    # Common gain and common speed are one direction but for a little of the pulse's width.
+    assert same.gain > best.gain - 9.0
+    # Nuisances take part of it up, each by as much as its own error allows.
+    assert same.slip.finding(same.size).value == pytest.approx(value, abs=0.12)
+
+
+def test_a_size_within_the_errors_of_the_nuisances_is_not_named(empty):
+    for change in (lambda r: changes.beads(r, "mass_g", -0.01), lambda r: changes.clock(r, -0.002)):
+        one = Search(Bench(change(empty)), CATALOGUE, 1, [])
+        assert one.ranked(one.nominal()) == []
+
+
+def test_changes_undo_each_other(empty):
+    back = changes.runs_swapped(changes.runs_swapped(empty, "v0", "v1"), "v1", "v0")
+    assert back.block == empty.block
+    same = changes.gauges_swapped(changes.gauges_swapped(empty, "g4", "wall"), "g4", "wall")
+    assert all(
+        np.array_equal(same.signals["v0"].readings[k], v) for k, v in empty.signals["v0"].readings.items()
+    )
+    assert changes.gauge_moved(changes.gauge_moved(empty, "g7", 1), "g7", -1).block == empty.block
+    assert changes.bead_count(changes.bead_count(empty, 1, True), -1, True).block == empty.block
+
+
+def test_a_delay_keeps_the_noise():
+    noise = np.random.default_rng(np.random.SeedSequence(5)).normal(size=4096)
+    moved = changes.earlier(noise, 3.4)
+    # The variance of 4096 samples is known to 2 %; linear interpolation would have halved it.
+    assert moved.var() == pytest.approx(noise.var(), rel=0.02)
+    x = np.linspace(-10.0, 10.0, 401)
+    pulse = np.exp(-(x**2))
+    # 401 samples, 0.05 apart: a delay of 7.5 samples is 0.375; a smooth pulse at rest at both ends.
+    np.testing.assert_allclose(changes.earlier(pulse, 7.5), np.exp(-((x + 0.375) ** 2)), atol=1e-9)
+
+
+def test_nulls_are_not_suspicious():
+    # Twelve nulls: were the rate of false alarms 0.3, all would pass with probability 0.7¹² = 1.4 %; that it
+    # is below 1 % follows from the thresholds (χ² above three standard deviations, 0.1 %; nuisances, 0.1 %), and
+    # from what a slip has to gain (test below).
+    for seed in range(12):
+        one = Search(Bench(made(seed=300 + seed)[0]), CATALOGUE, 1, [])
+        model = one.nominal()
+        assert not suspicious(model) or one.ranked(model) == []
+
+
+def test_what_a_slip_has_to_gain_is_beyond_chance():
+    # Fifty alternatives, each a χ² of one degree of freedom: exp(−x/2) bounds its tail (Chernoff's bound for
+    # a standard normal variable squared).
+    assert 50.0 * np.exp(-0.5 * policy.LEAST_GAIN) < 0.01
