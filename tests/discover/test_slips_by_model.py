@@ -98,7 +98,7 @@ def test_a_delay_keeps_the_noise():
 
 def test_nulls_are_not_suspicious():
     # Twelve nulls: were the rate of false alarms 0.3, all would pass with probability 0.7¹² = 1.4 %; that it
-    # is below 1 % follows from the thresholds (χ² above three standard deviations, 0.1 %; nuisances, 0.1 %), and
+    # is below 1 % follows from the thresholds (χ² above three standard deviations; nuisances, 0.1 %), and
     # from what a slip has to gain (test below).
     for seed in range(12):
         one = Search(Bench(made(seed=300 + seed)[0]), CATALOGUE, 1, [])

@@ -1,0 +1,60 @@
+"""Slips in competition with effects: what is put right, what shares its probability, what an effect keeps."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from made_records import SIGMA
+from made_slips import altered
+
+from sonicvacuum.discover import session
+from sonicvacuum.discover.faults import changes
+from sonicvacuum.discover.faults.competition import Search
+from sonicvacuum.discover.faults.found import Bench
+from sonicvacuum.discover.faults.judging import Judged
+from sonicvacuum.discover.faults.slips import hypotheses
+from sonicvacuum.effects import CATALOGUE
+
+
+def judged(record, fault, gain=100.0):
+    """A slip of a record as if it had been judged."""
+    slip = next(s for s in hypotheses(record) if s.fault == fault)
+    return Judged(slip, 0.1, gain, 0.5 * gain, SimpleNamespace())
+
+
+def found():
+    """An investigation that names striker-error."""
+    nominal, final = SimpleNamespace(objective=300.0), SimpleNamespace(objective=200.0)
+    odds = {"none": 0.0, "unknown": 0.02, "striker-error": 0.98}
+    return SimpleNamespace(
+        named=["striker-error"], probabilities=odds, reasons=[], null=nominal, final=final, sizes=[100]
+    )
+
+
+def test_an_effect_that_is_the_same_as_a_slip_is_not_named_with_confidence(empty):
+    search, seen = Search(Bench(empty), CATALOGUE, 1, []), found()
+    rivals = [judged(empty, "speed-common"), judged(empty, "gain-common")]
+    assert search._weighed(seen, rivals, False) is None
+    # Two slips and the effect, all with the same evidence and the same prior.
+    assert seen.probabilities["striker-error"] == pytest.approx(0.98 / 3.0)
+    assert sum(seen.probabilities.values()) == pytest.approx(1.0)
+    assert [f.fault for f in search.findings] == ["speed-common", "gain-common"]
+    assert all(f.probability == pytest.approx(1.0 / 3.0) for f in search.findings)
+    assert not any(f.corrected for f in search.findings)
+    assert "speed-common or gain-common" in seen.reasons[-1]
+
+
+def test_swapped_gauges_are_put_right_and_the_damping_is_named(hidden):
+    v = session.discover(changes.gauges_swapped(hidden, "g4", "g7")).verdict
+    (slip,) = v.faults
+    assert (slip.fault, slip.sensor) == ("gauges-swapped", ["g4", "g7"])
+    assert slip.probability > 0.9
+    assert v.named == ["kuwabara-kono"]
+    assert any("record put right: gauges-swapped" in reason for reason in v.reasons)
+
+
+def test_a_dead_gauge_is_no_effect_of_the_model(empty):
+    noise = np.random.default_rng(np.random.SeedSequence(8)).normal(size=700)
+    v = session.discover(altered(empty, "g7", lambda _: SIGMA * noise)).verdict
+    assert v.faults[0].fault == "gauge-dead"
+    assert v.named == []
