@@ -34,7 +34,7 @@ def found():
 def test_an_effect_that_is_the_same_as_a_slip_is_not_named_with_confidence(empty):
     search, seen = Search(Bench(empty), CATALOGUE, 1, []), found()
     rivals = [judged(empty, "speed-common"), judged(empty, "gain-common")]
-    assert search._weighed(seen, rivals, False) is None
+    assert search.weighed(seen, rivals, False) is None
     # Two slips and the effect, all with the same evidence and the same prior.
     assert seen.probabilities["striker-error"] == pytest.approx(0.98 / 3.0)
     assert sum(seen.probabilities.values()) == pytest.approx(1.0)

@@ -235,8 +235,8 @@ def faults(findings: Iterable[Finding]) -> list[Fault]:
             fault=f.fault,
             run=f.run,
             sensor=list(f.sensor) if isinstance(f.sensor, tuple) else f.sensor,
-            probability=f.probability,
-            value=f.value,
+            probability=float(f.probability),
+            value=None if f.value is None else float(f.value),
         )
         for f in sorted(findings, key=lambda f: -f.probability)
     ]

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.stats import chi2 as chi_squared
 
-from sonicvacuum.discover import evidence, explanations
+from sonicvacuum.discover import evidence, explanations, smooth
 from sonicvacuum.discover.experiment import Experiment
 from sonicvacuum.discover.faults import policy
 from sonicvacuum.discover.faults.examine import examine
@@ -99,6 +99,12 @@ class Search:
         """The data set of a record as far as it was put right."""
         return bench.masked(together((bench.record,), self.catalogue))
 
+    def judged(self, bench: Bench) -> Experiment:
+        """The same with the smooth misfit that the record states counted as noise, as the search has it."""
+        experiment = self.make(bench)
+        size = experiment.model_floor_rel
+        return smooth.with_size(experiment, size, smooth.blocks(experiment)) if size else experiment
+
     def run(self) -> Outcome:
         """Slips that leave nothing to doubt, then effects, then the rest of the slips against them."""
         for _ in range(policy.MOST):
@@ -120,7 +126,7 @@ class Search:
 
     def nominal(self) -> Model:
         """The nominal model of the record as far as it was put right."""
-        forward = Forward(self.make(self.bench), self.threads)
+        forward = Forward(self.judged(self.bench), self.threads)
         found = nominal(forward)
         # Far from the data nuisances creep; a slip must not be asked to do what they would have done.
         found = found if found.settled else polish(forward, found)
@@ -132,7 +138,7 @@ class Search:
 
     def ranked(self, model: Model) -> list[Judged]:
         """Slips that gain enough beside a model, fitted, the likeliest first."""
-        judge, record = Judge(model, self.make), model.bench.record
+        judge, record = Judge(model, self.judged), model.bench.record
         seen = predicted(self.make(model.bench), self.threads)
         done = {(f.fault, f.run, f.sensor) for f in self.findings}
         slips = [s for s in with_starts(hypotheses(record), record, seen)]
@@ -164,11 +170,11 @@ class Search:
         rivals = ranked
         if left:
             # What is left is more than a slip that explains little of it.
-            rivals = [j for j in ranked if j.gain > policy.LEFT * (found.null.objective - size)]
+            rivals = [j for j in ranked if j.gain > (1.0 - policy.LEFT) * (found.null.objective - size)]
             if found.final is not found.null:
                 rivals += self._beside(Model(self.bench, found.forward, found.final), found)
         rivals = sorted(rivals, key=lambda j: -j.log_odds)
-        return self._weighed(found, rivals, left) if rivals else None
+        return self.weighed(found, rivals, left) if rivals else None
 
     def _beside(self, model: Model, found: Investigation) -> list[Judged]:
         """Slips beside the effects that were found, as if beside the nominal model: their gain included."""
@@ -178,10 +184,11 @@ class Search:
         return [
             replace(j, gain=j.gain + own, log_bayes=j.log_bayes + weight)
             for j in self.ranked(model)
-            if j.gain > policy.LEFT * misfit
+            if j.gain > (1.0 - policy.LEFT) * misfit
         ]
 
-    def _weighed(self, found, rivals, left):
+    def weighed(self, found, rivals, left):
+        """The investigation of the record with the best rival put right, None where that is no better."""
         best, as_is = rivals[0], weight_of(found)
         put_right = best.log_odds + math.log(evidence.PRIOR_NONE)
         same = [j for j in rivals if _alias(j, found)]

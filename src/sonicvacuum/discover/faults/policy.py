@@ -13,7 +13,7 @@ SHARE = 0.9
 # ... and gains so much that no prior matters.
 SURE_GAIN = 200.0
 # A slip that leaves more than this share of the misfit, whatever else is added, is no explanation.
-LEFT = 0.5
+LEFT = 0.3
 # Slips that are followed to their minimum after a linear look at all of them.
 FOLLOWED = 4
 # No more slips than this are put right in one record: a record with more should be made anew.
