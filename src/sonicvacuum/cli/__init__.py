@@ -26,6 +26,7 @@ VERBS = {
     "discover": "sonicvacuum.cli.discover:discover",
     "page": "sonicvacuum.cli.page:page",
     "compare": "sonicvacuum.cli.compare:compare",
+    "export": "sonicvacuum.cli.export:export",
     "paper": "sonicvacuum_paper.cli:paper",
     "blind": "sonicvacuum_blind.cli:blind",
 }
