@@ -50,7 +50,7 @@ test: env  ## check format, style, types, import contracts, and run the tests
 	$(BIN)/snakefmt --check Snakefile workflow
 	$(BIN)/lint-imports --no-logo
 	$(BIN)/mypy
-	$(BIN)/pytest
+	$(BIN)/pytest --numprocesses $(CORES) --dist loadfile
 
 fuzz: env  ## try 5500 damaged files of every kind that users hand over; table in results/fuzz.csv
 	$(BIN)/python tests/fuzz/mutants.py results/fuzz.csv 5500
