@@ -6,8 +6,10 @@ from sonicvacuum.card import Card, variant_names
 from sonicvacuum.config import Config, card
 from sonicvacuum_paper.rows import Row
 
-# A variant with this ending is its namesake with the loss effects at their off value.
+# A variant with this ending is its namesake with the loss effects at their off value; where a column of the
+# ledger is another one's model with a loss, that column serves.
 LOSSLESS = "-lossless"
+TWINS = {"layer_loss": "layer", "matched_loss": "matched"}
 
 
 class Metrics:
@@ -39,6 +41,14 @@ class Metrics:
     def at(self, name: str, quantity: str, sensor: str = "") -> Row | None:
         """The metric of a card by its full name."""
         return self._rows.get((name, quantity, sensor))
+
+
+def lossless_twin(metrics: Metrics, case: str, column: str, quantity: str, sensor: str = "") -> Row | None:
+    """The metric of the same model without its losses; None where it was not simulated."""
+    if column in TWINS:
+        return metrics.find(case, TWINS[column], quantity, sensor)
+    name = metrics.name(case, column)
+    return name and metrics.at(name + LOSSLESS, quantity, sensor)
 
 
 def column_cards(config: Config, case: str) -> dict[str, Card]:

@@ -7,11 +7,13 @@ those of its metrics: how far it moves when each of them moves by its own.
 import math
 from collections.abc import Callable
 
-from sonicvacuum_paper.columns import LOSSLESS, Metrics
+from sonicvacuum_paper.columns import Metrics, lossless_twin
 from sonicvacuum_paper.printed import PRINTED
 from sonicvacuum_paper.rows import Row, absent
 
 BETWEEN = "g9-g5"
+# Striker over bead, of fig3a, ratio-2, fig5a and ratio-5.
+MASS_RATIOS = (PRINTED.light_striker / PRINTED.bead_mass, 2.0, PRINTED.heavy_striker / PRINTED.bead_mass, 5.0)
 
 
 def column_rows(metrics: Metrics, column: str) -> list[Row]:
@@ -32,15 +34,40 @@ def modulus_row(metrics: Metrics, moduli: dict[str, float]) -> Row:
         moduli: full card name → modulus in Pa of the fig3a runs to interpolate between.
     """
     name = "modulus_for_fig3a_speed"
-    names = sorted(moduli, key=moduli.get)
-    found = [metrics.at(n, "speed", BETWEEN) for n in names]
-    if len(found) < 2 or any(r is None or not r.known for r in found):
+    found = _speeds(metrics, moduli)
+    if found is None:
         return absent("compare", name, "", "GPa", "fewer than two runs of fig3a have a speed")
 
     def modulus(*speeds):
-        return _interpolated(speeds, [moduli[n] for n in names]) / 1e9
+        return _interpolated(PRINTED.speed_coated, speeds, sorted(moduli.values())) / 1e9
 
     return _propagated("compare", name, "", "GPa", found, modulus)
+
+
+def equivalent_row(metrics: Metrics, column: str, case: str, moduli: dict[str, float]) -> Row:
+    """Modulus in GPa that a Hertz contact needs to run as fast as a case does in a column of the ledger.
+
+    Args:
+        metrics: of all cases.
+        column: of the ledger.
+        case: fig3a or small-amplitude.
+        moduli: full card name → modulus in Pa of the Hertz runs of that case.
+    """
+    key = f"compare.{column}", f"hertz_modulus_{case.replace('-', '_')}", ""
+    found, own = _speeds(metrics, moduli), metrics.find(case, column, "speed", BETWEEN)
+    if found is None or own is None or not own.known:
+        return absent(*key, "GPa", f"fewer than two runs of {case} have a speed, or this column has none")
+
+    def modulus(speed, *speeds):
+        return _interpolated(speed, speeds, sorted(moduli.values())) / 1e9
+
+    return _propagated(*key, "GPa", [own, *found], modulus)
+
+
+def _speeds(metrics, moduli):
+    """Speeds of the runs in the order of their moduli; None where fewer than two have one."""
+    found = [metrics.at(n, "speed", BETWEEN) for n in sorted(moduli, key=moduli.get)]
+    return None if len(found) < 2 or any(r is None or not r.known for r in found) else found
 
 
 def needs_of(row: Row) -> tuple[tuple[str, str, str], ...]:
@@ -50,9 +77,9 @@ def needs_of(row: Row) -> tuple[tuple[str, str, str], ...]:
     return next((needs for name, at, needs, _ in COMPARISONS if (name, at) == (row.quantity, row.sensor)), ())
 
 
-def _interpolated(speeds, moduli):
-    """ln E linear in ln speed through the two runs nearest in ln speed to the printed one."""
-    target = math.log(PRINTED.speed_coated)
+def _interpolated(speed, speeds, moduli):
+    """ln E linear in ln speed through the two runs nearest in ln speed to the one asked for."""
+    target = math.log(speed)
     points = sorted(
         (abs(math.log(v) - target), math.log(v), math.log(e)) for v, e in zip(speeds, moduli, strict=True)
     )
@@ -77,6 +104,30 @@ COMPARISONS = (
         "",
         (("fig5b", "speed", BETWEEN), ("fig5a", "speed", BETWEEN)),
         lambda steel, coated: steel / coated,
+    ),
+    (
+        "amplitude_ratio_fig3b_fig3a",
+        "g9",
+        (("fig3b", "amplitude", "g9"), ("fig3a", "amplitude", "g9")),
+        lambda steel, coated: steel / coated,
+    ),
+    (
+        "speed_ratio_fig3a_low",
+        "",
+        (("fig3a", "speed", BETWEEN), ("small-amplitude", "speed", BETWEEN)),
+        lambda high, low: high / low,
+    ),
+    (
+        "pressure_change_small_beads",
+        "",
+        (("fig6a", "mean_pressure_over_yield", BETWEEN), ("fig3a", "mean_pressure_over_yield", BETWEEN)),
+        lambda small, large: abs(small / large - 1.0),
+    ),
+    (
+        "wave_count_over_mass_ratio",
+        "wall",
+        tuple((case, "pulse_count_05", "wall") for case in ("fig3a", "ratio-2", "fig5a", "ratio-5")),
+        lambda *counts: max(abs(n / r - 1.0) for n, r in zip(counts, MASS_RATIOS, strict=True)),
     ),
     (
         "coated_amplitude_lower",
@@ -142,7 +193,7 @@ def _losses_delay_splitting(metrics, column):
     """1 if the train of fig5a is split less with its losses than without."""
     key = f"compare.{column}", "losses_delay_splitting", "g9"
     lossy = metrics.find("fig5a", column, "valley_depth", "g9")
-    free = lossy and metrics.at(lossy.case + LOSSLESS, "valley_depth", "g9")
+    free = lossy and lossless_twin(metrics, "fig5a", column, "valley_depth", "g9")
     if not free or not _has_losses(metrics, lossy.case):
         return absent(*key, "1", "no loss effect has been named")
     needs = ((lossy.case, "valley_depth", "g9"), (free.case, "valley_depth", "g9"))

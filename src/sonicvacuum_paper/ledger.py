@@ -1,9 +1,9 @@
-"""The ledger: every claim of the paper, what the simulation gives for it under each modulus, and the verdict.
+"""The ledger: every claim of the paper, what each model of the ladder gives for it, and the verdict.
 
-The column `matched` decides, the model that the paper itself settles on (15 GPa) to describe its chain;
-what the manufacturer's modulus gives stands beside it, and the reason says where the two would be judged
-differently. Claims about the handbook modulus itself are tested by metrics that name it and are alike in
-all columns. `named` decides only what no other column can tell.
+The column `layer` decides: the coating as the layer that the paper prints, with the handbook's modulus, to
+which nothing was fitted. What every other model gives stands beside it, with the statements that exclude it
+and by how much. What no model without losses can show is outside the model; printed numbers that contradict
+one another are inconsistent in the paper, not a disagreement of the simulation.
 """
 
 import csv
@@ -13,16 +13,28 @@ from dataclasses import dataclass, fields
 from sonicvacuum.files import InputError, replacing
 from sonicvacuum_paper import wording
 from sonicvacuum_paper.columns import Metrics
+from sonicvacuum_paper.ladder import ARITHMETIC, COLUMNS, DECIDING, LOSS, SIMULATION, TEXT, THEORY
 from sonicvacuum_paper.rows import Row, cells_of, number
-from sonicvacuum_paper.verdict import DISAGREES, NOT_TESTABLE, Judged, Target, judge
-
-COLUMNS = ("handbook", "matched", "named")
-DECIDING = ("matched", "named", "handbook")
+from sonicvacuum_paper.verdict import (
+    DISAGREES,
+    INCONSISTENT,
+    NOT_TESTABLE,
+    OUTSIDE,
+    REPRODUCED,
+    UNTESTED,
+    Judged,
+    Target,
+    judge,
+)
 
 
 @dataclass(frozen=True)
 class Claim:
-    """One line of `claims.csv`; see `claims.md`."""
+    """One line of `claims.csv`; see `claims.md`.
+
+    `needs` is `loss` where no model without losses can show the statement; `fitted` names the columns whose
+    models were fitted to it.
+    """
 
     claim: str
     section: str
@@ -35,24 +47,48 @@ class Claim:
     test: str
     metric: str
     note: str
+    needs: str = ""
+    fitted: str = ""
+
+    @property
+    def kind(self) -> str:
+        """What tests it: a simulation, the equations, arithmetic on printed numbers, or nothing."""
+        if self.test in UNTESTED:
+            return TEXT
+        return {"theory": THEORY, "paper": ARITHMETIC, "audit": ARITHMETIC}.get(
+            self.metric.split("/")[0], SIMULATION
+        )
 
 
 @dataclass(frozen=True)
 class LedgerRow:
-    """One line of `results/ledger.csv`; NaN where there is no number."""
+    """One line of `results/ledger.csv`; NaN where there is no number.
+
+    `agrees`, `fitted` and `excluded` name the models by column, the last with the difference in standard
+    errors where there is one; `ideal` is no model of its own.
+    """
 
     claim: str
     section: str
+    kind: str
     quantity: str
     unit: str
     measured: str
     sigma: str
     handbook: float
+    layer: float
+    layer_membrane: float
     matched: float
+    layer_loss: float
+    matched_loss: float
     named: float
+    ideal: float
     numerical_error: float
     difference_sigma: float
     verdict: str
+    agrees: str
+    fitted: str
+    excluded: str
     reason: str
 
 
@@ -111,7 +147,7 @@ def write(ledger: list[LedgerRow], path) -> None:
 
 def _row(metrics, claim, where):
     target = Target.parse(claim.test, claim.value, claim.sigma, where)
-    rows = {} if claim.test == "not-testable" else found_in_columns(metrics, claim.metric, where)
+    rows = {} if claim.test in UNTESTED else found_in_columns(metrics, claim.metric, where)
     values = {c: rows[c].value if c in rows else math.nan for c in COLUMNS}
     column = next((c for c in DECIDING if c in rows and rows[c].known), None)
     error, outcome = math.nan, Judged(NOT_TESTABLE)
@@ -121,6 +157,7 @@ def _row(metrics, claim, where):
     return LedgerRow(
         claim=claim.claim,
         section=claim.section,
+        kind=claim.kind,
         quantity=claim.quantity,
         unit=claim.unit,
         measured=claim.value,
@@ -128,13 +165,43 @@ def _row(metrics, claim, where):
         **values,
         numerical_error=error,
         difference_sigma=outcome.difference_sigma,
-        verdict=outcome.verdict,
+        verdict=_verdict(metrics, claim, column, outcome.verdict),
+        **_models(metrics, claim, target, rows),
         reason=_reason(metrics, claim, target, rows, column),
     )
 
 
+def _verdict(metrics, claim, column, judged):
+    if claim.test == "misprint" or (claim.kind == ARITHMETIC and judged == DISAGREES):
+        return INCONSISTENT
+    outside = claim.needs == LOSS and column and not has_losses(metrics, DECIDING[0])
+    return OUTSIDE if outside and judged != NOT_TESTABLE else judged
+
+
+def has_losses(metrics: Metrics, column: str) -> bool:
+    """Whether the model of a column takes energy, as its card of fig3a says."""
+    count = metrics.find("fig3a", column, "loss_effects")
+    return count is not None and count.value > 0.0
+
+
+def _models(metrics, claim, target, rows):
+    """Which models agree, agree after a fit, and are excluded; nobody for what needs no simulation."""
+    told = {"agrees": [], "fitted": [], "excluded": []}
+    for column, row in rows.items() if claim.kind == SIMULATION else ():
+        if column not in COLUMNS or not row.known:
+            continue
+        if claim.needs == LOSS and not has_losses(metrics, column):
+            continue
+        outcome = judge(target, row.value, row.numerical_error)
+        if outcome.verdict == REPRODUCED:
+            told["fitted" if column in claim.fitted.split() else "agrees"].append(column)
+        elif outcome.verdict == DISAGREES:
+            told["excluded"].append(f"{column} {wording.by(outcome)}".strip())
+    return {part: "; ".join(names) for part, names in told.items()}
+
+
 def _reason(metrics, claim, target, rows, column):
-    if claim.test == "not-testable":
+    if claim.test in UNTESTED:
         return claim.note or "No metric tests this statement."
     if column is None:
         return wording.absence(metrics, claim.metric, [rows[c] for c in DECIDING if c in rows])

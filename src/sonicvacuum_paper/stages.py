@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from sonicvacuum.blas import one_thread
-from sonicvacuum.card import Card, variant_names
+from sonicvacuum.card import variant_names
 from sonicvacuum.config import Config, card, model
 from sonicvacuum_paper import arithmetic, assumptions, audit, compare, ledger, theory_rows
 from sonicvacuum_paper.columns import Metrics, column_cards
@@ -45,8 +45,12 @@ def derived_rows(simulated: list[Row], config: Config) -> list[Row]:
         )
     for column in config.ledger:
         rows += compare.column_rows(metrics, column)
-    moduli = {c.name: c.bead.surface.modulus_Pa for c in _moduli_of_fig3a(config)}
-    return [*rows, compare.modulus_row(metrics, moduli)]
+    rows += [
+        compare.equivalent_row(metrics, column, case, _hertz_moduli(config, case))
+        for column in config.ledger
+        for case in ("fig3a", "small-amplitude")
+    ]
+    return [*rows, compare.modulus_row(metrics, _hertz_moduli(config, "fig3a"))]
 
 
 def write_ledger(metrics_path, claims_path, config: Config, out) -> None:
@@ -65,14 +69,14 @@ def _all(metrics_path, config) -> Metrics:
     return Metrics(read_rows(metrics_path, absent_path(metrics_path)), config.ledger)
 
 
-def _moduli_of_fig3a(config) -> list[Card]:
-    """The runs of fig3a at the three moduli that the paper gives, with nothing added to the model."""
-    printed = (PRINTED.modulus_handbook, PRINTED.modulus_membrane, PRINTED.modulus_matched)
+def _hertz_moduli(config, case) -> dict[str, float]:
+    """Card of a case → modulus in Pa, of its Hertz runs at the three moduli that the paper gives."""
+    if case not in config.cases:
+        return {}
     cards = [
-        card(config, "fig3a", v)
-        for v in variant_names(config.cases.get("fig3a", {}))
-        if "fig3a" in config.cases and model(config, "fig3a", v) is None
+        card(config, case, v) for v in variant_names(config.cases[case]) if model(config, case, v) is None
     ]
     plain = [c for c in cards if not c.effects and c.gravity_m_s2 > 0.0]
+    printed = (PRINTED.modulus_handbook, PRINTED.modulus_membrane, PRINTED.modulus_matched)
     found = (next((c for c in plain if c.bead.surface.modulus_Pa == modulus), None) for modulus in printed)
-    return [c for c in found if c is not None]
+    return {c.name: c.bead.surface.modulus_Pa for c in found if c is not None}

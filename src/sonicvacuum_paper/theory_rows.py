@@ -38,7 +38,18 @@ def column_rows(column: str, modulus: float) -> list[Row]:
         for f in (coated_preload(12.5), coated_preload(16.5))
     )
     case = f"theory.{column}"
+    steel = MATERIALS["stainless-steel"]
+    bare = theory.hertz_stiffness(PRINTED.modulus_steel, steel.poisson, PRINTED.core_diameter)
+    coated = theory.hertz_stiffness(modulus, PRINTED.poisson, PRINTED.bead_diameter)
     return [
+        # Eq. 6 at given force and mass: V ~ a K^(1/3).
+        Row(
+            case,
+            "core_contact_speedup",
+            "",
+            float(PRINTED.core_diameter / PRINTED.bead_diameter * (bare / coated) ** (1 / 3)),
+            "1",
+        ),
         Row(case, "core_contact_force", "", core, "N"),
         Row(case, "preload_gradient_speed", "", float(lower / upper - 1.0), "1"),
     ]
@@ -61,8 +72,31 @@ def _identities() -> dict[str, tuple[float, str]]:
         "eq4_over_eq1": eq4 / eq1,
         "eq6_over_eq45": eq6 / eq5,
         "eq7_over_eq6_limit": eq7 / printed_eq6(FORCES, e, nu, a, m),
+        "eq3_over_eq5": _eq3_over_eq5(),
     }
     return {name: (farthest(ratio), "1") for name, ratio in ratios.items()}
+
+
+def _eq3_over_eq5():
+    """Both sides of Eq. (3), integrated twice, for ξ = ξ_m cos⁴ θ, θ = √10 x/(5a), at the speed of Eq. (5).
+
+    V² ξ = c² (ξ^(3/2) + (a²/10) ξ^(1/4) (ξ^(5/4))''), in units of c, a and ξ_m, so that V² is 4/5.
+    """
+    angle = np.linspace(0.0, 0.45 * math.pi, 41)
+    one, square = np.cos(angle), 10.0 / 25.0
+    bent = square * (20.0 * one**3 * np.sin(angle) ** 2 - 5.0 * one**5)
+    return (one**6 + one * bent / 10.0) / (2 / 5**0.5) ** 2 / one**4
+
+
+def _over_kdv(f0, modulus, c0):
+    """Excess of Eq. (7) over c0 against that of the Korteweg–de Vries soliton, c0 Δξ/(12 ξ_0), at small Δξ.
+
+    A strain ξ_0 + s travels at c0 (1 + s/(4 ξ_0)) without dispersion; a soliton exceeds c0 by a third of it.
+    """
+    part = 1e-4
+    force = (1.0 + part) ** 1.5 * f0
+    speed = theory.speed_with_precompression(force, f0, modulus, **COATED)
+    return float((speed / c0 - 1.0) / (part / 12.0))
 
 
 def _limits() -> dict[str, tuple[float, str]]:
@@ -81,6 +115,7 @@ def _limits() -> dict[str, tuple[float, str]]:
     return {
         "c0_over_linear_chain": (c0 / theory.linear_sound_speed(f0, e, **COATED), "1"),
         "eq7_over_c0_limit": (weak / c0, "1"),
+        "eq7_over_kdv": (_over_kdv(f0, e, c0), "1"),
         "mach_number_min": (supersonic.min(), "1"),
         "gravity_above_vacuum": (float(above.all()), "1"),
     }

@@ -3,7 +3,9 @@
 * `equals`: difference over sigma; beyond `LIMIT` sigma it disagrees.
 * `at_least`, `at_most`, `between`: distance beyond the bound over sigma, 0 within; with sigma 0 the bound
   is strict.
+* `within`: sigma stands for a bound, √6 sigma; beyond it, and only there, it disagrees.
 * `count`: the integer itself; `order`: 1, the order holds, or 0.
+* `not-testable`, `misprint`: no number; the second contradicts itself.
 
 The numerical error joins sigma in quadrature, and a difference below it never disagrees. A count or an
 order that changes with the time step is not testable.
@@ -16,10 +18,16 @@ from sonicvacuum.files import InputError
 
 # A difference of more than this many standard errors disagrees.
 LIMIT = 2.0
+# A bound that is the sum of two equal errors, each anywhere within its own half, is so many standard errors.
+BOUND = math.sqrt(6.0)
 # A number that misses a strict bound by less than this part of itself misses it by rounding.
 ROUNDING = 1e-12
-TESTS = ("equals", "at_least", "at_most", "between", "count", "order", "not-testable")
+UNTESTED = ("not-testable", "misprint")
+TESTS = ("equals", "within", "at_least", "at_most", "between", "count", "order", *UNTESTED)
 REPRODUCED, DISAGREES, NOT_TESTABLE = "reproduced", "disagrees", "not testable"
+# What no model without losses can show; what the paper's own numbers contradict.
+OUTSIDE, INCONSISTENT = "outside the model", "inconsistent in the paper"
+VERDICTS = (REPRODUCED, DISAGREES, OUTSIDE, INCONSISTENT, NOT_TESTABLE)
 
 
 @dataclass(frozen=True)
@@ -42,7 +50,7 @@ class Target:
         """A target from the cells of a table; InputError with `where` (file and row) if they do not fit."""
         if test not in TESTS:
             raise InputError(f"{where}: test is {test!r}; use one of {', '.join(TESTS)}")
-        if test == "not-testable":
+        if test in UNTESTED:
             return cls(test, math.nan, math.nan)
         parts = value.split("..")
         try:
@@ -57,8 +65,8 @@ class Target:
             )
         if spread < 0.0 or bounds[0] > bounds[-1]:
             raise InputError(f"{where}: sigma {sigma!r} must not be negative and {value!r} must ascend")
-        if test == "equals" and spread == 0.0:
-            raise InputError(f"{where}: sigma is missing; `equals` needs a positive one")
+        if test in ("equals", "within") and spread == 0.0:
+            raise InputError(f"{where}: sigma is missing; `{test}` needs a positive one")
         low = -math.inf if test == "at_most" else bounds[0]
         high = math.inf if test == "at_least" else bounds[-1]
         return cls(test, low, high, spread)
@@ -69,7 +77,8 @@ class Judged:
     """Outcome for one number.
 
     Attributes:
-        verdict: reproduced, disagrees or not testable. difference_sigma: signed distance beyond the bounds
+        verdict: reproduced, disagrees or not testable.
+        difference_sigma: signed distance beyond the bounds
             in standard errors, 0 within them; NaN where the bound is strict, as for counts and orders.
         reason: why it is not testable; empty otherwise.
     """
@@ -81,7 +90,7 @@ class Judged:
 
 def judge(target: Target, value: float, numerical_error: float = 0.0) -> Judged:
     """Hold a number with its numerical error (NaN counts as 0) against a target."""
-    if target.test == "not-testable":
+    if target.test in UNTESTED:
         return Judged(NOT_TESTABLE, reason="no metric tests this statement")
     if math.isnan(value):
         return Judged(NOT_TESTABLE, reason="no value")
@@ -91,7 +100,8 @@ def judge(target: Target, value: float, numerical_error: float = 0.0) -> Judged:
     beyond = max(value - target.high, 0.0) + min(value - target.low, 0.0)
     if target.sigma > 0.0:
         difference = beyond / math.hypot(target.sigma, error)
-        return Judged(DISAGREES if abs(difference) > LIMIT else REPRODUCED, difference)
+        limit = BOUND if target.test == "within" else LIMIT
+        return Judged(DISAGREES if abs(difference) > limit else REPRODUCED, difference)
     if abs(beyond) > max(error, ROUNDING * abs(value)):
         return Judged(DISAGREES)
     return Judged(REPRODUCED, 0.0)

@@ -5,15 +5,21 @@ from collections.abc import Mapping
 
 from sonicvacuum_paper.columns import Metrics
 from sonicvacuum_paper.compare import needs_of
+from sonicvacuum_paper.ladder import title
 from sonicvacuum_paper.rows import Row
-from sonicvacuum_paper.verdict import DISAGREES, NOT_TESTABLE, REPRODUCED, Judged, Target, judge
+from sonicvacuum_paper.verdict import BOUND, NOT_TESTABLE, REPRODUCED, Judged, Target, judge
 
 # Quoted where the quantity itself does not exist: the same pulse at a level that losses leave intact.
-COMPANIONS = {"duration": "duration_05", "width": "width_05"}
+COMPANIONS = {
+    "duration": "duration_05",
+    "duration_02": "duration_05",
+    "width": "width_05",
+    "width_02": "width_05",
+}
 
 
 def comparison(metrics: Metrics, claim, target: Target, rows: Mapping[str, Row], column: str) -> str:
-    """What the deciding column gives, against what, and the columns that would be judged otherwise.
+    """What the deciding column gives, and against what.
 
     Args:
         metrics: all metrics, for what an ordering compares.
@@ -25,17 +31,10 @@ def comparison(metrics: Metrics, claim, target: Target, rows: Mapping[str, Row],
     outcome = judge(target, rows[column].value, rows[column].numerical_error)
     if outcome.verdict == NOT_TESTABLE:
         return f"Not testable: {outcome.reason}."
-    # A case that handbook and matched share has no modulus to tell apart.
-    one = column != "named" and len({r.key for c, r in rows.items() if c != "named"}) == 1
-    parts = [
-        ("" if one else f"{column}: ") + _compared(metrics, target, rows[column], claim, column, outcome)
-    ]
-    for other, row in rows.items():
-        apart = judge(target, row.value, row.numerical_error)
-        if other != column and apart.verdict not in (outcome.verdict, NOT_TESTABLE):
-            verb = "disagrees" if apart.verdict == DISAGREES else "would be reproduced"
-            parts.append(f"{other}: {row.value:.4g}{_by(apart)}, {verb}")
-    return "; ".join(parts) + "."
+    # A case that the ladder's models share has nothing to tell apart.
+    one = column != "named" and len({r.key for c, r in rows.items() if c not in ("named", "ideal")}) == 1
+    told = _compared(metrics, target, rows[column], claim, column, outcome)
+    return f"{told}." if one else f"{title(column)}: {told}."
 
 
 def absence(metrics: Metrics, metric: str, rows: list[Row]) -> str:
@@ -76,6 +75,8 @@ def _compared(metrics, target, row, claim, column, outcome):
         return f"{claim.quantity} {row.value:g} against {target.low:g}"
     bound = {"at_least": "at least ", "at_most": "at most "}.get(target.test, "")
     spread = f" ± {claim.sigma}" if target.sigma > 0.0 else ""
+    if target.test == "within":
+        spread = f" within {BOUND * target.sigma:.3g}"
     against = f"{bound}{claim.value.replace('..', ' to ')}{spread}{unit}"
     return f"{claim.quantity} {shown(row.value, target)} against {against}{_by(outcome)}"
 
@@ -90,6 +91,11 @@ def _ordered(metrics, row, column, outcome):
     return f"{told} ({', '.join(values)})" if values else told
 
 
-def _by(outcome: Judged) -> str:
+def by(outcome: Judged) -> str:
+    """A difference in standard errors, empty where there is none."""
     d = outcome.difference_sigma
-    return f" ({d:+.2g} σ)" if math.isfinite(d) and d != 0.0 else ""
+    return f"{d:+.2g}" if math.isfinite(d) and d != 0.0 else ""
+
+
+def _by(outcome):
+    return f" ({by(outcome)} σ)" if by(outcome) else ""

@@ -2,11 +2,12 @@
 
 import csv
 import math
+from dataclasses import fields, replace
 
 import pytest
 
 from sonicvacuum.files import InputError
-from sonicvacuum_paper import assumptions, ledger
+from sonicvacuum_paper import assumptions, ladder, ledger
 from sonicvacuum_paper.assumptions import Assumption
 from sonicvacuum_paper.columns import Metrics
 from sonicvacuum_paper.ledger import Claim
@@ -34,14 +35,60 @@ def one(rows, a_claim, columns=None):
     return ledger.build(Metrics(rows, columns or COLUMNS), [a_claim])[0]
 
 
-def test_matched_decides_and_the_other_is_told_where_it_differs():
+def test_matched_decides_without_a_layer_and_the_other_is_told_where_it_differs():
     row = one(speeds(113.1, 219.7), claim())
     assert (row.handbook, row.matched) == (113.1, 219.7)
     assert row.verdict == "reproduced"
     assert row.difference_sigma == pytest.approx(22.7 / 19.7, rel=1e-12)
-    assert row.reason == (
-        "matched: speed 219.7 against 197 ± 19.7 m/s (+1.2 σ); handbook: 113.1 (-4.3 σ), disagrees."
-    )
+    assert row.reason == "Hertz, 15 GPa: speed 219.7 against 197 ± 19.7 m/s (+1.2 σ)."
+    assert (row.agrees, row.fitted, row.excluded) == ("matched", "", "handbook -4.3")
+
+
+def test_the_layer_decides_where_there_is_one():
+    rows = [*speeds(113.1, 219.7), Row("fig3a.layer", "speed", "g9-g5", 300.0, "m/s")]
+    row = one(rows, claim(), {**COLUMNS, "layer": ["layer"]})
+    assert row.verdict == "disagrees" and row.difference_sigma == pytest.approx(103 / 19.7)
+    assert row.agrees == "matched"
+
+
+def test_no_model_is_credited_with_what_it_was_fitted_to():
+    row = one(speeds(113.1, 219.7), replace(claim(), fitted="matched handbook"))
+    assert (row.agrees, row.fitted, row.excluded) == ("", "matched", "handbook -4.3")
+
+
+def test_what_needs_a_loss_is_outside_a_model_without():
+    rows = [
+        *(
+            Row(f"fig3a.{c}", "loss_effects", "", float(c == "layer_loss"), "1")
+            for c in ("layer", "layer_loss")
+        ),
+        *(
+            Row(f"fig3a.{c}", "speed", "g9-g5", v, "m/s")
+            for c, v in (("layer", 300.0), ("layer_loss", 200.0))
+        ),
+    ]
+    columns = {"layer": ["layer"], "layer_loss": ["layer_loss"]}
+    row = one(rows, replace(claim(), needs="loss"), columns)
+    assert (row.verdict, row.agrees, row.excluded) == ("outside the model", "layer_loss", "")
+
+
+def test_arithmetic_that_does_not_come_out_is_the_papers():
+    row = one([Row("paper", "width", "", 9.0, "1")], claim(metric="paper/width/", value="5", sigma="1"))
+    assert (row.kind, row.verdict, row.excluded) == ("arithmetic", "inconsistent in the paper", "")
+    told = one([], claim("misprint", "", "", ""))
+    assert (told.kind, told.verdict, told.reason) == ("text", "inconsistent in the paper", "A note.")
+
+
+def test_totals_count_what_needs_a_simulation():
+    rows = [
+        one(speeds(113.1, 219.7), claim()),
+        one(speeds(113.1, 219.7), replace(claim(), fitted="matched")),
+        one([Row("theory", "slope", "", 1.0, "1")], claim(metric="theory/slope/", value="1", sigma="1")),
+    ]
+    text = [{f.name: str(getattr(r, f.name)) for f in fields(r)} for r in rows]
+    found = {t.model: t for t in ladder.totals(text)}
+    assert found["matched"] == ladder.Total("matched", 1, 1, 0, 0)
+    assert found["handbook"] == ladder.Total("handbook", 0, 0, 2, 0)
 
 
 def test_one_value_for_all_columns_names_none():
@@ -59,7 +106,7 @@ def test_named_column_is_filled_once_there_is_one():
     with_named = one(rows, claim(), {**COLUMNS, "named": ["named"]})
     assert with_named.named == 200.0
     assert with_named.verdict == "disagrees"
-    assert "named: 200 (+0.15 σ), would be reproduced" in with_named.reason
+    assert (with_named.agrees, with_named.excluded) == ("named", "handbook -4.3; matched +3.2")
 
 
 def test_named_decides_what_nothing_else_tells():
@@ -68,7 +115,7 @@ def test_named_decides_what_nothing_else_tells():
         Row("compare.named", "losses", "g9", 1.0, "1"),
     ]
     row = one(rows, claim("order", "1", "", "compare/losses/g9", "1"), {**COLUMNS, "named": ["named"]})
-    assert (row.verdict, row.reason) == ("reproduced", "named: the order holds.")
+    assert (row.verdict, row.reason) == ("reproduced", "as discovered: the order holds.")
 
 
 def test_an_order_quotes_what_it_compares():
@@ -88,10 +135,7 @@ def test_digits_grow_until_a_number_is_told_from_its_bound():
 
 def test_digits_resolve_sigma():
     row = one(speeds(1.0, 0.16666670), claim(value="0.1666667", sigma="1e-6", unit="1"))
-    assert (
-        row.reason
-        == "matched: speed 0.1666667 against 0.1666667 ± 1e-6; handbook: 1 (+8.3e+05 σ), disagrees."
-    )
+    assert row.reason == "Hertz, 15 GPa: speed 0.1666667 against 0.1666667 ± 1e-6."
 
 
 def test_absent_metric_is_not_testable_and_quotes_its_companion():
@@ -131,9 +175,10 @@ def test_written_ledger_has_the_promised_columns(tmp_path):
     with open(tmp_path / "ledger.csv", newline="") as stream:
         header, row = csv.reader(stream)
     assert ",".join(header) == (
-        "claim,section,quantity,unit,measured,sigma,handbook,matched,named,numerical_error,difference_sigma,verdict,reason"
+        "claim,section,kind,quantity,unit,measured,sigma,handbook,layer,layer_membrane,matched,layer_loss,matched_loss,"
+        "named,ideal,numerical_error,difference_sigma,verdict,agrees,fitted,excluded,reason"
     )
-    assert row[4:10] == ["197", "19.7", "113.1", "219.7", "", "0"]
+    assert row[5:11] == ["197", "19.7", "113.1", "", "", "219.7"]
 
 
 def test_malformed_metric_and_table_are_refused(tmp_path):
@@ -145,8 +190,8 @@ def test_malformed_metric_and_table_are_refused(tmp_path):
     path.write_text("claim,value\n")
     with pytest.raises(InputError, match="the first line must read claim,section,statement"):
         ledger.read_table(path, Claim)
-    names = "claim,section,statement,quantity,unit,value,sigma,sigma_source,test,metric,note"
-    path.write_text(f"{names}\n" + "a,,,,,1,1,,equals,x/y/z,\n" * 2)
+    names = "claim,section,statement,quantity,unit,value,sigma,sigma_source,test,metric,note,needs,fitted"
+    path.write_text(f"{names}\n" + "a,,,,,1,1,,equals,x/y/z,,,\n" * 2)
     with pytest.raises(InputError, match="a stands here 2 times"):
         ledger.read_table(path, Claim)
 

@@ -64,7 +64,7 @@ def test_a_dynamic_modulus_is_the_modulus_of_the_card(base):
 
 
 def test_a_wall_of_the_beads_material_is_stiffened_along(cases):
-    steel = config.card(cases, "fig3b", "named")
+    steel = config.card(cases, "fig3b", "ideal")
     assert extended(steel, model(1.1)).wall.modulus_Pa == pytest.approx(1.1 * 193e9, rel=1e-15)  # rounding
 
 
@@ -91,7 +91,9 @@ def test_effects_of_the_material_sit_nowhere_and_touch_no_gauge():
 
 
 def test_every_case_has_a_named_variant_of_a_known_record(cases):
-    for case in cases.cases:
+    named = [case for case, block in cases.cases.items() if "named" in config.variant_names(block)]
+    assert set(cases.cases) - set(named) == {"ratio-2", "ratio-5"}
+    for case in named:
         assert config.model(cases, case, "named").record in cases.records
         assert config.model(cases, case, config.variant_names(cases.cases[case])[0]) is None
 

@@ -2,12 +2,13 @@
 
 import math
 
+import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from sonicvacuum.files import InputError
-from sonicvacuum_paper.verdict import DISAGREES, LIMIT, NOT_TESTABLE, REPRODUCED, TESTS, Target, judge
+from sonicvacuum_paper.verdict import BOUND, DISAGREES, LIMIT, NOT_TESTABLE, REPRODUCED, TESTS, Target, judge
 
 VALUES = st.floats(-1e6, 1e6)
 SIGMAS = st.floats(1e-6, 1e6)
@@ -65,6 +66,21 @@ def test_between_is_at_least_and_at_most(value, low, high, sigma):
     assert (inside == REPRODUCED) == (both == {REPRODUCED})
 
 
+@given(value=VALUES, claimed=VALUES, sigma=SIGMAS)
+def test_within_turns_at_its_bound(value, claimed, sigma):
+    beyond = abs(value - claimed) - BOUND * sigma
+    assume(abs(beyond) > 1e-6 * (1.0 + abs(claimed)))
+    judged = judge(target("within", claimed, sigma), value)
+    assert judged.verdict == (DISAGREES if beyond > 0.0 else REPRODUCED)
+
+
+def test_a_bound_is_the_sum_of_two_equal_errors():
+    # The standard error of the sum of two uniform errors of half width h each, over its bound 2 h.
+    one = np.linspace(-1.0, 1.0, 2001)
+    total = one[:, None] + one[None, :]
+    assert 2.0 / np.sqrt(np.mean(total**2)) == pytest.approx(BOUND, rel=2e-3)  # 2001 points
+
+
 def test_strict_bound_is_strict_and_has_no_difference_in_sigma():
     judged = judge(target("at_most", 1.0, 0.0), 1.0001)
     assert judged.verdict == DISAGREES and math.isnan(judged.difference_sigma)
@@ -102,7 +118,7 @@ def test_unknown_error_counts_as_none():
 @pytest.mark.parametrize(
     ("cells", "message"),
     [
-        (("about", "3", ""), "test is 'about'; use one of equals, at_least"),
+        (("about", "3", ""), "test is 'about'; use one of equals, within, at_least"),
         (("equals", "3", ""), "sigma is missing"),
         (("equals", "three", "1"), "'three' or sigma '1' is not a number"),
         (("between", "3", ""), "`between` needs lo..hi"),
