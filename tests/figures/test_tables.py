@@ -13,6 +13,7 @@ from sonicvacuum_paper.figures import fig4, traces
 from sonicvacuum_paper.printed import PRINTED
 
 TRACES = ["fig3", "fig5", "fig6"]
+FIRST = {"fig3": ["layer-loss", "layer", "matched"], "fig5": ["layer-loss", "matched"]}
 
 
 @pytest.mark.parametrize("name", TRACES)
@@ -20,7 +21,7 @@ def test_traces_have_their_columns_and_stay_within_their_points(drawn, name):
     table, _ = drawn[name]
     assert list(table.columns) == traces.COLUMNS
     shown = table[table.series.isin(["simulated", "reflected"])]
-    for _, trace in shown.groupby(["panel", "sensor", "modulus_GPa"]):
+    for _, trace in shown.groupby(["panel", "sensor", "model"]):
         assert 300 < len(trace) <= traces.POINTS + 3  # first sample, and one more where the lines join
         assert (np.diff(trace.time_us) >= 0).all()
     assert (shown.time_us >= 0).all()
@@ -30,10 +31,10 @@ def test_traces_have_their_columns_and_stay_within_their_points(drawn, name):
 @pytest.mark.parametrize("name", ["fig3", "fig5"])
 def test_every_gauge_is_shown_for_every_modulus_from_top_to_bottom(drawn, name):
     table, _ = drawn[name]
-    for panel, moduli in (("a", [15.0, 2.76]), ("b", [193.0])):
+    for panel, models in (("a", FIRST[name]), ("b", ["nominal"])):
         part = table[(table.panel == panel) & (table.series == "simulated")]
-        assert list(dict.fromkeys(part.modulus_GPa)) == moduli
-        for _, shown in part.groupby("modulus_GPa"):
+        assert list(dict.fromkeys(part.model)) == models
+        for _, shown in part.groupby("model"):
             assert list(dict.fromkeys(shown.sensor)) == ["g9", "g5", "wall"]
 
 
@@ -41,9 +42,9 @@ def test_thinning_a_trace_leaves_its_peak(drawn, studies):
     for name in TRACES:
         table, _ = drawn[name]
         for card in figures.cards_of(name):
-            panel, modulus = card.split(".")[0][-1], studies[card].card.bead.surface.modulus_Pa / 1e9
+            panel, modulus = card.split(".")[0][-1], card.split(".")[1]
             for sensor, reading in studies[card].readings().items():
-                here = (table.panel == panel) & (table.sensor == sensor) & (table.modulus_GPa == modulus)
+                here = (table.panel == panel) & (table.sensor == sensor) & (table.model == modulus)
                 peak = table[here & (table.series == "peak") & (table["pulse"] == 1)].force_N.item()
                 shown = table[here & (table.series == "simulated")].force_N.max()
                 # A pulse has at least 10 drawn points above half height; the top falls between two of them.
@@ -53,9 +54,9 @@ def test_thinning_a_trace_leaves_its_peak(drawn, studies):
 
 def test_fig3_speeds_agree_with_an_independent_simulation(drawn):
     table, _ = drawn["fig3"]
-    speeds = table[table.series == "peak"].dropna(subset="speed_m_s").set_index("modulus_GPa").speed_m_s
+    speeds = table[table.series == "peak"].dropna(subset="speed_m_s").set_index("model").speed_m_s
     # Worked by hand with another integrator, printed with three digits: 0.5 % is their rounding.
-    for modulus, speed in ((15.0, 220.0), (2.76, 113.0), (193.0, 570.0)):
+    for modulus, speed in (("matched", 220.0), ("nominal", 570.0)):
         assert speeds[modulus] == pytest.approx(speed, rel=0.005)
 
 
@@ -65,9 +66,9 @@ def test_fig3_marks_only_what_the_paper_prints(drawn):
     arrival = marks[marks.series == "paper-arrival"].set_index("panel")
     assert arrival.speed_m_s.to_dict() == {"a": PRINTED.speed_coated, "b": PRINTED.speed_steel}
     start = table[(table.series == "peak") & (table.sensor == "g9") & (table["pulse"] == 1)].set_index(
-        ["panel", "modulus_GPa"]
+        ["panel", "model"]
     )
-    for panel, diameter, modulus in (("a", 4.86e-3, 15.0), ("b", 4.76e-3, 193.0)):
+    for panel, diameter, modulus in (("a", 4.86e-3, "layer-loss"), ("b", 4.76e-3, "nominal")):
         mark = arrival.loc[panel]
         travel = mark.time_us - start.loc[(panel, modulus)].time_us
         assert travel == pytest.approx(4e6 * diameter / mark.speed_m_s, rel=1e-7)  # printed with nine digits
@@ -81,30 +82,32 @@ def test_fig3_marks_only_what_the_paper_prints(drawn):
 def test_fig5_numbers_three_waves_at_the_wall_each_lower_than_the_one_before(drawn, panel):
     table, _ = drawn["fig5"]
     wall = table[(table.panel == panel) & (table.series == "peak") & (table.sensor == "wall")]
-    for _, train in wall.groupby("modulus_GPa"):
+    for _, train in wall.groupby("model"):
         assert list(train["pulse"]) == [1, 2, 3]
         assert (np.diff(train.force_N) < 0).all()
         assert (np.diff(train.time_us) > 0).all()
 
 
-def test_fig6_shows_the_wall_alone_one_wave_for_the_light_ball_and_three_for_the_heavy(drawn):
+def test_fig6_shows_the_wall_alone_and_three_waves_of_the_heavy_ball_without_losses(drawn):
     table, _ = drawn["fig6"]
     assert set(table.sensor) == {"wall"}
-    counts = table[table.series == "peak"].groupby(["panel", "modulus_GPa"]).size()
+    counts = table[table.series == "peak"].groupby(["panel", "model"]).size()
     assert (counts["a"] == 1).all()
-    assert (counts["b"] == 3).all()
+    assert counts["b", "layer"] >= 3 and counts["b", "matched"] >= 3
+    assert counts["b", "layer-loss"] == 1
 
 
 def test_fig4_forces_exceed_readings_as_an_averaging_gauge_demands(drawn):
     table, _ = drawn["fig4"]
     assert list(table.columns) == fig4.COLUMNS
     simulated = table[table.series == "simulated"]
-    assert (simulated.groupby(["panel", "modulus_GPa", "orientation"]).size() == 14).all()
+    assert (simulated.groupby(["panel", "model", "orientation"]).size() == 14).all()
     ratio = simulated.gauge_N / simulated.force_N
     level = simulated.orientation == "horizontal"
     # Without weight the pulse is the exact travelling wave up to what the striker leaves behind it: 0.1 %.
     assert np.allclose(ratio[level], SolitaryWave.compute().gauge_ratio, rtol=1e-3)
-    assert (ratio[~level] > SolitaryWave.compute().gauge_ratio).all()
+    # The discharge takes some per cent of a peak, a weight gives some back.
+    assert (ratio[~level] > 0.9 * SolitaryWave.compute().gauge_ratio).all()
     assert (ratio < 1).all()
 
 
@@ -117,10 +120,12 @@ def test_fig4_theory_and_simulation_lie_in_the_axes_and_near_each_other(drawn):
         ).all()
         assert part.speed_m_s.between(*fig4.SPEEDS[panel]).all()
     for (_, modulus, orientation), sweep in table[table.series == "simulated"].groupby(
-        ["panel", "modulus_GPa", "orientation"]
+        ["panel", "model", "orientation"]
     ):
+        if not ((table.series == "eq7") & (table.model == modulus)).any() and orientation == "vertical":
+            continue  # the layer has no long-wave theory here
         series = "eq7" if orientation == "vertical" else "eq6"
-        curve = table[(table.series == series) & (table.modulus_GPa == modulus)].sort_values("force_N")
+        curve = table[(table.series == series) & (table.model == modulus)].sort_values("force_N")
         theory = np.exp(np.interp(np.log(sweep.force_N), np.log(curve.force_N), np.log(curve.speed_m_s)))
         # Long waves against the discrete chain: 1.2 % in sonic vacuum, up to 3 % where the weight counts.
         assert np.allclose(sweep.speed_m_s, theory, rtol=0.03)
@@ -130,9 +135,10 @@ def test_fig4_theory_and_simulation_lie_in_the_axes_and_near_each_other(drawn):
 def test_fig4_takes_the_printed_point_as_the_reading_that_it_is(drawn):
     table, _ = drawn["fig4"]
     paper = table[table.series.str.startswith("paper")].set_index(["panel", "series"]).sort_index()
-    point, as_read = paper.loc[("a", "paper")], paper.loc[("a", "paper-as-read")]
+    low = paper[paper.speed_m_s == PRINTED.speed_low]
+    point, as_read = low.loc[("a", "paper")], low.loc[("a", "paper-as-read")]
     assert point.gauge_N == as_read.gauge_N == as_read.force_N == PRINTED.amplitude_low
-    assert 0.25 < point.force_N < 0.25 / SolitaryWave.compute().gauge_ratio
+    assert 0.25 < point.force_N < 0.27 / SolitaryWave.compute().gauge_ratio  # a discharge of 5 %
     assert np.allclose(paper.speed_error_m_s, 0.1 * paper.speed_m_s, rtol=1e-9)
     assert set(paper.speed_m_s) == {130.0, 197.0, 578.0}
 
@@ -143,11 +149,11 @@ def test_figures_are_small_enough_for_git(made):
 
 
 def test_an_absent_variant_leaves_a_figure_and_an_absent_panel_is_an_error(studies, tmp_path):
-    few = {name: studies[name] for name in ("fig3a.handbook", "fig3b.nominal")}
+    few = {name: studies[name] for name in ("fig3a.layer", "fig3b.nominal")}
     table = pandas.read_csv(figures.make("fig3", few, tmp_path)[0])
-    assert set(table.modulus_GPa) == {2.76, 193.0}
+    assert set(table.model) == {"layer", "nominal"}
     with pytest.raises(InputError, match=r"fig3.*fig3b.*simulate one of fig3b\.nominal"):
-        figures.make("fig3", {"fig3a.handbook": studies["fig3a.handbook"]}, tmp_path / "none")
+        figures.make("fig3", {"fig3a.layer": studies["fig3a.layer"]}, tmp_path / "none")
     assert not (tmp_path / "none").exists()
 
 

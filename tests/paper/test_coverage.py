@@ -28,8 +28,8 @@ LACKING = {
     "fig5a/split_distance/": {"matched_loss"},
     "fig5a/window_over_train/g5": {"matched_loss"},
     "fig5a/window_over_train/g9": {"matched_loss"},
-    **dict.fromkeys(("fig4a/speed_slope/", "fig4a/curve_deviation/"), {"ideal"}),
-    **dict.fromkeys(("fig4b/speed_slope/", "fig4b/theory_deviation/"), {"ideal"}),
+    **{f"fig4a/{name}/": {"ideal"} for name in ("speed_slope", "curve_deviation")},
+    **{f"fig4b/{name}/": {"ideal"} for name in ("speed_slope", "theory_deviation")},
 }
 
 

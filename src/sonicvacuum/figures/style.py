@@ -48,7 +48,7 @@ _SETTINGS = {
 
 @dataclass(frozen=True)
 class Look:
-    """How one modulus is drawn."""
+    """How one model is drawn, and what it is called in a legend."""
 
     color: str
     width: float
@@ -66,23 +66,22 @@ class Look:
         """Keywords of what is drawn for completeness."""
         return {**self.line, "lw": 0.7 * self.width, "alpha": 0.45}
 
-    def label(self, modulus_GPa: float) -> str:
-        """Text of a legend."""
-        return f"{modulus_GPa:g} GPa ({self.name})" if self.name else f"{modulus_GPa:g} GPa"
-
 
 _LOOKS = {
-    15.0: Look("#0072B2", 1.3, "-", "o", "matched by the paper"),
-    4.75: Look("#009E73", 0.9, (0, (5, 1.2, 1, 1.2)), "^", "membrane test"),
-    2.76: Look("#D55E00", 0.9, (0, (3.5, 1.2)), "s", "handbook"),
-    193.0: Look("#000000", 1.1, "-", "o", "steel"),
+    "matched": Look("#0072B2", 1.2, "-", "o", "Hertz, 15 GPa"),
+    "membrane": Look("#009E73", 0.9, (0, (5, 1.2, 1, 1.2)), "^", "Hertz, 4.75 GPa"),
+    "handbook": Look("#D55E00", 0.9, (0, (3.5, 1.2)), "s", "Hertz, 2.76 GPa"),
+    "layer": Look("#AA4488", 1.0, (0, (1.2, 1.0)), "v", "layer, 2.76 GPa"),
+    "layer-loss": Look("#000000", 1.3, "-", "D", "layer, 2.76 GPa, loss"),
+    "layer-loss-geometry": Look("#8C6D1F", 0.9, (0, (6, 1.5)), "P", "the same, geometric masses"),
+    "nominal": Look("#000000", 1.1, "-", "o", "steel, 193 GPa"),
 }
-_OTHER = Look("#CC79A7", 1.0, (0, (1, 1)), "D", "")
+_OTHER = Look("#CC79A7", 1.0, (0, (1, 1)), "D", "another model")
 
 
-def look(modulus_GPa: float) -> Look:
-    """The look of a modulus; those that the paper does not mention share one."""
-    return _LOOKS.get(round(float(modulus_GPa), 6), _OTHER)
+def look(model: str) -> Look:
+    """The look of a model, the variant of a case; those without a look of their own share one."""
+    return _LOOKS.get("nominal" if model == "horizontal" else model.removesuffix("-horizontal"), _OTHER)
 
 
 def context():

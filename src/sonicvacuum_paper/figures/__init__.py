@@ -12,24 +12,20 @@ from sonicvacuum.files import InputError, replacing
 
 # Figure → the cards it shows, panel by panel.
 CARDS = {
-    "fig3": ("fig3a.matched", "fig3a.handbook", "fig3b.nominal"),
+    "fig3": ("fig3a.layer-loss", "fig3a.layer", "fig3a.matched", "fig3b.nominal"),
     "fig4": (
+        "fig4a.layer-loss",
+        "fig4a.layer",
         "fig4a.matched",
-        "fig4a.membrane",
         "fig4a.handbook",
-        "fig4a.matched-horizontal",
-        "fig4a.handbook-horizontal",
         "fig4b.nominal",
         "fig4b.horizontal",
     ),
-    "fig5": ("fig5a.matched", "fig5a.handbook", "fig5b.nominal"),
-    "fig6": (
-        "fig6a.matched",
-        "fig6a.membrane",
-        "fig6a.handbook",
-        "fig6b.matched",
-        "fig6b.membrane",
-        "fig6b.handbook",
+    "fig5": ("fig5a.layer-loss", "fig5a.matched", "fig5b.nominal"),
+    "fig6": tuple(
+        f"fig6{panel}.{model}"
+        for panel in "ab"
+        for model in ("layer-loss", "layer-loss-geometry", "layer", "matched")
     ),
 }
 

@@ -14,12 +14,10 @@ COLUMNS = traces.COLUMNS
 UNTIL_US = {"a": 1600.0, "b": 400.0}
 
 CAPTION = style.paragraph(f"""
-Trains of solitary waves made by a 1.23 g alumina cylinder at 0.44 m/s in vertical chains of 21 beads: (a)
-steel beads coated with Parylene-C, (b) bare steel beads. Simulated, without losses; gauges, shifts, bars
-({PRINTED.coated_bar:g} N and {PRINTED.steel_bar:g} N) and pale lines as in Fig. 3. Numbers: the separate
-waves at the wall that reach at least {traces.TRAIN:.2f} of the first. The legends give the speed of the
-first wave between the two beads; the paper prints none for these runs, and its measured traces are not
-available.
+Trains made by a 1.23 g striker at 0.44 m/s, simulated: Hertz without losses, the layer with one loss.
+Gauges, bars ({PRINTED.coated_bar:g}, {PRINTED.steel_bar:g} N) and pale lines as in Fig. 3. Numbers: waves
+of at least {traces.TRAIN:.2f} of the first at the wall; in brackets a fourth below that, which the paper,
+whose traces are not available, does not count.
 """)
 
 

@@ -1,9 +1,11 @@
 """Stacked traces: gauge readings above one another, as in Figs. 3 and 5 of the paper, with bars for scale.
 
-Table, one row per point: panel, series, sensor, modulus_GPa, pulse, time_us, time_error_us, force_N,
+Table, one row per point: panel, series, sensor, model (variant of the case), modulus_GPa, pulse, time_us,
+time_error_us, force_N,
 speed_m_s. Series: `simulated` (a reading until the reflection comes back, at the wall from the top),
 `reflected` (the same afterwards), `peak` (separate pulses before that, numbered; the main one of the
-lower gauge carries the speed from the upper one), `paper-arrival` and `paper-duration` (printed values,
+lower gauge carries the speed from the upper one), `small` (the first smaller one after
+a train of three), `paper-arrival` and `paper-duration` (printed values,
 placed by the main pulse of the upper gauge).
 """
 
@@ -27,6 +29,7 @@ COLUMNS = [
     "panel",
     "series",
     "sensor",
+    "model",
     "modulus_GPa",
     "pulse",
     "time_us",
@@ -35,9 +38,11 @@ COLUMNS = [
     "speed_m_s",
 ]
 POINTS = 600  # per trace: two for each pixel of a column on a screen
-HEIGHT = 102.0  # mm
+HEIGHT = 106.0  # mm
 # Lowest later peak that counts in a train, of the main one; as in the ledger.
 TRAIN = 0.05
+# Lowest that is named as what follows the train.
+SMALL = 0.01
 
 
 def rows(panel: str, study: Study, until_us: float) -> list[dict]:
@@ -46,7 +51,7 @@ def rows(panel: str, study: Study, until_us: float) -> list[dict]:
     modulus = study.card.bead.surface.modulus_Pa / 1e9
     found = []
     for sensor in run.gauges:
-        shared = {"panel": panel, "sensor": sensor.id, "modulus_GPa": modulus}
+        shared = {"panel": panel, "sensor": sensor.id, "model": model_of(study), "modulus_GPa": modulus}
         found += [shared | point for point in _trace(run, sensor, until_us)]
         found += [shared | peak for peak in _peaks(run, sensor, until_us)]
     return found
@@ -61,7 +66,8 @@ def paper_rows(panel: str, study: Study, speed: float, duration_us: float | None
     view, (upper, lower) = OneRun(study).view, OneRun(study).span
     start = 1e6 * view.main(upper.id).time
     travel = 1e6 * (view.geometry.position(upper.id) - view.geometry.position(lower.id)) / speed
-    shared = {"panel": panel, "modulus_GPa": study.card.bead.surface.modulus_Pa / 1e9}
+    modulus = study.card.bead.surface.modulus_Pa / 1e9
+    shared = {"panel": panel, "model": model_of(study), "modulus_GPa": modulus}
     arrival = {
         "series": "paper-arrival",
         "sensor": lower.id,
@@ -78,6 +84,11 @@ def paper_rows(panel: str, study: Study, speed: float, duration_us: float | None
             for t in ends
         ]
     return found
+
+
+def model_of(study: Study) -> str:
+    """Variant of its case that a card is."""
+    return study.card.name.split(".")[1]
 
 
 def frame(found: list[dict]) -> pandas.DataFrame:
@@ -121,6 +132,11 @@ def _peaks(run: OneRun, sensor: Gauge, until_us: float):
         if number == 1 and run.span and sensor == run.span[1]:
             peak["speed_m_s"] = run.speed().value
         yield peak
+    counted = pulses(trace, main, end, TRAIN)
+    later = [p for p in pulses(trace, main, end, SMALL, SMALL) if counted and p.time > counted[-1].time]
+    if len(counted) > 2 and later:
+        small = {"series": "small", "pulse": len(counted) + 1, "force_N": later[0].force}
+        yield {**small, "time_us": 1e6 * later[0].time}
 
 
 def draw(table: pandas.DataFrame, bars: dict[str, tuple[float, float]]) -> Figure:
@@ -153,12 +169,12 @@ def draw_panel(axes: Axes, table: pandas.DataFrame, force_bar: float, time_bar: 
 
 
 def legend(axes: Axes, table: pandas.DataFrame) -> None:
-    """One line for each modulus, with its simulated speed, and one for the printed speed, above the panel."""
+    """One line for each model, with its simulated speed, and one for the printed speed, above the panel."""
     handles = []
-    for modulus, traces in table[table.series == "peak"].groupby("modulus_GPa", sort=False):
-        look, speed = style.look(modulus), traces.speed_m_s.dropna()
+    for model, traces in table[table.series == "peak"].groupby("model", sort=False):
+        look, speed = style.look(model), traces.speed_m_s.dropna()
         text = f": {speed.iloc[0]:.0f} m/s" if len(speed) else ""
-        handles.append(Line2D([], [], **look.line, label=look.label(modulus) + text))
+        handles.append(Line2D([], [], **look.line, label=look.name + text))
     for mark in table[table.series == "paper-arrival"].itertuples():
         label = f"printed in the paper: {mark.speed_m_s:.0f} m/s ± {100 * PRINTED.speed_error:.0f} %"
         handles.append(Line2D([], [], **_MARK, ms=7, label=label))
@@ -169,7 +185,7 @@ def legend(axes: Axes, table: pandas.DataFrame) -> None:
 
 BASE_LINE = "#bfbfbf"
 # Room between two gauges, of the sum of their heights.
-GAP = 0.1
+GAP = 0.14
 _MARK = {"color": "black", "lw": 0.9, "marker": "|", "mew": 1.2}
 
 
@@ -199,15 +215,15 @@ def _lines(axes, table, bases):
             annotation_clip=False,
         )
     drawn = table[table.series.isin(["simulated", "reflected"])]
-    moduli = list(dict.fromkeys(drawn.modulus_GPa))
-    for (sensor, series, modulus), part in drawn.groupby(["sensor", "series", "modulus_GPa"], sort=False):
-        look = style.look(modulus)
+    models = list(dict.fromkeys(drawn.model))
+    for (sensor, series, model), part in drawn.groupby(["sensor", "series", "model"], sort=False):
+        look = style.look(model)
         axes.plot(
             part.time_us,
             part.force_N + bases[sensor],
             **(look.line if series == "simulated" else look.pale),
-            zorder=3.0 - 0.1 * moduli.index(modulus),
-            gid=f"{series}-{sensor}-{modulus:g}",
+            zorder=3.0 - 0.1 * models.index(model),
+            gid=f"{series}-{sensor}-{model}",
         )
 
 
@@ -220,7 +236,7 @@ def label_of(sensor: str) -> str:
 def _paper(axes, table, bases):
     gap = GAP * table.groupby("sensor").force_N.max().sum()
     for mark in table[table.series == "paper-arrival"].itertuples():
-        level = bases[mark.sensor] + mark.force_N + 0.33 * gap
+        level = bases[mark.sensor] + table.force_N[table.sensor == mark.sensor].max() + 0.33 * gap
         axes.errorbar(
             mark.time_us,
             level,
@@ -234,7 +250,7 @@ def _paper(axes, table, bases):
         )
     bar = table[table.series == "paper-duration"]
     if len(bar):
-        level = bases[bar.sensor.iloc[0]] - 0.3 * gap
+        level = bases[bar.sensor.iloc[0]] - 0.45 * gap
         axes.plot(bar.time_us, [level, level], color="black", lw=0.9, marker="|", ms=4, mew=0.9, zorder=4)
         length = bar.time_us.max() - bar.time_us.min()
         axes.annotate(
@@ -249,17 +265,17 @@ def _paper(axes, table, bases):
 
 def number(axes: Axes, table: pandas.DataFrame, bases: dict[str, float]) -> None:
     """Number the waves of each train at the lowest gauge."""
-    peaks = table[(table.series == "peak") & (table.sensor == list(bases)[-1])]
-    for modulus, train in peaks.groupby("modulus_GPa", sort=False):
+    peaks = table[table.series.isin(["peak", "small"]) & (table.sensor == list(bases)[-1])]
+    for model, train in peaks.groupby("model", sort=False):
         for peak in train.itertuples() if len(train) > 1 else ():
             axes.annotate(
-                f"{peak.pulse:.0f}",
+                f"{peak.pulse:.0f}" if peak.series == "peak" else f"({peak.pulse:.0f})",
                 (peak.time_us, bases[peak.sensor] + peak.force_N),
                 (0, 2),
                 textcoords="offset points",
                 ha="center",
                 va="bottom",
-                color=style.look(modulus).color,
+                color=style.look(model).color,
                 fontweight="bold",
                 fontsize=7,
             )

@@ -6,8 +6,8 @@ from sonicvacuum.card import Card
 from sonicvacuum.effects import IDS
 from sonicvacuum.report import inline, record
 from sonicvacuum_blind import report as study
-from sonicvacuum_paper.printed import PRINTED
-from sonicvacuum_paper.report import provenance, tables
+from sonicvacuum_paper import ladder
+from sonicvacuum_paper.report import answer, provenance, tables
 
 
 def build(
@@ -42,7 +42,7 @@ def build(
     claims = tables.read(claims_path, CLAIMS).set_index("claim")
     ledger["statement"] = [claims["statement"].get(c, "") for c in ledger["claim"]]
     ledger["note"] = [claims["note"].get(c, "") for c in ledger["claim"]]
-    ledger["reason"] = ledger["reason"].map(tables.shown)
+    ledger["excluded_by"] = ledger["excluded"].map(tables.shown)
     metrics = tables.read(metrics_path, tables.METRICS)
     return (
         inline.environment("sonicvacuum_paper.report")
@@ -53,7 +53,11 @@ def build(
             verdicts=tables.VERDICTS,
             disagreements=tables.disagreements(ledger).to_dict("records"),
             assumptions=tables.read(assumptions_path, tables.ASSUMPTIONS).to_dict("records"),
-            headline=_headline(metrics),
+            headline=tables.headline(ledger),
+            answer=answer.sentences(ledger, metrics),
+            models=[(c, m.title, m.free) for c, m in ladder.MODELS.items() if m.counted],
+            first=tables.first(ledger),
+            totals={t.model: t for t in ladder.totals(ledger.to_dict("records"))},
             figures=[_figure(svg, caption) for svg, caption in figures],
             cards=[_card_row(card, metrics) for card in cards],
             catalogue=len(IDS),
@@ -80,6 +84,8 @@ CLAIMS = [
     "test",
     "metric",
     "note",
+    "needs",
+    "fitted",
 ]
 
 
@@ -105,30 +111,6 @@ def _full(found):
         "baselines": None if found.baselines is None else study.rivals(found.baselines),
         "followed": None if found.resolved is None else study.followed(found.resolved),
     }
-
-
-def _headline(metrics):
-    """The numbers a reader looks for first: speed and amplitude of the single wave, chain by chain."""
-    coated, steel = (
-        f"{v:.0f} ± {PRINTED.speed_error * v:.0f}" for v in (PRINTED.speed_coated, PRINTED.speed_steel)
-    )
-    wanted = (
-        ("Coated beads, 2.76 GPa (handbook)", "fig3a.handbook", coated),
-        ("Coated beads, 4.75 GPa (membrane)", "fig3a.membrane", coated),
-        ("Coated beads, 15 GPa (matched)", "fig3a.matched", coated),
-        ("Bare steel beads", "fig3b.nominal", steel),
-    )
-    value = metrics.set_index(["case", "quantity", "sensor"])["value"].to_dict()
-    return [
-        {
-            "chain": title,
-            "printed": printed,
-            "speed": value.get((case, "speed", "g9-g5"), ""),
-            "amplitude": value.get((case, "amplitude", "g9"), ""),
-            "width": value.get((case, "width", "g9"), ""),
-        }
-        for title, case, printed in wanted
-    ]
 
 
 def _card_row(card: Card, metrics):

@@ -5,48 +5,33 @@ import re
 import pandas as pd
 
 from sonicvacuum.files import InputError, read_text, replacing
+from sonicvacuum_paper import ladder
 from sonicvacuum_paper.report import tables
 
 BEGIN = "<!-- {}: made by `snakemake publish`, do not edit -->"
 END = "<!-- end of {} -->"
-# The rows of the ledger that a reader looks for first.
-HEADLINES = (
-    "fig3a-speed",
-    "fig3b-speed",
-    "fig3a-width",
-    "fig3b-width",
-    "low-speed",
-    "modulus-ratio",
-)
 # Of a blind study, what must come out again; times and estimates are left out.
 NAMING = ("id", "kind", "effects", "named", "exact")
 
 
 def summary(ledger: pd.DataFrame) -> str:
-    """Markdown: how many claims hold, the main numbers, and every disagreement in a line."""
-    counts = tables.counts(ledger)
+    """Markdown: how many claims hold, the main numbers under each model, totals, and every disagreement."""
+    models = [c for c in ladder.COLUMNS if ladder.MODELS[c].counted]
     lines = [
-        f"Of {len(ledger)} checkable statements of the paper, **{counts['reproduced']} are reproduced, "
-        f"{counts['disagrees']} disagree, {counts['not testable']} cannot be tested** by this simulation.",
+        tables.headline(ledger),
         "",
-        "| claim | quantity | paper | σ | handbook 2.76 GPa | matched 15 GPa | as discovered | verdict |",
-        "|---|---|---:|---:|---:|---:|---:|---|",
+        "| printed | " + " | ".join(ladder.title(c) for c in models) + " |",
+        "|---|" + "---:|" * len(models),
     ]
-    known = ledger.set_index("claim")
-    for claim in HEADLINES:
-        if claim in known.index:
-            lines.append(_row(claim, known.loc[claim]))
-    lines += ["", "Where paper and simulation disagree, largest difference first:", ""]
-    lines += [
-        f"* `{row.claim}`: {tables.shown(row.reason)}" for row in tables.disagreements(ledger).itertuples()
-    ]
+    lines += [f"| {row['printed']} | " + " | ".join(row["cells"]) + " |" for row in tables.first(ledger)]
+    totals = {t.model: t for t in ladder.totals(ledger.to_dict("records"))}
+    for part, name in (("agrees", "agrees"), ("fitted", "fitted to it"), ("excluded", "excluded by")):
+        cells = [str(getattr(totals[c], part)) if c in totals else "–" for c in models]
+        lines.append(f"| *statements: {name}* | " + " | ".join(cells) + " |")
+    lines.append("| *free parameters* | " + " | ".join(ladder.MODELS[c].free for c in models) + " |")
+    lines += ["", "Where paper and layer disagree, largest difference first:", ""]
+    lines += [f"* `{row.claim}`: {row.reason}" for row in tables.disagreements(ledger).itertuples()]
     return "\n".join(lines)
-
-
-def _row(claim, row):
-    unit = "" if row["unit"] in ("", "1") else f", {row['unit']}"
-    numbers = [tables.number(row[c]) for c in ("measured", "sigma", "handbook", "matched", "named")]
-    return f"| {claim} | {row['quantity']}{unit} | " + " | ".join(numbers) + f" | {row['verdict']} |"
 
 
 def with_part(readme: str, name: str, text: str) -> str:

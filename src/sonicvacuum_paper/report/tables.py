@@ -1,27 +1,70 @@
-"""The columns of the pipeline's tables, what the report counts in the ledger, and how a column is called."""
+"""The columns of the pipeline's tables, and what the report counts in the ledger."""
 
-import re
 from dataclasses import fields
 
 import pandas as pd
 
 from sonicvacuum.report.tables import number, read
 from sonicvacuum_paper.assumptions import AssumptionRow
+from sonicvacuum_paper.ladder import ARITHMETIC, SIMULATION, THEORY, members, title
+from sonicvacuum_paper.ladder import COLUMNS as LADDER
 from sonicvacuum_paper.ledger import LedgerRow
 from sonicvacuum_paper.rows import COLUMNS
-from sonicvacuum_paper.verdict import DISAGREES, NOT_TESTABLE, REPRODUCED
+from sonicvacuum_paper.verdict import DISAGREES, INCONSISTENT, OUTSIDE, REPRODUCED, VERDICTS
 
 __all__ = ["number", "read"]
 
 LEDGER = [field.name for field in fields(LedgerRow)]
 ASSUMPTIONS = [field.name for field in fields(AssumptionRow)]
 METRICS = list(COLUMNS)
-VERDICTS = (REPRODUCED, DISAGREES, NOT_TESTABLE)
+# What a reader asks first: claim, and what it is called in the first table.
+FIRST = {
+    "fig3a-speed": "197 m/s, coated beads, Fig. 3a",
+    "low-speed": "130 m/s at 0.25 N",
+    "fig3a-duration": "130 µs long",
+    "fig3a-width": "5.3 diameters wide",
+    "force-level": "forces up to about 3 N",
+    "fig3b-speed": "578 m/s, bare steel",
+}
 
 
-def shown(reason: str) -> str:
-    """The reason of a row of the ledger with its third column called as people read it."""
-    return re.sub(r"\bnamed: ", "as discovered: ", reason)
+def shown(excluded: str) -> str:
+    """The models that a row excludes, called as people read them."""
+    return ", ".join(f"{title(c)} ({d} σ)" if d else title(c) for c, d in members(excluded).items())
+
+
+def headline(ledger: pd.DataFrame) -> str:
+    """How many statements need a simulation, what came of them, and what was counted apart."""
+    part = ledger[ledger["kind"] == SIMULATION]
+    found = counts(part)
+    apart = (ledger["kind"] == THEORY).sum(), (ledger["kind"] == ARITHMETIC).sum()
+    return (
+        f"Of {len(part)} statements that need a simulation, the printed layer, with nothing fitted, "
+        f"reproduces {found[REPRODUCED]} and contradicts {found[DISAGREES]}; {found[OUTSIDE]} need a loss "
+        f"and are outside it. Counted apart: {apart[0]} identities of the equations, {apart[1]} checks of "
+        f"printed numbers, {counts(ledger)[INCONSISTENT]} places where the paper contradicts itself."
+    )
+
+
+def first(ledger: pd.DataFrame) -> list[dict]:
+    """The table of a first look: what is printed, and each model's number with what became of it."""
+    known = ledger.set_index("claim")
+    return [
+        {"printed": text, "cells": [_cell(known.loc[claim], c) for c in LADDER if c != "ideal"]}
+        for claim, text in FIRST.items()
+        if claim in known.index
+    ]
+
+
+def _cell(row, column):
+    """A number; `fitted` after what the model was fitted to, the difference after what excludes it."""
+    if not row[column]:
+        return "–"
+    excluded = members(row["excluded"])
+    mark = " (fitted)" if column in members(row["fitted"]) else ""
+    if column in excluded:
+        mark = f" ({excluded[column]} σ)" if excluded[column] else " (excluded)"
+    return number(row[column]) + mark
 
 
 def counts(ledger: pd.DataFrame) -> dict[str, int]:
@@ -31,6 +74,6 @@ def counts(ledger: pd.DataFrame) -> dict[str, int]:
 
 def disagreements(ledger: pd.DataFrame) -> pd.DataFrame:
     """Rows that disagree, the largest difference in standard errors first, those without one last."""
-    rows = ledger[ledger["verdict"] == "disagrees"].copy()
+    rows = ledger[ledger["verdict"] == DISAGREES].copy()
     size = pd.to_numeric(rows["difference_sigma"], errors="coerce").abs().fillna(-1.0)
     return rows.loc[size.sort_values(ascending=False, kind="stable").index]

@@ -1,0 +1,55 @@
+"""The first screen: is 15 GPa a property of the polymer? Five sentences, from the numbers of the ledger."""
+
+import pandas as pd
+
+from sonicvacuum.report.tables import number
+from sonicvacuum_paper.ladder import members
+
+
+def sentences(ledger: pd.DataFrame, metrics: pd.DataFrame) -> list[str]:
+    """Five sentences; none where a number is missing.
+
+    Args:
+        ledger: rows of the ledger, as text.
+        metrics: `results/metrics.csv`, as text.
+    """
+    rows = {r["claim"]: r for r in ledger.to_dict("records")}
+    value = metrics.set_index(["case", "quantity"])["value"].to_dict()
+    wanted = ("fig3a-speed", "low-speed", "fig3a-duration", "fig3a-width", "force-level", "speed-ratio-low")
+    like = [value.get(("compare.layer", f"hertz_modulus_{c}"), "") for c in ("fig3a", "small_amplitude")]
+    if not all(claim in rows and rows[claim]["layer_loss"] for claim in wanted) or not all(like):
+        return []
+    n = {claim: {c: number(rows[claim][c], 3) for c in ("layer", "layer_loss", "matched", "matched_loss")}
+         for claim in wanted}  # fmt: skip
+    fast, slow = (float(m) for m in like)
+    speed, low, lasting, wide, force, ratio = (n[claim] for claim in wanted)
+    return [
+        f"{_verdict(rows)} the 50 µm layer that is printed, with the handbook's 2.76 GPa and nothing fitted, "
+        f"runs like a Hertz contact of {fast:.1f} GPa at 0.44 m/s and of {slow:.1f} GPa at 0.25 N.",
+        f"It gives {speed['layer']} and {low['layer']} m/s where 197 and 130 are printed; Hertz with the "
+        f"fitted 15 GPa gives {speed['matched']} and {low['matched']}.",
+        f"Against the bare layer stand its speed at 0.44 m/s ({_by(rows['fig3a-speed'], 'layer')}), a pulse "
+        f"of {lasting['layer']} µs and {wide['layer']} diameters (130 and 5.3 printed) and {force['layer']} "
+        "N on the gauge (about 3).",
+        f"One loss, calibrated on the 130 µs alone, gives {speed['layer_loss']} and {low['layer_loss']} m/s, "
+        f"ratio {ratio['layer_loss']} (1.515 printed), and {force['layer_loss']} N; the same on 15 GPa gives "
+        f"{speed['matched_loss']} and {low['matched_loss']} m/s, ratio {ratio['matched_loss']}.",
+        "Not settled: the loss's law, the base level of the 130 µs, the film's thickness and its modulus at "
+        "impact, of which no tolerance is printed; films of other thickness on the same balls would decide.",
+    ]
+
+
+def _verdict(rows):
+    """Whether the ladder speaks for the layer: it holds both speeds with a loss, and Hertz does not."""
+    held = [
+        c in members(rows[claim]["agrees"]) for c in ("layer_loss",) for claim in ("fig3a-speed", "low-speed")
+    ]
+    against = "matched_loss" in members(rows["low-speed"]["excluded"])
+    if all(held) and against:
+        return "15 GPa is mostly the layer's geometry, not a property of the polymer:"
+    return "Whether 15 GPa is a property of the polymer these models do not tell:"
+
+
+def _by(row, column):
+    excluded = members(row["excluded"])
+    return f"{excluded[column]} σ" if excluded.get(column) else "within its bound"
