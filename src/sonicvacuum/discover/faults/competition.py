@@ -189,12 +189,12 @@ class Search:
 
     def weighed(self, found, rivals, left):
         """The investigation of the record with the best rival put right, None where that is no better."""
-        best, as_is = rivals[0], weight_of(found)
-        put_right = best.log_odds + math.log(evidence.PRIOR_NONE)
         same = [j for j in rivals if _alias(j, found)]
-        if same:
+        if same and rivals[0].log_odds - same[0].log_odds < 0.5 * ALIKE:
             self._share(found, [j for j in rivals if j.gain > same[0].gain - ALIKE], same[0])
             return None
+        best, as_is = rivals[0], weight_of(found)
+        put_right = best.log_odds + math.log(evidence.PRIOR_NONE)
         if not left and put_right < as_is - math.log(1.0 / policy.SHOWN):
             return None
         bench = self.bench
