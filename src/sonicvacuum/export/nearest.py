@@ -21,7 +21,7 @@ from sonicvacuum.physics.chain import Chain
 # sampling of a contact, 1/600 of it at either end, in its duration.
 SAME_RESTITUTION, SAME_DURATION = 1e-4, 4e-3
 # Speeds at which laws are compared, and how far beyond the record's they are followed.
-SPEEDS, BEYOND, WIDE = 7, 10.0, 21
+SPEEDS, BEYOND, WIDE = 7, 10.0, 20
 
 
 @dataclass(frozen=True)
@@ -99,7 +99,7 @@ def _exact(law, parameters, chain, ball, span):
     if law.same != MOTION:
         speeds = np.geomspace(*span, SPEEDS)
         times = law.duration(ball, parameters, speeds)
-        duration = max(duration, float(np.max(np.abs(times / bounces(chain, speeds)[1] - 1.0))))
+        duration += float(np.max(np.abs(times / bounces(chain, speeds)[1] - 1.0)))
     return Match(law, parameters, written, law.same, Agreement(*span, SAME_RESTITUTION, duration))
 
 
@@ -125,7 +125,7 @@ def _near(law, target: Chain, ball: Ball, span, error) -> Match | None:
 
     rebound, times = differences(np.geomspace(*span, SPEEDS))
     wide = np.geomspace(span[0] / BEYOND, span[1] * BEYOND, WIDE)
-    within = _about(wide, differences(wide)[0] <= error, ball.speed)
+    within = _about(wide, differences(wide)[0], error, ball.speed)
     return Match(
         law, parameters, written, None, Agreement(*span, float(rebound.max()), float(times.max()), *within)
     )
@@ -163,14 +163,23 @@ def _with(one, chain, parameters):
     return one.apply(Setup(chain), **parameters).chain
 
 
-def _about(speeds, good, reference):
-    """First and last of the good speeds that join the reference without a gap."""
-    place = int(np.argmin(np.abs(np.log(speeds / reference))))
-    if not good[place]:
-        return reference, reference
-    low = high = place
-    while low > 0 and good[low - 1]:
-        low -= 1
-    while high < len(speeds) - 1 and good[high + 1]:
-        high += 1
-    return float(speeds[low]), float(speeds[high])
+def _about(speeds, difference, error, reference):
+    """Speeds (low, high) about the reference, where laws agree, up to which they differ by `error` at most.
+
+    `difference` is at `speeds` (ascending); between them it is taken as straight over log speed.
+    """
+    log = np.log(np.append(speeds, reference))
+    order = np.argsort(log)
+    log, over = log[order], np.append(difference, 0.0)[order] - error
+    place = int(np.flatnonzero(order == len(speeds))[0])
+
+    def end(step, last):
+        k = place
+        while k != last and over[k + step] <= 0.0:
+            k += step
+        if k == last:
+            return log[k]
+        share = over[k] / (over[k] - over[k + step])
+        return log[k] + share * (log[k + step] - log[k])
+
+    return float(np.exp(end(-1, 0))), float(np.exp(end(1, len(log) - 1)))

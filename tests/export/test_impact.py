@@ -1,0 +1,76 @@
+"""Closed forms of one ball's impact: limits, inverses, and the engine where a law has no other check."""
+
+import math
+
+import numpy as np
+import pytest
+from made_balls import SPEEDS, bounced
+from scipy.integrate import solve_ivp
+
+from sonicvacuum.physics import impact
+
+
+@pytest.mark.parametrize("ratio", [0.05, 0.4, 0.9, 0.999999999, 1.0, 1.5, 4.0])
+def test_the_oscillator_lasts_until_its_force_is_zero(ratio):
+    def motion(_, state):
+        return state[1], -state[0] - 2.0 * ratio * state[1]
+
+    def force(time, state):
+        return state[0] + 2.0 * ratio * state[1] if time > 0.0 else 1.0
+
+    force.terminal = True
+    found = solve_ivp(motion, (0.0, 50.0), (0.0, 1.0), events=force, rtol=1e-11, atol=1e-13)
+    # Accuracy of the integration above.
+    assert impact.oscillator_duration(ratio) == pytest.approx(found.t[-1], rel=1e-7)
+    assert impact.oscillator_restitution(ratio) == pytest.approx(-found.y[1, -1], rel=1e-7)
+
+
+@pytest.mark.parametrize("restitution", [1.0, 0.95, 0.5, 0.1, 0.01])
+def test_a_restitution_names_one_alpha(restitution):
+    # Root search to 1e-14 in the ratio.
+    assert impact.tsuji_restitution(impact.tsuji_alpha(restitution)) == pytest.approx(restitution, rel=1e-9)
+
+
+def test_a_restitution_that_no_damping_gives_is_refused():
+    for wrong in (0.0, 1.1, math.nan):
+        with pytest.raises(ValueError, match="restitution"):
+            impact.tsuji_alpha(wrong)
+    with pytest.raises(ValueError, match="critical"):
+        impact.uncut_restitution(1.0)
+
+
+def test_hunt_crossley_is_the_root_of_its_equation():
+    y = np.array([1e-5, 9.99e-4, 1.001e-3, 0.1, 3.0, 100.0])
+    z = y * impact.hunt_crossley_restitution(y, 1.0)
+    # Both sides are y²/2 for small y, so that rounding shows as 1e-16/y²; a joint at 1e-3 would too.
+    np.testing.assert_allclose(-z - np.log1p(-z), y - np.log1p(y), rtol=3e-6, atol=1e-16)
+
+
+def test_hunt_crossley_durations_have_their_limits():
+    assert impact.hunt_crossley_duration(0.0, 1.0) == pytest.approx(math.pi, rel=1e-8)  # harmonic half period
+    # Johnson, Contact Mechanics (1985), Sec. 11.4: 2.9432 (5/4)^{2/5} for the Hertz contact.
+    assert impact.hunt_crossley_duration(0.0, 1.5) == pytest.approx(2.94327 * 1.25**0.4, rel=1e-5)
+
+
+def test_the_viscoelastic_forms_agree_where_both_hold():
+    x = np.array([1e-4, 1e-3, 1e-2])
+    # The next order of the series is x^{5/2} with the coefficient 0.27 (Schwager & Pöschel 2008), then x³.
+    bound = 0.4 * x**2.5 + 2e-5 * x
+    assert np.all(np.abs(impact.viscoelastic_series(x) - impact.viscoelastic_restitution(x)) < bound)
+    assert pytest.approx(1.15344, abs=1e-5) == impact.FIRST
+
+
+def test_the_viscoelastic_form_is_the_engine_s_at_any_damping():
+    for time_us in (0.5, 5.0, 20.0):
+        chain, rebound, _ = bounced("kuwabara-kono", time_us=time_us)
+        stiffness, mass = (float(a(1)[0, 0]) for a in (chain.stiffnesses, chain.masses))
+        x = impact.viscoelastic_number(time_us * 1e-6, stiffness, mass, SPEEDS)
+        # Printed coefficients of six digits; the engine's step.
+        np.testing.assert_allclose(impact.viscoelastic_restitution(x), rebound, atol=3e-4)
+
+
+def test_closed_forms_are_the_engine_s():
+    _, rebound, _ = bounced("tsuji", alpha=0.4)
+    np.testing.assert_allclose(rebound, impact.tsuji_restitution(0.4), rtol=1e-5)  # the engine's step
+    _, rebound, _ = bounced("hunt-crossley", damping_s_per_m=0.3)
+    np.testing.assert_allclose(rebound, impact.hunt_crossley_restitution(0.45, SPEEDS), rtol=1e-6)
