@@ -221,8 +221,9 @@ def test_the_root_makes_by_default_all_that_the_workflow_makes(pytestconfig):
 def test_another_workflow_can_use_this_one_as_a_module(tmp_path, pytestconfig):
     """Config and records are the other's, code and resources stay here."""
     (tmp_path / "own.yaml").write_text(CONFIG)
-    (tmp_path / "records/ball").mkdir(parents=True)
-    (tmp_path / "records/ball/record.yaml").write_text(RECORD)
+    for name in ("ball", ODD):
+        (tmp_path / "records" / name).mkdir(parents=True)
+        (tmp_path / "records" / name / "record.yaml").write_text(RECORD)
     (tmp_path / "Snakefile").write_text(
         f"""
 module sonicvacuum:
