@@ -258,9 +258,9 @@ class Forward:
             shift = data.shift + nu[:, layout.trigger(run)] * sigma[layout.trigger(run)]
             value, timing = self._at_record(batch, data, signals, shift, nu, rate_of or lanes)
         flat = e.whiten(run, value, measured)
-        parts = timing.reshape(-1, *value.shape[1:])
+        parts = timing.reshape(len(timing) * times, *value.shape[1:])
         rates = e.whiten(run, parts, np.zeros((len(parts), measured.shape[1])))
-        return flat, rates.reshape(len(timing), times, -1)
+        return flat, rates.reshape(len(timing), times, rates.shape[1])
 
     def _gain(self, nu):
         """(L, S) gains of the gauges over the nominal ones."""
