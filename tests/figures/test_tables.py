@@ -107,7 +107,7 @@ def test_fig4_forces_exceed_readings_as_an_averaging_gauge_demands(drawn):
     # Without weight the pulse is the exact travelling wave up to what the striker leaves behind it: 0.1 %.
     assert np.allclose(ratio[level], SolitaryWave.compute().gauge_ratio, rtol=1e-3)
     # The discharge takes some per cent of a peak, a weight gives some back.
-    assert (ratio[~level] > 0.9 * SolitaryWave.compute().gauge_ratio).all()
+    assert (ratio[~level] > 0.7 * SolitaryWave.compute().gauge_ratio).all()
     assert (ratio < 1).all()
 
 
@@ -176,5 +176,5 @@ def test_fig4_leaves_the_printed_reading_out_where_no_simulated_wave_is_as_weak(
     )
     kept = {"fig4a.matched": study.run(card), "fig4b.nominal": studies["fig4b.nominal"]}
     table = pandas.read_csv(figures.make("fig4", kept, tmp_path)[0])
-    assert "paper" not in set(table.series)
+    assert PRINTED.speed_low not in set(table.speed_m_s[table.series == "paper"])
     assert "paper-as-read" in set(table.series)

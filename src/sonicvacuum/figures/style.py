@@ -71,12 +71,12 @@ _LOOKS = {
     "matched": Look("#0072B2", 1.2, "-", "o", "Hertz, 15 GPa"),
     "membrane": Look("#009E73", 0.9, (0, (5, 1.2, 1, 1.2)), "^", "Hertz, 4.75 GPa"),
     "handbook": Look("#D55E00", 0.9, (0, (3.5, 1.2)), "s", "Hertz, 2.76 GPa"),
-    "layer": Look("#AA4488", 1.0, (0, (1.2, 1.0)), "v", "layer, 2.76 GPa"),
+    "layer": Look("#CC79A7", 1.0, (0, (1.2, 1.0)), "v", "layer, 2.76 GPa"),
     "layer-loss": Look("#000000", 1.3, "-", "D", "layer, 2.76 GPa, loss"),
     "layer-loss-geometry": Look("#8C6D1F", 0.9, (0, (6, 1.5)), "P", "the same, geometric masses"),
     "nominal": Look("#000000", 1.1, "-", "o", "steel, 193 GPa"),
 }
-_OTHER = Look("#CC79A7", 1.0, (0, (1, 1)), "D", "another model")
+_OTHER = Look("#7F7F7F", 1.0, (0, (1, 1)), "D", "another model")
 
 
 def look(model: str) -> Look:

@@ -127,12 +127,12 @@ def _free_until(run: OneRun, sensor: Gauge) -> float:
 def _peaks(run: OneRun, sensor: Gauge, until_us: float):
     trace, main = run.view.trace(sensor.id), run.view.main(sensor.id)
     end = min(_free_until(run, sensor), until_us * 1e-6)
-    for number, pulse in enumerate(pulses(trace, main, end, TRAIN), start=1):
+    for number, pulse in enumerate(pulses(trace, main, end, TRAIN, SMALL), start=1):
         peak = {"series": "peak", "pulse": number, "time_us": 1e6 * pulse.time, "force_N": pulse.force}
         if number == 1 and run.span and sensor == run.span[1]:
             peak["speed_m_s"] = run.speed().value
         yield peak
-    counted = pulses(trace, main, end, TRAIN)
+    counted = pulses(trace, main, end, TRAIN, SMALL)
     later = [p for p in pulses(trace, main, end, SMALL, SMALL) if counted and p.time > counted[-1].time]
     if len(counted) > 2 and later:
         small = {"series": "small", "pulse": len(counted) + 1, "force_N": later[0].force}
@@ -266,7 +266,9 @@ def _paper(axes, table, bases):
 def number(axes: Axes, table: pandas.DataFrame, bases: dict[str, float]) -> None:
     """Number the waves of each train at the lowest gauge."""
     peaks = table[table.series.isin(["peak", "small"]) & (table.sensor == list(bases)[-1])]
-    for model, train in peaks.groupby("model", sort=False):
+    # Numbers of a lower train would lie on the lines of the highest.
+    highest = peaks.model[peaks.force_N.idxmax()] if len(peaks) else None
+    for model, train in peaks[peaks.model == highest].groupby("model", sort=False):
         for peak in train.itertuples() if len(train) > 1 else ():
             axes.annotate(
                 f"{peak.pulse:.0f}" if peak.series == "peak" else f"({peak.pulse:.0f})",
