@@ -15,7 +15,8 @@ UNTIL_US = {"a": 1600.0, "b": 400.0}
 
 CAPTION = style.paragraph(f"""
 Trains made by a 1.23 g striker at 0.44 m/s, simulated: Hertz without losses, the layer with loss.
-Gauges, bars ({PRINTED.coated_bar:g}, {PRINTED.steel_bar:g} N) and pale lines as Fig. 3. Numbers (highest train): waves
+Gauges, bars ({PRINTED.coated_bar:g}, {PRINTED.steel_bar:g} N) and pale lines
+as Fig. 3. Numbers (highest train): waves
 of at least {traces.TRAIN:.2f} of the first at the wall; in brackets a fourth below that, which the paper,
 whose traces are not available, does not count.
 """)

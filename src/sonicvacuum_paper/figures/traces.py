@@ -255,9 +255,10 @@ def _paper(axes, table, bases):
         length = bar.time_us.max() - bar.time_us.min()
         axes.annotate(
             f"{length:.0f} µs (paper)",
-            (bar.time_us.max(), level),
-            (4, 0),
+            (bar.time_us.min(), level),
+            (-4, 0),
             textcoords="offset points",
+            ha="right",
             va="center",
             fontsize=7,
         )
