@@ -292,7 +292,10 @@ ALIKE = 9.0
 
 def _alias(judged: Judged, found: Investigation) -> bool:
     """Whether a slip moves these data exactly as the one effect that is named."""
-    effect = FAULTS[judged.slip.fault].alias
-    if found.named != [effect] or judged.model is None:
+    nuisance = FAULTS[judged.slip.fault].alias
+    if not nuisance or judged.model is None or len(found.named) != 1 or unexplained(found):
+        return False
+    effect = found.forward.experiment.catalogue.effect(found.named[0])
+    if all(p.acts_like != nuisance for p in effect.parameters):
         return False
     return judged.gain > found.null.objective - found.final.objective - ALIKE

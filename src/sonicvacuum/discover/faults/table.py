@@ -13,7 +13,8 @@ class Fault:
         check: what to look at at the bench.
         unit: of the value, "" where it is a ratio or a number.
         corrected: whether the rest of the verdict is of the record put right.
-        alias: effect that moves the same data in the same way, "" where there is none.
+        alias: nuisance such that an effect which acts like it (`Parameter.acts_like`) moves the same data in
+            the same way, "" where there is none.
     """
 
     id: str
@@ -98,13 +99,13 @@ FAULTS: dict[str, Fault] = {
             "striker-mass",
             "the striker weighs {value} times the stated mass",
             "weigh the striker",
-            alias="striker-error",
+            alias="speed",
         ),
         Fault(
             "speed-common",
             "all strikers move at {value} times the stated speed",
             "check drop heights, or the distance between the light gates",
-            alias="striker-error",
+            alias="speed",
         ),
         Fault(
             "clock",
