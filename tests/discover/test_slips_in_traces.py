@@ -10,6 +10,7 @@ from made_slips import altered
 from sonicvacuum.discover.faults import traces
 from sonicvacuum.discover.faults.competition import predicted
 from sonicvacuum.discover.faults.examine import examine
+from sonicvacuum.discover.masks import cut
 from sonicvacuum.discover.problem import together
 
 TIME = np.arange(700.0)
@@ -90,7 +91,7 @@ def test_pure_noise_raises_no_alarm():
         assert traces.drift(noise, 1.0) is None
         assert traces.pickup(noise) is None
         assert not traces.spikes(noise, 1.0).any()
-        assert not traces.clipped(noise, 1.0).any()
+        assert not cut(noise, 1.0).any()
 
 
 @pytest.mark.parametrize("effect", ["viscous-drag", "sensor-droop", "sensor-gain", "sensor-offset"])

@@ -9,6 +9,7 @@ import numpy as np
 from sonicvacuum.discover.faults import expected, policy, traces
 from sonicvacuum.discover.faults.found import Bench, Finding
 from sonicvacuum.discover.faults.table import FAULTS
+from sonicvacuum.discover.masks import cut
 from sonicvacuum.discover.problem import flicker
 from sonicvacuum.records import Record, Signals
 
@@ -53,7 +54,7 @@ class _Look:
     def _sample_slips(self, run, gauge):
         """Spikes and clipping: samples that are masked."""
         trace = self.readings[run][gauge.id]
-        held = traces.clipped(trace, gauge.sigma or flicker(trace))
+        held = cut(trace, gauge.sigma or flicker(trace))
         at = traces.spikes(trace, gauge.sigma) & ~held
         if at.any():
             self.readings[run][gauge.id] = traces.without_spikes(trace, at)

@@ -1,4 +1,4 @@
-"""Slips that single traces show by themselves, without any model: spikes, clipping, drift, pick-up, noise."""
+"""Slips that single traces show by themselves, without any model: spikes, drift, pick-up, noise."""
 
 import math
 
@@ -9,10 +9,6 @@ from sonicvacuum.discover.problem import flicker
 # A spike stands this many robust standard deviations off the median of its neighbours, and off both of them;
 # of a hundred thousand Gaussian samples the largest is below 5.
 SPIKE = 8.0
-# Equal samples in a row at an extreme: a sampled pulse has at most a few at its very top.
-CLIPPED = 5
-# Extremes are told from the noise by so many standard deviations.
-LOUD = 10.0
 # Samples of a quiet stretch that can be judged.
 FEWEST = 40
 # Sure deviations of a quiet stretch, in standard errors.
@@ -54,22 +50,6 @@ def without_spikes(trace: np.ndarray, at: np.ndarray) -> np.ndarray:
     """The trace with its spikes drawn over straight."""
     place = np.arange(len(trace))
     return np.interp(place, place[~at], trace[~at])
-
-
-def clipped(trace: np.ndarray, sigma: float) -> np.ndarray:
-    """(T,) samples at an extreme value that is held; none where the extremes are not loud."""
-    lost = np.zeros(len(trace), dtype=bool)
-    for level in (float(trace.max()), float(trace.min())):
-        held = trace == level
-        if abs(level) > LOUD * sigma and _longest(held) >= CLIPPED:
-            lost |= held
-    return lost
-
-
-def _longest(flags):
-    """Length of the longest row of True."""
-    edges = np.flatnonzero(np.diff(np.concatenate(([0], flags.astype(int), [0]))))
-    return int((edges[1::2] - edges[::2]).max(initial=0))
 
 
 def noise_ratio(stretch: np.ndarray, sigma: float) -> float | None:
