@@ -70,9 +70,9 @@ def _folders(records, out):
 
 
 def _sentence(verdict):
-    from sonicvacuum.report.words import share, slip
+    from sonicvacuum.cli.page import slips_of
 
-    slips = "; ".join(f"{slip(f)} (probability {share(f.probability)})" for f in verdict.faults)
+    slips = slips_of(verdict)
     return f"check first: {slips}; missing: {_named(verdict)}" if slips else _named(verdict)
 
 

@@ -39,3 +39,10 @@ def page_files() -> tuple[str, ...]:
     from sonicvacuum.report.record import PAGE
 
     return PAGE
+
+
+def slips_of(verdict) -> str:
+    """What a verdict says to check at the bench first, in one line; empty where there is nothing."""
+    from sonicvacuum.report.words import share, slip
+
+    return "; ".join(f"{slip(f)} (probability {share(f.probability)})" for f in verdict.faults)
