@@ -26,9 +26,11 @@ def found():
     """An investigation that names striker-error."""
     nominal, final = SimpleNamespace(objective=300.0), SimpleNamespace(objective=200.0)
     odds = {"none": 0.0, "unknown": 0.02, "striker-error": 0.98}
+    forward = SimpleNamespace(experiment=SimpleNamespace(catalogue=CATALOGUE))
     return SimpleNamespace(
-        named=["striker-error"], probabilities=odds, reasons=[], null=nominal, final=final, sizes=[100]
-    )
+        named=["striker-error"], probabilities=odds, reasons=[], null=nominal, final=final, sizes=[100],
+        forward=forward,
+    )  # fmt: skip
 
 
 def test_an_effect_that_is_the_same_as_a_slip_is_not_named_with_confidence(empty):

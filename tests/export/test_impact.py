@@ -66,8 +66,9 @@ def test_the_viscoelastic_form_is_the_engine_s_at_any_damping():
         chain, rebound, _ = bounced("kuwabara-kono", time_us=time_us)
         stiffness, mass = (float(a(1)[0, 0]) for a in (chain.stiffnesses, chain.masses))
         x = impact.viscoelastic_number(time_us * 1e-6, stiffness, mass, SPEEDS)
-        # Printed coefficients of six digits; the engine's step.
-        np.testing.assert_allclose(impact.viscoelastic_restitution(x), rebound, atol=3e-4)
+        # The approximant's own error: by a solver to 1e-11 the engine is within 1e-7, the approximant 6e-4
+        # away where the ball keeps a tenth of its speed, 1e-4 where it keeps half.
+        np.testing.assert_allclose(impact.viscoelastic_restitution(x), rebound, rtol=0.0, atol=8e-4)
 
 
 def test_closed_forms_are_the_engine_s():
