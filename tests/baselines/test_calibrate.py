@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sonicvacuum.discover.calibration import Calibration, of_package
+from sonicvacuum.discover.fit.calibration import Calibration, of_package
 from sonicvacuum.files import InputError
 from sonicvacuum_blind.baselines.calibrate import Outcome, calibrate, outcomes
 

@@ -10,8 +10,8 @@ from click.testing import CliRunner
 
 from sonicvacuum import records
 from sonicvacuum.cli import cli
+from sonicvacuum.discover.model.problem import experiment
 from sonicvacuum.discover.next_experiment import changes
-from sonicvacuum.discover.problem import experiment
 from sonicvacuum.files import InputError
 from sonicvacuum.laboratory.specimen import GRAVITY
 from sonicvacuum_blind import followup, study

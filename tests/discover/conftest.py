@@ -3,9 +3,10 @@
 import pytest
 from made_records import DAMPING, made
 
-from sonicvacuum.discover import session, singles
-from sonicvacuum.discover.forward import Forward
-from sonicvacuum.discover.problem import experiment
+from sonicvacuum.discover import session
+from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.model.problem import experiment
+from sonicvacuum.discover.search import singles
 
 
 @pytest.fixture(scope="session")

@@ -4,12 +4,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sonicvacuum.discover.directions import Direction
-from sonicvacuum.discover.forward import Layout
-from sonicvacuum.discover.hypothesis import Component, Hypothesis, variants
-from sonicvacuum.discover.normal import Normal
-from sonicvacuum.discover.refit import Fit
-from sonicvacuum.discover.screen import Screen
+from sonicvacuum.discover.fit.normal import Normal
+from sonicvacuum.discover.fit.refit import Fit
+from sonicvacuum.discover.model.forward import Layout
+from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, variants
+from sonicvacuum.discover.search.directions import Direction
+from sonicvacuum.discover.search.screen import Screen
 from sonicvacuum.effects import effect
 
 

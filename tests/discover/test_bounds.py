@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from sonicvacuum.discover import bounds
-from sonicvacuum.discover.forward import Forward
-from sonicvacuum.discover.hypothesis import Component, Hypothesis, variants
-from sonicvacuum.discover.parameters import coordinate
-from sonicvacuum.discover.problem import experiment
-from sonicvacuum.discover.refit import fit
+from sonicvacuum.discover.fit import bounds
+from sonicvacuum.discover.fit.refit import fit
+from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, variants
+from sonicvacuum.discover.model.parameters import coordinate
+from sonicvacuum.discover.model.problem import experiment
 from sonicvacuum.effects import CATALOGUE, effect
 
 

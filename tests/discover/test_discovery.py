@@ -12,13 +12,14 @@ from scipy.optimize import least_squares
 from sonicvacuum import records
 from sonicvacuum.cli.compare import compare
 from sonicvacuum.cli.discover import discover
-from sonicvacuum.discover import directions, screen, session
+from sonicvacuum.discover import session
 from sonicvacuum.discover.compare import read_model
-from sonicvacuum.discover.forward import Forward
-from sonicvacuum.discover.hypothesis import Component, Hypothesis, variants
-from sonicvacuum.discover.problem import experiment
-from sonicvacuum.discover.refit import fit
+from sonicvacuum.discover.fit.refit import fit
+from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, variants
+from sonicvacuum.discover.model.problem import experiment
 from sonicvacuum.discover.rounds import nominal
+from sonicvacuum.discover.search import directions, screen
 from sonicvacuum.discover.verdict import Verdict
 from sonicvacuum.effects import IDS, effect
 from sonicvacuum.files import InputError

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from made_records import block
 
-from sonicvacuum.discover.forward import Forward
-from sonicvacuum.discover.hypothesis import Hypothesis
-from sonicvacuum.discover.problem import experiment
+from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.model.hypothesis import Hypothesis
+from sonicvacuum.discover.model.problem import experiment
 from sonicvacuum.discover.session import _doubts
 from sonicvacuum.records import Record, Signals
 from sonicvacuum.records.reader import parse

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sonicvacuum.discover import explanations
-from sonicvacuum.discover.calibration import Calibration
+from sonicvacuum.discover.fit.calibration import Calibration
+from sonicvacuum.discover.judge import explanations
 
 
 def single(name, log_bayes):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from sonicvacuum.discover import goodness
+from sonicvacuum.discover.fit import goodness
 
 SAMPLES, WIDE, TRACES = 400, 30, 200
 

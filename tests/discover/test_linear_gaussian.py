@@ -8,13 +8,15 @@ import pytest
 from linear_models import Imagined, Linear, drawn, of_drag, screened
 from scipy import integrate, stats
 
-from sonicvacuum.discover import calibration, degenerate, evidence, heldout, left, next_experiment, policy
-from sonicvacuum.discover.calibration import Calibration
-from sonicvacuum.discover.directions import Direction
-from sonicvacuum.discover.evidence import Candidate
-from sonicvacuum.discover.experiment import Experiment, RunData
-from sonicvacuum.discover.hypothesis import Hypothesis
-from sonicvacuum.discover.problem import noise
+from sonicvacuum.discover import next_experiment, policy
+from sonicvacuum.discover.fit import calibration, evidence, heldout
+from sonicvacuum.discover.fit.calibration import Calibration
+from sonicvacuum.discover.fit.evidence import Candidate
+from sonicvacuum.discover.judge import degenerate, left
+from sonicvacuum.discover.model.experiment import Experiment, RunData
+from sonicvacuum.discover.model.hypothesis import Hypothesis
+from sonicvacuum.discover.model.problem import noise
+from sonicvacuum.discover.search.directions import Direction
 from sonicvacuum.gauges import Gauge
 from sonicvacuum.records import Record, Signals
 

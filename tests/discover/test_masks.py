@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from made_records import made
 
-from sonicvacuum.discover.masks import cut, spikes
-from sonicvacuum.discover.problem import experiment
+from sonicvacuum.discover.model.masks import cut, spikes
+from sonicvacuum.discover.model.problem import experiment
 from sonicvacuum.records import Record, Signals
 
 SIGMA = 0.01

@@ -8,9 +8,9 @@ import pytest
 from made_records import made
 
 from sonicvacuum.discover import session
-from sonicvacuum.discover.experiment import whitened_gaps
-from sonicvacuum.discover.forward import Forward
-from sonicvacuum.discover.problem import experiment, flicker, noise
+from sonicvacuum.discover.model.experiment import whitened_gaps
+from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.model.problem import experiment, flicker, noise
 from sonicvacuum.discover.rounds import nominal
 from sonicvacuum.records import Record, Signals, read, write
 from sonicvacuum.records.reader import parse

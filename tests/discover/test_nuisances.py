@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from made_records import block, made
 
-from sonicvacuum.discover import directions, screen
-from sonicvacuum.discover.forward import Forward
-from sonicvacuum.discover.hypothesis import Hypothesis
-from sonicvacuum.discover.nuisances import Layout, Shared
-from sonicvacuum.discover.problem import experiment
+from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.model.hypothesis import Hypothesis
+from sonicvacuum.discover.model.nuisances import Layout, Shared
+from sonicvacuum.discover.model.problem import experiment
+from sonicvacuum.discover.model.slow import columns
 from sonicvacuum.discover.rounds import nominal
-from sonicvacuum.discover.singles import setup_of
-from sonicvacuum.discover.slow import columns
+from sonicvacuum.discover.search import directions, screen
+from sonicvacuum.discover.search.singles import setup_of
 from sonicvacuum.records import Record, Signals
 from sonicvacuum.records.reader import parse
 

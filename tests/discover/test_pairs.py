@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from made_records import BEADS, made
 
-from sonicvacuum.discover import pairs, session
-from sonicvacuum.discover.directions import Direction
+from sonicvacuum.discover import session
+from sonicvacuum.discover.search import pairs
+from sonicvacuum.discover.search.directions import Direction
 
 
 def screened(columns, data, two_sided):

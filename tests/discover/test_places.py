@@ -4,11 +4,13 @@ import numpy as np
 import pytest
 from made_records import made
 
-from sonicvacuum.discover import places, rounds, singles
-from sonicvacuum.discover.forward import Forward
-from sonicvacuum.discover.hypothesis import Component, Hypothesis, variants
-from sonicvacuum.discover.problem import experiment
-from sonicvacuum.discover.refit import fit
+from sonicvacuum.discover import rounds
+from sonicvacuum.discover.fit import places
+from sonicvacuum.discover.fit.refit import fit
+from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, variants
+from sonicvacuum.discover.model.problem import experiment
+from sonicvacuum.discover.search import singles
 from sonicvacuum.effects import effect
 
 

@@ -10,8 +10,8 @@ from made_slips import altered
 from sonicvacuum.discover.faults import traces
 from sonicvacuum.discover.faults.competition import predicted
 from sonicvacuum.discover.faults.examine import examine
-from sonicvacuum.discover.masks import cut
-from sonicvacuum.discover.problem import together
+from sonicvacuum.discover.model.masks import cut
+from sonicvacuum.discover.model.problem import together
 
 TIME = np.arange(700.0)
 RNG = np.random.default_rng(np.random.SeedSequence(11))

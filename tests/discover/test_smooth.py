@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 from made_records import made
 
-from sonicvacuum.discover import session, smooth
-from sonicvacuum.discover.experiment import Smooth
-from sonicvacuum.discover.forward import Forward
-from sonicvacuum.discover.problem import experiment
+from sonicvacuum.discover import session
+from sonicvacuum.discover.fit import smooth
+from sonicvacuum.discover.model.experiment import Smooth
+from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.model.problem import experiment
 from sonicvacuum.discover.rounds import investigate, nominal
 from sonicvacuum.records import Record
 

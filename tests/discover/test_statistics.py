@@ -7,12 +7,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sonicvacuum.discover import evidence, gauges, heldout
-from sonicvacuum.discover.experiment import lag_one
-from sonicvacuum.discover.hypothesis import Component, Hypothesis, variants
-from sonicvacuum.discover.normal import Normal
-from sonicvacuum.discover.parameters import coordinate
-from sonicvacuum.discover.refit import Fit
+from sonicvacuum.discover.fit import evidence, heldout
+from sonicvacuum.discover.fit.normal import Normal
+from sonicvacuum.discover.fit.refit import Fit
+from sonicvacuum.discover.model import gauges
+from sonicvacuum.discover.model.experiment import lag_one
+from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, variants
+from sonicvacuum.discover.model.parameters import coordinate
 from sonicvacuum.effects import CATALOGUE, effect
 
 

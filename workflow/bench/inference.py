@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from peers import dop853_chain
 
-from sonicvacuum.discover import forward
+from sonicvacuum.discover.model import forward
 from sonicvacuum.discover.session import discover
 from sonicvacuum_blind import hide, study
 

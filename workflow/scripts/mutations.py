@@ -75,7 +75,11 @@ def main() -> int:
         source = Path(folder) / "src"
         shutil.copytree("src", source, ignore=shutil.ignore_patterns("__pycache__"))
         for title, name, old, new in (("nothing", "rounds.py", "", ""), *MUTATIONS):
-            path = source / "sonicvacuum" / "discover" / name
+            path = next(
+                p
+                for p in sorted((source / "sonicvacuum" / "discover").rglob(name))
+                if "faults" not in p.parts
+            )
             text = path.read_text(encoding="utf-8")
             path.write_text(mutated(text, old, new) if title != "nothing" else text, encoding="utf-8")
             red = sorted(set(failures(source)))

@@ -1,8 +1,10 @@
 """From a record of measured data to a verdict: where model and data disagree, what is missing, how sure.
 
-`experiment` holds the data, `forward` the simulator as a function of parameters, `gram` the algebra of the
-linearised model; `locate`, `screen`, `refit`, `evidence`, `unknown`, `decide`, `degenerate` and
-`next_experiment` are the steps, `rounds` their order, `verdict` what is written.
+Five rooms, each of which knows only those before it: `model` (the experiment, and the simulator as a function
+of what is unknown), `fit` (one hypothesis against the data), `search` (which hypotheses are tried), `judge`
+(what is concluded from them) and `faults` (slips made in measuring, in competition with effects). Every
+constant that decides stands in `policy`. `rounds` runs the search, `session` the whole of it; `verdict` is
+what is written, `compare` scores a model on a record, `next_experiment` proposes what to measure next.
 """
 
 import sys

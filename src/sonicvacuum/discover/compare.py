@@ -9,10 +9,10 @@ import numpy as np
 from msgspec import Struct
 
 from sonicvacuum.blas import one_thread
-from sonicvacuum.discover.forward import Forward
-from sonicvacuum.discover.hypothesis import Component, Hypothesis
-from sonicvacuum.discover.problem import experiment
-from sonicvacuum.discover.refit import fit
+from sonicvacuum.discover.fit.refit import fit
+from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.model.hypothesis import Component, Hypothesis
+from sonicvacuum.discover.model.problem import experiment
 from sonicvacuum.discover.verdict import Gap, Model, Sources, gap
 from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.files import InputError, reading

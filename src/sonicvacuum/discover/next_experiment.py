@@ -10,8 +10,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from sonicvacuum.discover.experiment import Batch, Experiment, RunData
-from sonicvacuum.discover.forward import Forward
+from sonicvacuum.discover.model.experiment import Batch, Experiment, RunData
+from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.rounds import Investigation
 from sonicvacuum.discover.verdict import Next
 from sonicvacuum.laboratory.next_run import FASTEST, MASSES, PRELOADS, SLOWEST, SPEEDS, gauge_beads

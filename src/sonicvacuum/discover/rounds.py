@@ -4,23 +4,16 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from sonicvacuum.discover import (
-    bounds,
-    directions,
-    evidence,
-    explanations,
-    places,
-    policy,
-    screen,
-    singles,
-    smooth,
-)
-from sonicvacuum.discover.decision import Case, Decision, View
-from sonicvacuum.discover.evidence import Candidate, Combination
-from sonicvacuum.discover.experiment import Experiment
-from sonicvacuum.discover.forward import Forward
-from sonicvacuum.discover.hypothesis import Hypothesis
-from sonicvacuum.discover.refit import Fit, fit, polish
+from sonicvacuum.discover import policy
+from sonicvacuum.discover.fit import bounds, evidence, places, smooth
+from sonicvacuum.discover.fit.evidence import Candidate, Combination
+from sonicvacuum.discover.fit.refit import Fit, fit, polish
+from sonicvacuum.discover.judge import explanations
+from sonicvacuum.discover.judge.decision import Case, Decision, View
+from sonicvacuum.discover.model.experiment import Experiment
+from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.model.hypothesis import Hypothesis
+from sonicvacuum.discover.search import directions, screen, singles
 
 # Candidates whose Δχ² is this far behind the best are not followed to their minimum.
 NEAR = 15.0

@@ -9,20 +9,12 @@ import numpy as np
 from msgspec import UNSET
 
 from sonicvacuum.blas import one_thread
-from sonicvacuum.discover import (
-    degenerate,
-    directions,
-    explanations,
-    goodness,
-    heldout,
-    locate,
-    next_experiment,
-    screen,
-    singles,
-    verdict,
-)
+from sonicvacuum.discover import next_experiment, verdict
 from sonicvacuum.discover.faults import competition
+from sonicvacuum.discover.fit import goodness, heldout
+from sonicvacuum.discover.judge import degenerate, explanations, locate
 from sonicvacuum.discover.rounds import Investigation
+from sonicvacuum.discover.search import directions, screen, singles
 from sonicvacuum.discover.verdict import Verdict
 from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.physics import validity
@@ -261,7 +253,7 @@ def trace_rows(result: Result):
     Columns are in N; where a gauge reads something else, they have no unit in their names and each row has
     its own.
     """
-    from sonicvacuum.discover.unknown import raw
+    from sonicvacuum.discover.search.unknown import raw
 
     found = result.found
     e = found.forward.experiment

@@ -14,15 +14,15 @@ import msgspec
 import numpy as np
 from msgspec import UNSET, Struct, UnsetType
 
-from sonicvacuum.discover.degenerate import Limit
-from sonicvacuum.discover.explanations import key
 from sonicvacuum.discover.faults.found import Finding
 from sonicvacuum.discover.faults.table import FAULTS
-from sonicvacuum.discover.forward import Forward
-from sonicvacuum.discover.goodness import Goodness
-from sonicvacuum.discover.heldout import HeldOut
-from sonicvacuum.discover.locate import Place
-from sonicvacuum.discover.refit import Fit
+from sonicvacuum.discover.fit.goodness import Goodness
+from sonicvacuum.discover.fit.heldout import HeldOut
+from sonicvacuum.discover.fit.refit import Fit
+from sonicvacuum.discover.judge.degenerate import Limit
+from sonicvacuum.discover.judge.explanations import key
+from sonicvacuum.discover.judge.locate import Place
+from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.rounds import Investigation
 from sonicvacuum.effects import Catalogue
 from sonicvacuum.files import replacing

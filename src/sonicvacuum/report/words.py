@@ -6,9 +6,9 @@ Every sentence is made from `verdict.json`, `model.json` and the tables beside t
 import math
 from collections import Counter
 
-from sonicvacuum.discover.explanations import key
 from sonicvacuum.discover.faults.table import FAULTS
-from sonicvacuum.discover.locate import DISCOVERY_RATE
+from sonicvacuum.discover.judge.explanations import key
+from sonicvacuum.discover.judge.locate import DISCOVERY_RATE
 from sonicvacuum.discover.verdict import PUT_RIGHT, Fault, Gap, Model, Next, Verdict
 from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.report.tables import number

@@ -14,8 +14,8 @@ import numpy as np
 from scipy.optimize import minimize
 
 from sonicvacuum.blas import one_thread
-from sonicvacuum.discover.calibration import Calibration
-from sonicvacuum.discover.evidence import log_weights, unknown_odds
+from sonicvacuum.discover.fit.calibration import Calibration
+from sonicvacuum.discover.fit.evidence import log_weights, unknown_odds
 from sonicvacuum.files import InputError, replacing
 from sonicvacuum_blind.score import NONE, UNKNOWN, found_in, load
 

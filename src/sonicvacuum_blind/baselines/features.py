@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from sonicvacuum.discover.locate import FEATURES
+from sonicvacuum.discover.judge.locate import FEATURES
 from sonicvacuum.files import read_yaml
 from sonicvacuum_blind.baselines.cases import Case, Cell
 

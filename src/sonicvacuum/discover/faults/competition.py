@@ -14,8 +14,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.stats import chi2 as chi_squared
 
-from sonicvacuum.discover import evidence, explanations, smooth
-from sonicvacuum.discover.experiment import Experiment
 from sonicvacuum.discover.faults import policy
 from sonicvacuum.discover.faults.examine import examine
 from sonicvacuum.discover.faults.found import Bench, Finding
@@ -23,10 +21,13 @@ from sonicvacuum.discover.faults.judging import Judge, Judged, Model, noise_volu
 from sonicvacuum.discover.faults.slips import hypotheses
 from sonicvacuum.discover.faults.table import FAULTS
 from sonicvacuum.discover.faults.timing import time_zero, with_starts
-from sonicvacuum.discover.forward import Forward
-from sonicvacuum.discover.hypothesis import Hypothesis
-from sonicvacuum.discover.problem import together
-from sonicvacuum.discover.refit import polish
+from sonicvacuum.discover.fit import evidence, smooth
+from sonicvacuum.discover.fit.refit import polish
+from sonicvacuum.discover.judge import explanations
+from sonicvacuum.discover.model.experiment import Experiment
+from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.model.hypothesis import Hypothesis
+from sonicvacuum.discover.model.problem import together
 from sonicvacuum.discover.rounds import Investigation, investigate, nominal
 from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.records import Record

@@ -9,8 +9,8 @@ import numpy as np
 from sonicvacuum.discover.faults import expected, policy, traces
 from sonicvacuum.discover.faults.found import Bench, Finding
 from sonicvacuum.discover.faults.table import FAULTS
-from sonicvacuum.discover.masks import cut
-from sonicvacuum.discover.problem import flicker
+from sonicvacuum.discover.model.masks import cut
+from sonicvacuum.discover.model.problem import flicker
 from sonicvacuum.records import Record, Signals
 
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from sonicvacuum.discover.experiment import Experiment
+from sonicvacuum.discover.model.experiment import Experiment
 from sonicvacuum.records import Record
 
 

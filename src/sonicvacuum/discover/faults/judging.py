@@ -10,12 +10,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sonicvacuum.discover.experiment import Experiment
 from sonicvacuum.discover.faults import policy
 from sonicvacuum.discover.faults.found import Bench
 from sonicvacuum.discover.faults.slips import Slip
-from sonicvacuum.discover.forward import Forward
-from sonicvacuum.discover.refit import Fit, fit
+from sonicvacuum.discover.fit.refit import Fit, fit
+from sonicvacuum.discover.model.experiment import Experiment
+from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.records import Record
 
 # Steps of the search for a size, and the Δχ² below which a step is the last.

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from sonicvacuum.discover.problem import flicker
+from sonicvacuum.discover.model.problem import flicker
 
 # A spike stands this many robust standard deviations off the median of its neighbours, and off both of them;
 # of a hundred thousand Gaussian samples the largest is below 5.

@@ -12,11 +12,12 @@ from collections.abc import Iterable, Mapping
 
 import numpy as np
 
-from sonicvacuum.discover import evidence, policy
-from sonicvacuum.discover.calibration import Calibration, of_package
-from sonicvacuum.discover.evidence import Candidate, Combination
-from sonicvacuum.discover.forward import Forward
-from sonicvacuum.discover.refit import Fit
+from sonicvacuum.discover import policy
+from sonicvacuum.discover.fit import evidence
+from sonicvacuum.discover.fit.calibration import Calibration, of_package
+from sonicvacuum.discover.fit.evidence import Candidate, Combination
+from sonicvacuum.discover.fit.refit import Fit
+from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.effects import IDS
 
 NONE, UNKNOWN = "none", "unknown"

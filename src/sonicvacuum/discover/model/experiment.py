@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from sonicvacuum.discover.nuisances import Shared
+from sonicvacuum.discover.model.nuisances import Shared
 from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.gauges import Gauge
 from sonicvacuum.laboratory.bodies import Bodies

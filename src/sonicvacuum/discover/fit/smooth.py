@@ -14,10 +14,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sonicvacuum.discover import policy
-from sonicvacuum.discover.experiment import Experiment, Smooth
-from sonicvacuum.discover.forward import Forward
-from sonicvacuum.discover.normal import from_slopes
-from sonicvacuum.discover.refit import Fit
+from sonicvacuum.discover.fit.normal import from_slopes
+from sonicvacuum.discover.fit.refit import Fit
+from sonicvacuum.discover.model.experiment import Experiment, Smooth
+from sonicvacuum.discover.model.forward import Forward
 
 # It begins so many widths before the peak, with the pulse itself.
 _BEFORE = 1.5

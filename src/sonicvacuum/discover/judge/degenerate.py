@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sonicvacuum.discover.evidence import Candidate, Combination
-from sonicvacuum.discover.screen import Screen
+from sonicvacuum.discover.fit.evidence import Candidate, Combination
+from sonicvacuum.discover.search.screen import Screen
 from sonicvacuum.effects import Setup
 
 # Twice the difference of log evidences, as a χ².

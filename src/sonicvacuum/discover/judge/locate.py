@@ -10,10 +10,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import stats
 
-from sonicvacuum.discover import screen, unknown
-from sonicvacuum.discover.directions import Direction
-from sonicvacuum.discover.forward import Forward
-from sonicvacuum.discover.refit import Fit
+from sonicvacuum.discover.fit.refit import Fit
+from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.search import screen, unknown
+from sonicvacuum.discover.search.directions import Direction
 
 FEATURES = (
     "precursor",

@@ -9,10 +9,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from sonicvacuum.discover.forward import Forward
-from sonicvacuum.discover.hypothesis import Hypothesis
-from sonicvacuum.discover.parameters import Coordinate
-from sonicvacuum.discover.refit import Fit, polish
+from sonicvacuum.discover.fit.refit import Fit, polish
+from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.model.hypothesis import Hypothesis
+from sonicvacuum.discover.model.parameters import Coordinate
 
 # A bound is moved by this factor (logarithmic coordinates), or by the whole range (linear ones).
 FACTOR = 10.0

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sonicvacuum.discover import secants
-from sonicvacuum.discover.evidence import Candidate, log_bayes
-from sonicvacuum.discover.forward import Forward
-from sonicvacuum.discover.hypothesis import Component, Hypothesis, variants
-from sonicvacuum.discover.refit import Fit, fit
-from sonicvacuum.discover.screen import Screen
+from sonicvacuum.discover.fit.evidence import Candidate, log_bayes
+from sonicvacuum.discover.fit.refit import Fit, fit
+from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, variants
+from sonicvacuum.discover.search import secants
+from sonicvacuum.discover.search.screen import Screen
 from sonicvacuum.effects import Effect, Setup
 
 # Beyond this misfit of the nominal model (in χ²) its slopes may point the wrong way: whole ranges are

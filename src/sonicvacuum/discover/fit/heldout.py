@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sonicvacuum.discover.normal import Normal
-from sonicvacuum.discover.refit import Fit
+from sonicvacuum.discover.fit.normal import Normal
+from sonicvacuum.discover.fit.refit import Fit
 
 
 @dataclass(frozen=True)

@@ -17,8 +17,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sonicvacuum.discover.calibration import Calibration, of_package
-from sonicvacuum.discover.refit import Fit
+from sonicvacuum.discover.fit.calibration import Calibration, of_package
+from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.effects import IDS
 
 PRIOR_NONE, PRIOR_UNKNOWN = 0.3, 0.1

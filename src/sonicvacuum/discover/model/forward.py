@@ -11,10 +11,10 @@ from functools import cached_property
 
 import numpy as np
 
-from sonicvacuum.discover import gauges, scalars
-from sonicvacuum.discover.experiment import Experiment
-from sonicvacuum.discover.hypothesis import Hypothesis
-from sonicvacuum.discover.nuisances import Layout
+from sonicvacuum.discover.model import gauges, scalars
+from sonicvacuum.discover.model.experiment import Experiment
+from sonicvacuum.discover.model.hypothesis import Hypothesis
+from sonicvacuum.discover.model.nuisances import Layout
 from sonicvacuum.effects import Setup
 from sonicvacuum.forward import Seen, see, virtual
 

@@ -10,9 +10,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sonicvacuum.discover.forward import Forward
-from sonicvacuum.discover.hypothesis import Hypothesis, is_law, with_common_laws
-from sonicvacuum.discover.parameters import coordinate, shape_grid
+from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.model.hypothesis import Hypothesis, is_law, with_common_laws
+from sonicvacuum.discover.model.parameters import coordinate, shape_grid
 from sonicvacuum.effects import Effect, Setup
 
 # The first trial strength (typical departures), and the change of all data, in standard errors, that is

@@ -11,13 +11,15 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from sonicvacuum.discover import heldout, pairs, places, policy, smooth
-from sonicvacuum.discover.evidence import Combination
-from sonicvacuum.discover.forward import Forward
-from sonicvacuum.discover.hypothesis import Hypothesis, is_law
-from sonicvacuum.discover.normal import linearise
-from sonicvacuum.discover.refit import Fit, polish
-from sonicvacuum.discover.unknown import Alarm
+from sonicvacuum.discover import policy
+from sonicvacuum.discover.fit import heldout, places, smooth
+from sonicvacuum.discover.fit.evidence import Combination
+from sonicvacuum.discover.fit.normal import linearise
+from sonicvacuum.discover.fit.refit import Fit, polish
+from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.model.hypothesis import Hypothesis, is_law
+from sonicvacuum.discover.search import pairs
+from sonicvacuum.discover.search.unknown import Alarm
 from sonicvacuum.effects import Setup
 
 # Starts that are fitted jointly at each turn, by what they should gain; rounds of exchanges.

@@ -9,12 +9,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sonicvacuum.discover import directions as ways
-from sonicvacuum.discover import screen
-from sonicvacuum.discover.directions import Direction, Family
-from sonicvacuum.discover.forward import Forward
-from sonicvacuum.discover.parameters import coordinate
-from sonicvacuum.discover.refit import Fit
+from sonicvacuum.discover.fit.refit import Fit
+from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.model.parameters import coordinate
+from sonicvacuum.discover.search import directions as ways
+from sonicvacuum.discover.search import screen
+from sonicvacuum.discover.search.directions import Direction, Family
 from sonicvacuum.effects import Effect, Setup
 
 RATIOS = (0.01, 0.03, 0.08, 0.2, 0.5)

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from sonicvacuum.discover import flexible
-from sonicvacuum.discover.parameters import Coordinate, coordinate
+from sonicvacuum.discover.model import flexible
+from sonicvacuum.discover.model.parameters import Coordinate, coordinate
 from sonicvacuum.effects import Effect, Setup
 
 FLEXIBLE = "flexible"

@@ -9,7 +9,7 @@ as that of a smooth discrepancy is (`experiment.Smooth`): the same as fitting th
 
 import numpy as np
 
-from sonicvacuum.discover.experiment import Experiment, Smooth
+from sonicvacuum.discover.model.experiment import Experiment, Smooth
 
 # Terms of the series: 90 % of the variance with two, 95 % with four.
 TERMS = 4

@@ -13,11 +13,11 @@ from functools import cached_property
 
 import numpy as np
 
-from sonicvacuum.discover import directions as ways
-from sonicvacuum.discover.directions import Direction
-from sonicvacuum.discover.forward import Forward
-from sonicvacuum.discover.normal import Normal, from_slopes
-from sonicvacuum.discover.refit import Fit
+from sonicvacuum.discover.fit.normal import Normal, from_slopes
+from sonicvacuum.discover.fit.refit import Fit
+from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.search import directions as ways
+from sonicvacuum.discover.search.directions import Direction
 
 # Signatures that keep less than this of their length after projection are left out.
 RESOLVED = 1e-7

@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.signal import correlate
 
-from sonicvacuum.discover.experiment import Experiment
+from sonicvacuum.discover.model.experiment import Experiment
 
 
 def started(data: Experiment, time_zero_unknown: bool = False) -> Experiment:
@@ -40,7 +40,7 @@ def _pairs(data):
     """Run → measured and predicted trace of each gauge; what does not count is 0, the predicted one begins at
     the impact.
     """
-    from sonicvacuum.discover.forward import Forward
+    from sonicvacuum.discover.model.forward import Forward
 
     forward = Forward(data)
     result = {}

@@ -4,22 +4,15 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from sonicvacuum.discover import (
-    directions,
-    explanations,
-    heldout,
-    pairs,
-    policy,
-    screen,
-    several,
-    smooth,
-    unknown,
-)
-from sonicvacuum.discover.evidence import Candidate, Combination
-from sonicvacuum.discover.forward import Forward
-from sonicvacuum.discover.left import Left, left, sure
-from sonicvacuum.discover.normal import linearise
-from sonicvacuum.discover.refit import Fit, polish
+from sonicvacuum.discover import policy
+from sonicvacuum.discover.fit import heldout, smooth
+from sonicvacuum.discover.fit.evidence import Candidate, Combination
+from sonicvacuum.discover.fit.normal import linearise
+from sonicvacuum.discover.fit.refit import Fit, polish
+from sonicvacuum.discover.judge import explanations
+from sonicvacuum.discover.judge.left import Left, left, sure
+from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.search import directions, pairs, screen, several, unknown
 from sonicvacuum.effects import Setup
 
 # Pairs that are asked what they leave.

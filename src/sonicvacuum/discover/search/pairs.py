@@ -10,11 +10,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sonicvacuum.discover import directions, places, screen, secants, singles
-from sonicvacuum.discover.evidence import Candidate, Combination, log_bayes
-from sonicvacuum.discover.forward import Forward
-from sonicvacuum.discover.hypothesis import Component, Hypothesis, is_law, variants
-from sonicvacuum.discover.refit import Fit, fit, polish
+from sonicvacuum.discover.fit import places
+from sonicvacuum.discover.fit.evidence import Candidate, Combination, log_bayes
+from sonicvacuum.discover.fit.refit import Fit, fit, polish
+from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, is_law, variants
+from sonicvacuum.discover.search import directions, screen, secants, singles
 from sonicvacuum.effects import Setup
 
 # Singles that pairs start from.

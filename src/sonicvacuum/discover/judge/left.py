@@ -5,11 +5,13 @@ from dataclasses import dataclass
 
 from scipy import stats
 
-from sonicvacuum.discover import goodness, policy, screen, smooth, unknown
-from sonicvacuum.discover.forward import Forward
-from sonicvacuum.discover.goodness import Goodness
-from sonicvacuum.discover.refit import Fit
-from sonicvacuum.discover.unknown import Alarm
+from sonicvacuum.discover import policy
+from sonicvacuum.discover.fit import goodness, smooth
+from sonicvacuum.discover.fit.goodness import Goodness
+from sonicvacuum.discover.fit.refit import Fit
+from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.search import screen, unknown
+from sonicvacuum.discover.search.unknown import Alarm
 
 
 @dataclass(frozen=True)

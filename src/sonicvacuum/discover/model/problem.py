@@ -12,17 +12,17 @@ from dataclasses import replace
 
 import numpy as np
 
-from sonicvacuum.discover.experiment import (
+from sonicvacuum.discover.model.experiment import (
     Batch,
     Experiment,
     RunData,
     Scalar,
     lag_one,
 )
-from sonicvacuum.discover.masks import cut, spikes
-from sonicvacuum.discover.nuisances import MODULUS_REL_SIGMA, shared
-from sonicvacuum.discover.slow import slow
-from sonicvacuum.discover.start import started
+from sonicvacuum.discover.model.masks import cut, spikes
+from sonicvacuum.discover.model.nuisances import MODULUS_REL_SIGMA, shared
+from sonicvacuum.discover.model.slow import slow
+from sonicvacuum.discover.model.start import started
 from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.files import InputError
 from sonicvacuum.records.assemble import assemble, chain_of, duration_of, interval_of

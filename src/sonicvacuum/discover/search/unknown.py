@@ -13,12 +13,14 @@ from itertools import pairwise
 import numpy as np
 from scipy import stats
 
-from sonicvacuum.discover import directions as ways
-from sonicvacuum.discover import flexible, policy, screen
-from sonicvacuum.discover.directions import Direction, Family
-from sonicvacuum.discover.forward import Forward
-from sonicvacuum.discover.hypothesis import FLEXIBLE, with_common_laws
-from sonicvacuum.discover.refit import Fit
+from sonicvacuum.discover import policy
+from sonicvacuum.discover.fit.refit import Fit
+from sonicvacuum.discover.model import flexible
+from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.model.hypothesis import FLEXIBLE, with_common_laws
+from sonicvacuum.discover.search import directions as ways
+from sonicvacuum.discover.search import screen
+from sonicvacuum.discover.search.directions import Direction, Family
 
 # Cosines between signatures that are resolved as different.
 _RANK = 1e-3

@@ -9,8 +9,8 @@ import itertools
 
 import numpy as np
 
-from sonicvacuum.discover.forward import Forward
-from sonicvacuum.discover.refit import Fit, fit
+from sonicvacuum.discover.fit.refit import Fit, fit
+from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.effects import Setup
 
 # Places along the chain; a gauge is next to nothing.

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sonicvacuum.discover.forward import Forward
-from sonicvacuum.discover.hypothesis import Hypothesis
+from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.model.hypothesis import Hypothesis
 
 
 @dataclass(frozen=True)

@@ -14,9 +14,9 @@ import numpy as np
 from scipy import stats
 
 from sonicvacuum.discover import policy
-from sonicvacuum.discover.forward import Forward
-from sonicvacuum.discover.refit import Fit
-from sonicvacuum.discover.smooth import width
+from sonicvacuum.discover.fit.refit import Fit
+from sonicvacuum.discover.fit.smooth import width
+from sonicvacuum.discover.model.forward import Forward
 
 LAGS = 20
 # Decay times of the bank, in widths of the pulse, and how often in one of them an oscillation may set in.
