@@ -57,6 +57,18 @@ def test_names_that_act_alike_share_alike():
     assert odds["tsuji"] == pytest.approx((1.0 - odds["unknown"]) / 3.0, rel=1e-6)  # none: e^-50
 
 
+def test_odds_of_the_record_multiply_those_of_the_catalogue():
+    found = [single("tsuji", 3.0), single("gravity", 4.0)]
+    pair = [several(("tsuji", "gravity"), 5.0)]
+    usual = explanations.log_weights(found, pair, [])
+    stated = explanations.log_weights(found, pair, [], {"tsuji": 10.0})
+    assert stated["tsuji"] - usual["tsuji"] == pytest.approx(math.log(10.0))
+    assert stated["gravity + tsuji"] - usual["gravity + tsuji"] == pytest.approx(math.log(10.0))
+    assert (stated["gravity"], stated["none"]) == (usual["gravity"], usual["none"])
+    excluded = explanations.log_weights(found, pair, [], {"gravity": 0.0})
+    assert set(excluded) == {"none", "tsuji"}
+
+
 def test_what_failed_a_test_is_not_left_the_likeliest():
     found, likelier = explanations.consistent({"none": 0.2, "tsuji": 0.7, "unknown": 0.1}, [])
     assert likelier == "tsuji"

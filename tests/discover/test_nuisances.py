@@ -14,6 +14,7 @@ from sonicvacuum.discover.model.slow import columns
 from sonicvacuum.discover.rounds import nominal
 from sonicvacuum.discover.search import directions, screen
 from sonicvacuum.discover.search.singles import setup_of
+from sonicvacuum.files import InputError
 from sonicvacuum.records import Record, Signals
 from sonicvacuum.records.reader import parse
 
@@ -169,3 +170,15 @@ def test_the_speed_may_be_known_to_a_third_only():
     assert free.settled and free.objective < data + 3 * 92  # three standard deviations of χ²
     # The speeds were drawn with 1 %; gains and modulus leave them open by about as much.
     np.testing.assert_allclose(np.exp(0.3 * free.nu[:2]), 1.25, rtol=0.04)
+
+
+def test_priors_of_the_record_reach_the_search(quiet):
+    stated = experiment(with_keys(quiet, priors={"coating-thickness": 10.0, "tsuji": 0}))
+    assert stated.prior_odds == {"coating-thickness": 10.0, "tsuji": 0.0}
+    assert stated.excluded == ("tsuji",)
+    setup = setup_of(Forward(stated))
+    asked = {e.id for e in setup.catalogue.candidates(setup, stated.excluded)}
+    assert "tsuji" not in asked
+    assert "kuwabara-kono" in asked
+    with pytest.raises(InputError, match=r"priors\.gremlins: no such effect"):
+        experiment(with_keys(quiet, priors={"gremlins": 2.0}))

@@ -155,7 +155,6 @@ def test_any_choice_of_columns_and_sampling_reads_back(present, start, interval,
         ({"tolerances": {"bead_colour": 0.1}}, ["tolerances.bead_colour", "unknown key"]),
         ({"tolerances": {"bead_mass_rel": 2.0}}, ["tolerances.bead_mass_rel", "%"]),
         ({"model_floor_rel": 3.0}, ["model_floor_rel", "%"]),
-        ({"priors": {"gremlins": 2.0}}, ["priors.gremlins", "no such effect"]),
         ({"priors": {"gravity": -1.0}}, ["priors"]),
     ],
 )

@@ -1,5 +1,6 @@
 """The order of the steps: nominal model, screen, singles, what is left, pairs, more effects, decision."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -94,23 +95,24 @@ def investigate(experiment: Experiment, threads: int = 1) -> Investigation:
     scores = screen.screen(forward, null, directions.catalogue(setup, experiment.excluded))
     threshold = scores.threshold(policy.FALSE_ALARM)
     found = _polished(forward, null, singles.fit_all(forward, null, scores))
-    passes = bool(found) and significant(found[0], threshold) and _likelier_than_none(found)
+    prior = experiment.prior_odds
+    passes = bool(found) and significant(found[0], threshold, prior) and _likelier_than_none(found, prior)
     if passes:
         # Only now: other places are more tries, for which the threshold does not allow.
         found = _along(forward, null, found)
     case = Case(forward, null, scores, found, known, setup)
     decision = case.decide() if passes else case.nothing()
     alike = explanations.aliases(forward, null, found) if passes else []
-    odds, more = _odds(found, decision, alike)
+    odds, more = _odds(found, decision, alike, prior)
     reasons = [*decision.reasons, *more, *experiment.notes]
     given = {**vars(decision), "reasons": reasons}
     del given["beside"], given["left"]
     return Investigation(forward, null, scores, threshold, found, odds, alike=alike, **given)
 
 
-def _odds(found, decision: Decision, alike) -> tuple[dict[str, float], list[str]]:
+def _odds(found, decision: Decision, alike, prior) -> tuple[dict[str, float], list[str]]:
     """Probabilities and what has to be said of them."""
-    logs = explanations.log_weights(found, decision.combinations, alike)
+    logs = explanations.log_weights(found, decision.combinations, alike, prior)
     plain = explanations.probabilities(logs, decision.left, decision.beside)
     odds, likelier = explanations.consistent(plain, decision.named)
     reasons = []
@@ -120,6 +122,14 @@ def _odds(found, decision: Decision, alike) -> tuple[dict[str, float], list[str]
         reasons.append(
             f"{', '.join(stuck)} ended at a bound, even beyond the catalogue's range, and might fit better"
         )
+    reasons += _said(prior)
+    other = (
+        _with_less(found, decision, alike, prior)
+        if odds.get(explanations.key(decision.named), 0.0) > 0.5
+        else ""
+    )
+    if other:
+        reasons.append(f"were its prior ten times smaller, {other} would be the likeliest")
     if likelier:
         reasons.append(f"{likelier} has the larger evidence, and did not pass every test")
     if len(alike) > 1 and alike[0] in decision.named:
@@ -130,6 +140,24 @@ def _odds(found, decision: Decision, alike) -> tuple[dict[str, float], list[str]
     return odds, reasons
 
 
+def _said(prior) -> list[str]:
+    """The prior odds that a record states, in words."""
+    excluded = [name for name, odds in prior.items() if odds == 0.0]
+    changed = [f"{name} {odds:g} times as likely" for name, odds in prior.items() if odds not in (0.0, 1.0)]
+    told = changed + [f"{', '.join(excluded)} excluded"] * bool(excluded)
+    return [f"before the data, as the record states: {'; '.join(told)}"] if told else []
+
+
+def _with_less(found, decision: Decision, alike, prior) -> str:
+    """The likeliest explanation if what is named had a tenth of its prior; "" where that changes nothing."""
+    named = [name for name in decision.named if name != explanations.UNKNOWN]
+    less = {**prior, **{name: 0.1 * prior.get(name, 1.0) for name in named}}
+    logs = explanations.log_weights(found, decision.combinations, alike, less)
+    odds = explanations.probabilities(logs, decision.left, decision.beside)
+    best = max(odds, key=odds.get)
+    return "" if set(explanations.effects(best)) == set(decision.named) else best
+
+
 def _stuck(found: list[Candidate], named: list[str]) -> list[str]:
     """Of a single effect that is named and its rivals, those whose fits ended at a bound."""
     if len(named) != 1 or named[0] == explanations.UNKNOWN:
@@ -138,14 +166,18 @@ def _stuck(found: list[Candidate], named: list[str]) -> list[str]:
     return [c.effect for c in found if c.gain > own - policy.RIVAL and "bound" in c.flags]
 
 
-def significant(candidate: Candidate, threshold: float) -> bool:
-    """Whether one effect passes the noise of the whole catalogue and is ten times likelier than none."""
-    return candidate.gain > threshold and candidate.log_bayes / np.log(10.0) >= policy.LEAST_LOG10_BAYES
+def significant(candidate: Candidate, threshold: float, prior: Mapping[str, float]) -> bool:
+    """Whether one effect passes the noise of the whole catalogue and is ten times likelier than none.
+
+    `prior`: odds of effects against their usual prior, which count as much as evidence does.
+    """
+    log_odds = candidate.log_bayes + np.log(prior.get(candidate.effect, 1.0))
+    return candidate.gain > threshold and log_odds / np.log(10.0) >= policy.LEAST_LOG10_BAYES
 
 
-def _likelier_than_none(found: list[Candidate]) -> bool:
+def _likelier_than_none(found: list[Candidate], prior) -> bool:
     """Whether the best effect is more probable than none, unknown left aside."""
-    odds = evidence.probabilities(found, 1.0)
+    odds = evidence.probabilities(found, 1.0, odds=prior)
     return odds[found[0].effect] > odds["none"]
 
 
@@ -159,7 +191,7 @@ def _polished(forward, null, found):
             flags = tuple(f for f in c.flags if f != "unsettled") + ("unsettled",) * (not better.settled)
             c = _moved(c, null, better, c.places, flags)
         result.append(_beyond(forward, null, c) if c.gain > least else c)
-    return sorted(result, key=lambda c: -c.log_bayes)
+    return evidence.ranked(result, forward.experiment.prior_odds)
 
 
 def _beyond(forward, null, c):
@@ -179,7 +211,7 @@ def _along(forward, null, found):
             better = places.settled(forward, c.fit, setup)
             if better is not c.fit:
                 result[k] = _moved(c, null, better, ((better.hypothesis.components[0].place, 1.0),), c.flags)
-    return sorted(result, key=lambda c: -c.log_bayes)
+    return evidence.ranked(result, forward.experiment.prior_odds)
 
 
 def _moved(c, null, better, where, flags):

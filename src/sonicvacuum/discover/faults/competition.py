@@ -283,7 +283,8 @@ def unexplained(found: Investigation) -> bool:
 
 def weight_of(found: Investigation) -> float:
     """Log of prior times evidence of all explanations of a record together, against its nominal model's."""
-    logs = explanations.log_weights(found.candidates, found.combinations, found.alike)
+    prior = found.forward.experiment.prior_odds
+    logs = explanations.log_weights(found.candidates, found.combinations, found.alike, prior)
     return float(np.logaddexp.reduce(list(logs.values())))
 
 

@@ -12,7 +12,7 @@ the rest. Last, all are calibrated (`calibration`).
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -104,6 +104,11 @@ def log_bayes(fit: Fit, gain: float, alike: np.ndarray | None = None) -> float:
     if alike is not None:
         total += math.log(np.exp(0.5 * (alike - alike.max())).mean())
     return total
+
+
+def ranked(found: Iterable[Candidate], odds: Mapping[str, float] | None = None) -> list[Candidate]:
+    """Candidates by prior times evidence, best first; `odds` as in `log_weights`, none of them 0."""
+    return sorted(found, key=lambda c: -c.log_bayes - math.log((odds or {}).get(c.effect, 1.0)))
 
 
 def unknown_odds(p: float) -> float:

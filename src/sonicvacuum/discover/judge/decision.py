@@ -176,7 +176,9 @@ class Case:
                         f"{name} may be no more than the nearest to what is left in {counted.group}"
                     )
                     fit_ = _reduced(grown, fit_, k, self.setup)
-        weights = explanations.log_weights((), [*grown.tried.values(), *self._rivals(grown)], [])
+        weights = explanations.log_weights(
+            (), [*grown.tried.values(), *self._rivals(grown)], [], self.forward.experiment.prior_odds
+        )
         named = list(fit_.hypothesis.ids)
         if named and not _clear(weights, named):
             reasons.append(f"{' + '.join(named)}: not clearly the best beside what is left")

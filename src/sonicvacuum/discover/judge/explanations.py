@@ -60,12 +60,22 @@ def _predicted(forward, fit):
 
 
 def log_weights(
-    singles: Iterable[Candidate], combinations: Iterable[Combination], alike: list[str]
+    singles: Iterable[Candidate],
+    combinations: Iterable[Combination],
+    alike: list[str],
+    odds: Mapping[str, float] | None = None,
 ) -> dict[str, float]:
-    """Explanation → log of prior times evidence; those in `alike` share theirs."""
-    logs = evidence.log_weights({c.effect: c.log_bayes for c in singles})
+    """Explanation → log of prior times evidence; those in `alike` share theirs.
+
+    `odds` are those of `evidence.log_weights`; the prior of a set is the product of its effects'.
+    """
+    odds = odds or {}
+    logs = evidence.log_weights({c.effect: c.log_bayes for c in singles}, odds)
     each = math.log((1.0 - evidence.PRIOR_NONE - evidence.PRIOR_UNKNOWN) / len(IDS))
-    logs |= {key(c.effects): len(c.effects) * each + c.log_bayes for c in combinations if c.effects}
+    for c in combinations:
+        if c.effects and all(odds.get(name, 1.0) > 0.0 for name in c.effects):
+            prior = sum(each + math.log(odds.get(name, 1.0)) for name in c.effects)
+            logs[key(c.effects)] = prior + c.log_bayes
     shared = [logs[name] for name in alike if name in logs]
     if len(shared) > 1:
         mean = float(np.logaddexp.reduce(shared)) - math.log(len(shared))

@@ -129,6 +129,7 @@ class Experiment:
         record: the record it was made from, None in tests.
         catalogue: the effects that may be missing.
         excluded: ids of effects that these data cannot be asked about.
+        prior_odds: id → odds against the catalogue's usual prior, as the record states them; 1 where missing.
         integrated: compare running integrals of the traces instead: a coarse view in which a late pulse is
             still felt, for searches that start far from the data.
         smooth: the smooth discrepancy that counts as noise; None: none.
@@ -151,6 +152,7 @@ class Experiment:
     record: object = None
     catalogue: Catalogue = CATALOGUE
     excluded: tuple[str, ...] = ()
+    prior_odds: Mapping[str, float] = field(default_factory=dict)
     integrated: bool = False
     smooth: Smooth | None = None
     model_floor_rel: float | None = None

@@ -68,10 +68,21 @@ def _experiment(record, catalogue):
         diameter=record.specimen.diameters,
         record=record,
         catalogue=catalogue,
+        excluded=tuple(name for name, odds in record.priors.items() if odds == 0.0),
+        prior_odds=_priors(record, catalogue),
         model_floor_rel=record.model_floor_rel,
         shared=shared(record, parts[0].chain),
         notes=_notes(record, runs),
     )
+
+
+def _priors(record, catalogue):
+    """The record's odds, of effects that the catalogue holds."""
+    for name in record.priors:
+        if name not in catalogue:
+            known = ", ".join(catalogue.ids)
+            raise InputError(f"{record.name}: priors.{name}: no such effect; the catalogue holds {known}")
+    return record.priors
 
 
 def together(records: Sequence[Record], catalogue: Catalogue = CATALOGUE) -> Experiment:
@@ -89,7 +100,8 @@ def together(records: Sequence[Record], catalogue: Catalogue = CATALOGUE) -> Exp
     for record, other in zip(records[1:], others, strict=True):
         first = _joined(first, record, other)
     turned = len({r.specimen.gravity_m_s2 for r in records}) > 1
-    excluded = tuple(e.id for e in catalogue if turned and e.depends_on_orientation)
+    unasked = tuple(e.id for e in catalogue if turned and e.depends_on_orientation)
+    excluded = tuple(dict.fromkeys((*first.excluded, *unasked)))
     sigma, correlation = noise(records)
     whole = replace(first, sigma=sigma, correlation=correlation, excluded=excluded)
     return _ready(whole, records)
@@ -100,6 +112,7 @@ def _check_alike(record, other, seen: Experiment):
         ("beads", record.beads, other.beads),
         ("chain", _described(record.specimen), _described(other.specimen)),
         ("sensors", [g.id for g in record.gauges], [g.id for g in other.gauges]),
+        ("priors", dict(record.priors), dict(other.priors)),
     ):
         if one != two:
             raise InputError(f"{other.name}: {what} is {two}, in {record.name} {one}; discover them apart")

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sonicvacuum.discover.fit.evidence import Candidate, log_bayes
+from sonicvacuum.discover.fit.evidence import Candidate, log_bayes, ranked
 from sonicvacuum.discover.fit.refit import Fit, fit
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, variants
@@ -65,7 +65,7 @@ def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
             break
         best_gain = achieved
     found = [c for c in found if c is not None]
-    return sorted(found, key=lambda c: -c.log_bayes)
+    return ranked(found, forward.experiment.prior_odds)
 
 
 @dataclass(frozen=True)
