@@ -50,3 +50,8 @@ ALIAS_GAIN = 4.0
 RIVAL, AT_BOUND = 9.0, 0.6
 # What failed a test may be at most this share as probable as what is named.
 REFUSED = 0.5
+
+# A free-form law is kept where it is so much likelier than none (natural log), ...
+LAW_LOG_BAYES = 7.0
+# ... and closes this share of what was left, as fitted and on runs left out of its fit.
+LAW_CLOSES = 0.5

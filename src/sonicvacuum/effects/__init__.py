@@ -47,6 +47,7 @@ from sonicvacuum.effects import (
     contact_exponent,
     contact_gap,
     dynamic_modulus,
+    free_form,
     gravity,
     guide_friction,
     hunt_crossley,
@@ -96,7 +97,8 @@ CATALOGUE = Catalogue(
             sensor_gain,
             sensor_offset,
         )
-    )
+    ),
+    besides=(free_form.EFFECT,),
 )
 IDS: tuple[str, ...] = CATALOGUE.ids
 

@@ -19,9 +19,13 @@ VERDICTS = ("none", "unknown")
 
 @dataclass(frozen=True)
 class Catalogue:
-    """Effects that a model may lack; their order is the order of reports and of ties."""
+    """Effects that a model may lack; their order is the order of reports and of ties.
+
+    `besides` are effects that a model may hold and no search tries: they are found by id alone.
+    """
 
     effects: tuple[Effect, ...] = ()
+    besides: tuple[Effect, ...] = ()
 
     def __iter__(self) -> Iterator[Effect]:
         return iter(self.effects)
@@ -30,7 +34,7 @@ class Catalogue:
         return len(self.effects)
 
     def __contains__(self, id: str) -> bool:
-        return id in self.ids
+        return any(e.id == id for e in (*self.effects, *self.besides))
 
     @property
     def ids(self) -> tuple[str, ...]:
@@ -43,7 +47,7 @@ class Catalogue:
         Raises:
             ValueError: for an id that the catalogue does not hold; the message lists those it does.
         """
-        for one in self.effects:
+        for one in (*self.effects, *self.besides):
             if one.id == id:
                 return one
         raise ValueError(
@@ -59,10 +63,10 @@ class Catalogue:
         """
         result = self.effects
         for one in more:
-            if one.id in (*VERDICTS, *(e.id for e in result)):
+            if one.id in (*VERDICTS, *(e.id for e in (*result, *self.besides))):
                 raise ValueError(f"the id {one.id!r} is taken; give your effect another id")
             result = (*result, one)
-        return Catalogue(result)
+        return Catalogue(result, self.besides)
 
     def candidates(self, setup: Setup, without: Iterable[str] = ()) -> tuple[Effect, ...]:
         """The effects that can act in a setup, but for the ids `without`."""

@@ -9,20 +9,12 @@ import numpy as np
 
 from sonicvacuum.effects import Setup
 from sonicvacuum.effects.base import add_term
+from sonicvacuum.effects.free_form import COEFFICIENTS, free_force
 from sonicvacuum.physics.contact import contact_time
-from sonicvacuum.physics.lanes import absolute, root
+from sonicvacuum.physics.lanes import absolute
 from sonicvacuum.physics.laws import Term
 
-CONTACT, DRAG = 11, 3
-
-
-def flexible_force(delta, rate, elastic, depth, pace, load, a, b, c, d, e, f, g, h, i, j, k):
-    """Additional force in N; depth, pace, load scale compression, rate and force to order 1."""
-    r = root(delta * depth)
-    w = rate * pace
-    s = absolute(w)
-    shape = a + b * w + c * s + r * (d + e * w + f * s) + r * r * (g + h * w + i * s)
-    return elastic * shape + load * w * (j + k * r)
+CONTACT, DRAG = len(COEFFICIENTS), 3
 
 
 def flexible_drag(velocity, pace, a, b, c):
@@ -32,9 +24,9 @@ def flexible_drag(velocity, pace, a, b, c):
     return -w * (a + b * s + c / (s + 0.1))
 
 
-CONTACT_TERM = Term("flexible-contact", "force", flexible_force, CONTACT + 3)
+CONTACT_TERM = Term("flexible-contact", "force", free_force, CONTACT + 3)
 DRAG_TERM = Term("flexible-drag", "body", flexible_drag, DRAG + 1)
-_NAMES = tuple(f"a{n}" for n in range(CONTACT))
+_NAMES = COEFFICIENTS
 _DRAGS = tuple(f"b{n}" for n in range(DRAG))
 
 

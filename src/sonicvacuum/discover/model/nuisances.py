@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from sonicvacuum.effects.free_form import TERM
 from sonicvacuum.physics.chain import Chain
 from sonicvacuum.records.record import Record, Tolerances
 
@@ -39,9 +40,10 @@ class Shared:
 
     Attributes:
         kind: "modulus", "bead-mass", "bead-diameter", "striker-mass", "speed-common", "gain-common",
-            "clock" or "delay".
-        sigma: standard error: of the natural logarithm, of the clock's relative error, in s for delays.
-        of: the material of a modulus, the gauge of a delay.
+            "clock", "delay" or "law".
+        sigma: standard error: of the natural logarithm, of the clock's relative error, in s for delays; of a
+            coefficient of the free-form law its prior width.
+        of: the material of a modulus, the gauge of a delay, the name of a coefficient.
         gauge: index of that gauge.
     """
 
@@ -68,6 +70,14 @@ def _larger(chain, _, ratio):
     return replace(chain, bodies=chain.bodies.replaced(lambda b: replace(b, radius=b.radius * ratio)))
 
 
+def _shaped(chain, name, ratio):
+    """One coefficient of the free-form law; as a nuisance, that is a logarithm."""
+    own = [
+        replace(a, parameters={**a.parameters, name: np.log(ratio)}) for a in chain.actions if a.term is TERM
+    ]
+    return replace(chain, actions=(*(a for a in chain.actions if a.term is not TERM), *own))
+
+
 # Kind → (chains, material, ratio (lanes,)) → chains, for those that act on the chain itself.
 CHANGES: dict[str, Callable] = {
     "modulus": lambda chain, name, ratio: chain.stiffened(name, ratio),
@@ -75,6 +85,7 @@ CHANGES: dict[str, Callable] = {
     "bead-diameter": _larger,
     "striker-mass": lambda chain, _, ratio: replace(chain, striker_mass=chain.striker_mass * ratio),
     "speed-common": lambda chain, _, ratio: replace(chain, speed=chain.speed * ratio),
+    "law": _shaped,
 }
 
 

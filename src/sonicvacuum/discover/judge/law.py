@@ -1,0 +1,178 @@
+"""A free-form contact law as a reader takes it: a surface with its band, the nearest names, a short formula."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from sonicvacuum.discover.fit.evidence import Candidate
+from sonicvacuum.discover.fit.refit import Fit
+from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.model.hypothesis import is_law
+from sonicvacuum.discover.search.free_law import FreeLaw
+from sonicvacuum.discover.search.singles import setup_of
+from sonicvacuum.effects.base import MICRO
+from sonicvacuum.effects.free_form import COEFFICIENTS, free_force
+
+# Knots of the surface along compression and along rate; odd, so that rest is among the latter.
+DEPTHS, RATES = 21, 21
+# Powers from which formulas start.
+_POWERS = (0.25, 0.5, 1.0, 1.5, 2.0, 3.0)
+# What one more parameter of a formula must gain in χ² per number on the surface.
+_WORTH = 0.05
+
+
+@dataclass(frozen=True)
+class Surface:
+    """Force of a contact between two beads over compression and rate.
+
+    Attributes:
+        depth: (D,) compressions in m.
+        rate: (V,) rates of compression in m/s, positive while approaching.
+        hertz: (D,) the nominal force in N.
+        force: (D, V) the force found in N, cut at zero.
+        beside: (D, V) what it has beside the nominal force, not cut.
+        band: (D, V) its standard error.
+        visited: (D, V) whether contacts next to the gauges were there.
+    """
+
+    depth: np.ndarray
+    rate: np.ndarray
+    hertz: np.ndarray
+    force: np.ndarray
+    beside: np.ndarray
+    band: np.ndarray
+    visited: np.ndarray
+
+
+def surface(law: FreeLaw) -> Surface:
+    """The law over what the recorded contacts went through."""
+    stiffness = _stiffness(law.forward)
+    depths, rates = _visited(law.forward, law.fit, stiffness)
+    grid = np.linspace(0.0, depths.max(), DEPTHS)
+    rate = np.linspace(-1.0, 1.0, RATES) * np.abs(rates).max()
+    basis = _basis(law, grid, rate, stiffness)
+    beside = basis @ law.coefficients
+    band = np.sqrt(np.einsum("dvi,ij,dvj->dv", basis, law.covariance, basis))
+    hertz = stiffness * grid**1.5
+    cells = np.histogram2d(depths, rates, bins=(_edges(grid), _edges(rate)))[0]
+    force = np.maximum(hertz[:, None] + beside, 0.0)
+    return Surface(grid, rate, hertz, force, beside, band, cells > 0)
+
+
+def _edges(knots):
+    middle = 0.5 * (knots[1:] + knots[:-1])
+    return np.concatenate([[-np.inf], middle, [np.inf]])
+
+
+def _stiffness(forward):
+    """Of a contact between two beads, of the first chain; of the ball with its wall where there is no bead."""
+    chain = forward.experiment.batches[0].chain
+    return float(np.ravel(chain.stiffness if chain.beads else chain.striker_stiffness)[0])
+
+
+def _visited(forward: Forward, fit: Fit, stiffness):
+    """Compressions and rates of the recorded contacts while they are in touch, from their forces by Hertz."""
+    depths, rates = [], []
+    for batch in forward.experiment.batches:
+        nominal = forward.nominal(batch, fit.nu[None])
+        setup = fit.hypothesis.change(fit.u[None])(nominal, np.zeros(len(batch.runs), dtype=int))
+        history = forward.simulate(batch, setup).history
+        depth = (np.maximum(history.forces, 0.0) / stiffness) ** (2.0 / 3.0)
+        rate = np.gradient(depth, history.times, axis=-1)
+        touching = depth > 0.02 * depth.max()
+        depths.append(depth[touching])
+        rates.append(rate[touching])
+    return np.concatenate(depths), np.concatenate(rates)
+
+
+def _basis(law: FreeLaw, depth, rate, stiffness):
+    """(D, V, n) force of each free coefficient at 1."""
+    elastic = stiffness * depth[:, None] ** 1.5
+    scales = law.scales
+    result = []
+    for name in law.names:
+        one = [float(name == other) for other in COEFFICIENTS]
+        force = free_force(
+            depth[:, None], rate[None], elastic, 1.0 / scales.depth, 1.0 / scales.speed, scales.force, *one
+        )
+        result.append(np.broadcast_to(force, (len(depth), len(rate))))
+    return np.stack(result, axis=-1)
+
+
+def nearest(law: FreeLaw, null: Fit, plain: Forward, found: list[Candidate]) -> list[tuple[str, float]]:
+    """Contact laws of the catalogue by how far their best fit is from the free-form law, nearest first.
+
+    The distance is that of the changes which both make in all data, over that of the free-form law: 0 is the
+    same law, 1 no better than the nominal one.
+    """
+    base = _predicted(plain, null)
+    own = _predicted(law.forward, law.fit) - base
+    setup = setup_of(plain)
+    distances = {}
+    for c in found:
+        if is_law(plain.experiment.catalogue.effect(c.effect), setup):
+            change = _predicted(plain, c.fit) - base
+            distances[c.effect] = float(np.linalg.norm(change - own) / np.linalg.norm(own))
+    return sorted(distances.items(), key=lambda d: d[1])
+
+
+def _predicted(forward, one):
+    value = forward.sampled(one.hypothesis, one.u[None], one.nu[None])
+    return np.concatenate([v[0] for v, _ in value])
+
+
+def formula(seen: Surface) -> str:
+    """The shortest of a few formulas that says what the surface has beside the nominal force.
+
+    Tried are c x^p, c |v|^q sgn v and c x^p |v|^q sgn v with x = δ/µm and v in m/s, alone or an elastic one
+    and a lossy one together; one more parameter must gain `_WORTH` per number.
+    """
+    x = np.repeat(seen.depth[:, None] / MICRO, len(seen.rate), axis=1)
+    v = np.repeat(seen.rate[None], len(seen.depth), axis=0)
+    where = seen.visited & (x > 0.0)
+    error = np.hypot(seen.band, 0.01 * np.abs(seen.beside).max())[where]
+    data = (x[where], v[where], seen.beside[where], error)
+    found = [one for kinds in (("e",), ("l",), ("e", "l")) if (one := _short(kinds, *data))]
+    return min(found)[1] if found else ""
+
+
+def _short(kinds, x, v, beside, error):
+    """(score, text) of the best formula with terms of some kinds."""
+
+    def value(p):
+        return sum(_term(kind, p[3 * k : 3 * k + 3], x, v) for k, kind in enumerate(kinds))
+
+    best = None
+    for power in _POWERS:
+        start = np.concatenate([[0.1, power, 1.0 if kind == "l" else 0.0] for kind in kinds])
+        start = start * np.where(np.arange(len(start)) % 3 == 0, np.abs(beside).max() / 0.1, 1.0)
+        free = np.ones(len(start), dtype=bool)
+        free[2::3] = [kind == "l" for kind in kinds]
+
+        def left(p, start=start, free=free):
+            whole = start.copy()
+            whole[free] = p
+            return (value(whole) - beside) / error
+
+        low = np.where(np.arange(len(start)) % 3 == 0, -np.inf, 0.0)[free]
+        high = np.where(np.arange(len(start)) % 3 == 0, np.inf, 6.0)[free]
+        one = least_squares(left, start[free], bounds=(low, high), x_scale="jac")
+        score = 2.0 * one.cost / len(x) + _WORTH * free.sum()
+        if best is None or score < best[0]:
+            whole = start.copy()
+            whole[free] = one.x
+            best = score, whole
+    text = "F = K δ^1.5" + "".join(_text(kind, best[1][3 * k : 3 * k + 3]) for k, kind in enumerate(kinds))
+    return float(best[0]), text
+
+
+def _term(kind, p, x, v):
+    size = p[0] * x ** p[1]
+    return size if kind == "e" else size * np.abs(v) ** p[2] * np.sign(v)
+
+
+def _text(kind, p):
+    sign = "−" if p[0] < 0.0 else "+"
+    what = f" {sign} {abs(p[0]):.3g} N (δ/µm)^{p[1]:.2g}"
+    return what if kind == "e" else what + f" |v/(m/s)|^{p[2]:.2g} sgn v"

@@ -1,0 +1,68 @@
+"""A contact law of no particular form, as it is fitted to data that no effect of the catalogue explains.
+
+It is no candidate of a search: with eleven coefficients it would explain everything a little. `discover`
+fits it where something is left that has no name, and a model that holds it is read, compared and simulated
+like any other.
+"""
+
+from sonicvacuum.effects.base import MICRO, Effect, Parameter, Setup, add_term
+from sonicvacuum.physics.lanes import absolute, root
+from sonicvacuum.physics.laws import Term
+
+# What each coefficient multiplies; r = √(δ/depth), w = rate/speed. The first nine times the Hertz force.
+SHAPES = ("1", "w", "|w|", "r", "r w", "r |w|", "r²", "r² w", "r² |w|", "force w", "force r w")
+COEFFICIENTS = tuple(f"a{k}" for k in range(len(SHAPES)))
+
+
+def free_force(delta, rate, elastic, depth, pace, load, a, b, c, d, e, f, g, h, i, j, k):
+    """Force in N beside the elastic one; depth (1/m), pace (s/m) and load (N) scale its arguments to order 1."""
+    r = root(delta * depth)
+    w = rate * pace
+    s = absolute(w)
+    shape = a + b * w + c * s + r * (d + e * w + f * s) + r * r * (g + h * w + i * s)
+    return elastic * shape + load * w * (j + k * r)
+
+
+TERM = Term("free-form", "force", free_force, 3 + len(COEFFICIENTS))
+
+
+def coefficients(chain, stiffness, mass, depth, speed, force, **a):
+    """Scales of the arguments, then the coefficients."""
+    return [1.0 / depth, 1.0 / speed, force, *(a[name] for name in COEFFICIENTS)]
+
+
+def change(setup: Setup, depth_um, speed_m_s, force_N, **a) -> Setup:
+    """Add the force to all contacts."""
+    scales = {"depth": depth_um * MICRO, "speed": speed_m_s, "force": force_N}
+    return add_term(setup, TERM, coefficients, **scales, **a)
+
+
+def _scale(name, unit, typical, help):
+    return Parameter(name, unit, None, 1e-9, 1e12, "log-uniform", typical, help, least=1e-12)
+
+
+EFFECT = Effect(
+    id="free-form",
+    title="Free-form contact law",
+    missing="a contact law that no effect of the catalogue describes",
+    equation="F = K delta^{3/2} (1 + sum_ij a_ij r^i {1, w, |w|}_j) + force w (a9 + a10 r), r = (delta/depth)^{1/2}, "
+    "w = v/speed, cut at zero",
+    energy="stores and takes what its coefficients say",
+    reference="chosen here: a polynomial in the root of the compression, of first order in the rate, each way",
+    parameters=(
+        _scale("depth_um", "um", 1.0, "compression at which r is 1"),
+        _scale("speed_m_s", "m/s", 1.0, "rate at which w is 1"),
+        _scale("force_N", "N", 1.0, "scale of the forces that do not vanish with compression"),
+        *(
+            Parameter(name, "1", 0.0, -5.0, 5.0, "uniform", 0.1, f"coefficient of {shape}")
+            for name, shape in zip(COEFFICIENTS, SHAPES, strict=True)
+        ),
+    ),
+    signature="whatever a contact law moves, in every contact and run alike",
+    when_to_use="something is left that no effect of the catalogue explains",
+    when_not="as a name: it says how the contacts push, not why",
+    dissipative=True,
+    change=change,
+    of_material=True,
+    slow=True,
+)
