@@ -53,5 +53,7 @@ REFUSED = 0.5
 
 # A free-form law is kept where it is so much likelier than none (natural log), ...
 LAW_LOG_BAYES = 7.0
+# ... of the smallest set of coefficients that gains this share of what the likeliest gains ...
+LAW_SHARE = 0.98
 # ... and closes this share of what was left, as fitted and on runs left out of its fit.
 LAW_CLOSES = 0.5

@@ -9,12 +9,16 @@ import numpy as np
 from msgspec import UNSET
 
 from sonicvacuum.blas import one_thread
-from sonicvacuum.discover import next_experiment, verdict
+from sonicvacuum.discover import law, next_experiment, verdict
 from sonicvacuum.discover.faults import competition
 from sonicvacuum.discover.fit import goodness, heldout
+from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.judge import degenerate, explanations, locate
+from sonicvacuum.discover.judge.law import surface
+from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.rounds import Investigation
 from sonicvacuum.discover.search import directions, screen, singles
+from sonicvacuum.discover.search.free_law import FreeLaw, free_law
 from sonicvacuum.discover.verdict import Verdict
 from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.physics import validity
@@ -32,6 +36,12 @@ class Result:
     after: list[locate.Place]
     limits: list[degenerate.Limit]
     verdict: Verdict
+    law: FreeLaw | None = None
+
+    @property
+    def extended(self) -> tuple[Forward, Fit]:
+        """The extended model: what is named, and the free-form law where one was needed."""
+        return (self.law.forward, self.law.fit) if self.law else (self.found.forward, self.found.final)
 
 
 @one_thread
@@ -56,14 +66,19 @@ def discover(*records: Record, threads: int | None = None, catalogue: Catalogue 
     clock.mark("search")
     forward = found.forward
     places = locate.locate(forward, found.null)
-    final = found.final
-    after = locate.locate(forward, final) if final is not found.null else places
+    free = free_law(forward, found.final) if explanations.UNKNOWN in found.named else None
+    clock.mark("free-form law")
+    model, final = (free.forward, free.fit) if free else (forward, found.final)
+    after = locate.locate(model, final) if final is not found.null else places
     clock.mark("locate")
-    fits = [goodness.goodness(forward, one) for one in (found.null, final)]
+    fits = [goodness.goodness(forward, found.null), goodness.goodness(model, final)]
     limits, wider = _limits(found, fits[1])
     alike = degenerate.confusable(found.named, found.candidates, found.combinations, found.alike)
     before = heldout.held_out(found.null, found.sizes)
-    left = heldout.held_out(final, found.sizes, before)
+    left = (
+        heldout.HeldOut(free.held_out, found.sizes) if free else heldout.held_out(final, found.sizes, before)
+    )
+    told = law.told(free, found) if free else UNSET
     clock.mark("limits")
     proposal = next_experiment.propose(found, alike)
     clock.mark("next experiment")
@@ -80,10 +95,16 @@ def discover(*records: Record, threads: int | None = None, catalogue: Catalogue 
         upper_limits=verdict.upper_limits(limits),
         not_testable=sorted({one.effect for one in limits if not one.testable}),
         next_experiment=proposal,
-        reasons=[*found.reasons, *verdict.corrections(outcome.findings)],
+        reasons=[
+            *found.reasons,
+            *(law.reasons(told) if free else ()),
+            *verdict.corrections(outcome.findings),
+        ],
         alarms=found.alarms,
         timing_s=clock.seconds(),
+        law=told,
         simulations=forward.chains
+        + (free.forward.chains if free else 0)
         + outcome.simulations
         + (found.counted.forward.chains if found.counted else 0),
         faults=verdict.faults(outcome.findings),
@@ -92,7 +113,7 @@ def discover(*records: Record, threads: int | None = None, catalogue: Catalogue 
         warnings=_doubts(found, records[0]) or UNSET,
         nuisances=verdict.nuisances(counted.forward, counted.final),
     )
-    return Result(outcome.record, found, places, after, limits, result)
+    return Result(outcome.record, found, places, after, limits, result, free)
 
 
 def _doubts(found: Investigation, record: Record) -> list[str]:
@@ -179,7 +200,9 @@ def write(result: Result, folder: Path) -> None:
         ((x.effect, x.parameter, x.value, x.estimate, int(x.testable), x.place) for x in result.limits),
     )
     verdict.write_table(folder / "traces.csv", *trace_rows(result))
-    verdict.write_json(verdict.model(result.found), folder / "model.json")
+    if result.law:
+        verdict.write_table(folder / "law.csv", *law.rows(surface(result.law)))
+    verdict.write_json(verdict.model(result.found, result.law), folder / "model.json")
     verdict.write_json(result.verdict, folder / "verdict.json")
 
 
@@ -218,14 +241,17 @@ def gap_rows(result: Result):
     found = result.found
     e = found.forward.experiment
     before = heldout.held_out(found.null, found.sizes)
-    after = heldout.held_out(found.final, found.sizes, before)
+    _, final = result.extended
+    after = heldout.held_out(final, found.sizes, before)
+    if result.law:
+        after = heldout.HeldOut(result.law.held_out, found.sizes)
     rows = []
     for k, run in enumerate(e.runs):
         size = found.sizes[k]
-        fitted = (found.null.normal.chi2[k, 0] / size, found.final.normal.chi2[k, 0] / size)
+        fitted = (found.null.normal.chi2[k, 0] / size, final.normal.chi2[k, 0] / size)
         rows.append((run.id, size, *fitted, before.chi2[k] / size, after.chi2[k] / size, 1.0))
     total = found.sizes.sum()
-    steps = [("all", found.null, found.final)]
+    steps = [("all", found.null, final)]
     for name, first, last in steps:
         fitted = (first.normal.chi2.sum() / total, last.normal.chi2.sum() / total)
         rows.append((name, total, *fitted, before.mean, after.mean, 1.0))
@@ -268,7 +294,7 @@ def trace_rows(result: Result):
     if not any(r.has_signals for r in e.runs):
         return header, []
     before = raw(found.forward, found.null)
-    after = raw(found.forward, found.final) if found.final is not found.null else before
+    after = raw(*result.extended) if result.extended[1] is not found.null else before
     rows = []
     for k, run in enumerate(e.runs):
         step = max(1, len(run.time) // 1000)

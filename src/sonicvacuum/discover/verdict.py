@@ -22,8 +22,10 @@ from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.judge.degenerate import Limit
 from sonicvacuum.discover.judge.explanations import key
 from sonicvacuum.discover.judge.locate import Place
+from sonicvacuum.discover.law import Law
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.rounds import Investigation
+from sonicvacuum.discover.search.free_law import FreeLaw
 from sonicvacuum.effects import Catalogue
 from sonicvacuum.files import replacing
 
@@ -171,6 +173,7 @@ class Verdict(_Part, kw_only=True):
             → what is found of it in the extended model; absent without any.
         faults: slips of the laboratory, most probable first; where one is put right, all else is of the
             record put right, and `reasons` says so.
+        law: the free-form contact law, which `model.json` holds as well; absent where none was needed.
     """
 
     format: int = 1
@@ -193,6 +196,7 @@ class Verdict(_Part, kw_only=True):
     fit: GoodnessOfFit | None = None
     nuisances: dict[str, Known] | UnsetType = UNSET
     faults: list[Fault] = []
+    law: Law | UnsetType = UNSET
 
     @property
     def probability(self) -> float | None:
@@ -302,14 +306,19 @@ def gaps(null: Fit, final: Fit, sizes: np.ndarray, before: HeldOut, after: HeldO
     return Gaps(fitted=fitted, held_out=gap(before.mean, after.mean) if len(sizes) > 1 else None)
 
 
-def model(found: Investigation) -> Model:
-    """The extended model of an investigation; the nominal one where nothing, or nothing known, was named."""
+def model(found: Investigation, law: FreeLaw | None = None) -> Model:
+    """The extended model of an investigation; the nominal one where nothing, or nothing known, was named.
+
+    A free-form law is one more effect of it.
+    """
     forward, fit = found.forward, found.final if named_effects(found) else found.null
+    fit = law.fit if law else fit
     e, layout = forward.experiment, forward.layout
-    shift = fit.nu * forward.nuisance_sigma
+    effects = fit.hypothesis.values(fit.u) | ({law.component.effect.id: law.parameters} if law else {})
+    shift = fit.nu[: layout.size] * forward.nuisance_sigma
     return Model(
         record=e.name,
-        effects={k: {n: float(v) for n, v in p.items()} for k, p in fit.hypothesis.values(fit.u).items()},
+        effects={k: {n: float(v) for n, v in p.items()} for k, p in effects.items()},
         speed_ratio={r.id: float(np.exp(shift[layout.speed(k)])) for k, r in enumerate(e.runs)},
         trigger_us={r.id: float((r.shift + shift[layout.trigger(k)]) * 1e6) for k, r in enumerate(e.runs)},
         gain={g.id: float(g.gain * np.exp(shift[at])) for g, at in zip(e.gauges, layout.gains, strict=True)},

@@ -15,7 +15,7 @@ COEFFICIENTS = tuple(f"a{k}" for k in range(len(SHAPES)))
 
 
 def free_force(delta, rate, elastic, depth, pace, load, a, b, c, d, e, f, g, h, i, j, k):
-    """Force in N beside the elastic one; depth (1/m), pace (s/m) and load (N) scale its arguments to order 1."""
+    """Force in N beside the elastic one; depth (1/m), pace (s/m), load (N) scale its arguments to order 1."""
     r = root(delta * depth)
     w = rate * pace
     s = absolute(w)
@@ -45,10 +45,10 @@ EFFECT = Effect(
     id="free-form",
     title="Free-form contact law",
     missing="a contact law that no effect of the catalogue describes",
-    equation="F = K delta^{3/2} (1 + sum_ij a_ij r^i {1, w, |w|}_j) + force w (a9 + a10 r), r = (delta/depth)^{1/2}, "
-    "w = v/speed, cut at zero",
+    equation="F = K delta^{3/2} (1 + sum_ij a_ij r^i {1, w, |w|}_j) + force w (a9 + a10 r), "
+    "r = (delta/depth)^{1/2}, w = v/speed, cut at zero",
     energy="stores and takes what its coefficients say",
-    reference="chosen here: a polynomial in the root of the compression, of first order in the rate, each way",
+    reference="chosen here: a polynomial in the root of the compression, of first order in the rate",
     parameters=(
         _scale("depth_um", "um", 1.0, "compression at which r is 1"),
         _scale("speed_m_s", "m/s", 1.0, "rate at which w is 1"),

@@ -1,8 +1,9 @@
-"""A free-form contact law as a reader takes it: a surface with its band, the nearest names, a short formula."""
+"""A free-form contact law as a reader takes it: surface with its band, nearest names, short formula."""
 
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.integrate import cumulative_trapezoid
 from scipy.optimize import least_squares
 
 from sonicvacuum.discover.fit.evidence import Candidate
@@ -13,9 +14,14 @@ from sonicvacuum.discover.search.free_law import FreeLaw
 from sonicvacuum.discover.search.singles import setup_of
 from sonicvacuum.effects.base import MICRO
 from sonicvacuum.effects.free_form import COEFFICIENTS, free_force
+from sonicvacuum.physics.run import simulate
 
 # Knots of the surface along compression and along rate; odd, so that rest is among the latter.
 DEPTHS, RATES = 21, 21
+# So many contacts from the striker on tell where contacts have been; the first of them see the most.
+CONTACTS = 20
+# A contact touches where it is compressed by more than this share of the largest compression.
+TOUCHING = 0.02
 # Powers from which formulas start.
 _POWERS = (0.25, 0.5, 1.0, 1.5, 2.0, 3.0)
 # What one more parameter of a formula must gain in χ² per number on the surface.
@@ -33,7 +39,7 @@ class Surface:
         force: (D, V) the force found in N, cut at zero.
         beside: (D, V) what it has beside the nominal force, not cut.
         band: (D, V) its standard error.
-        visited: (D, V) whether contacts next to the gauges were there.
+        visited: (D, V) whether contacts were there.
     """
 
     depth: np.ndarray
@@ -48,7 +54,7 @@ class Surface:
 def surface(law: FreeLaw) -> Surface:
     """The law over what the recorded contacts went through."""
     stiffness = _stiffness(law.forward)
-    depths, rates = _visited(law.forward, law.fit, stiffness)
+    depths, rates = _visited(law.forward, law.fit)
     grid = np.linspace(0.0, depths.max(), DEPTHS)
     rate = np.linspace(-1.0, 1.0, RATES) * np.abs(rates).max()
     basis = _basis(law, grid, rate, stiffness)
@@ -66,21 +72,23 @@ def _edges(knots):
 
 
 def _stiffness(forward):
-    """Of a contact between two beads, of the first chain; of the ball with its wall where there is no bead."""
+    """Of a contact between two beads of the first chain; of ball and wall where there is no bead."""
     chain = forward.experiment.batches[0].chain
     return float(np.ravel(chain.stiffness if chain.beads else chain.striker_stiffness)[0])
 
 
-def _visited(forward: Forward, fit: Fit, stiffness):
-    """Compressions and rates of the recorded contacts while they are in touch, from their forces by Hertz."""
+def _visited(forward: Forward, fit: Fit):
+    """Compressions in m and rates in m/s of the first contacts while they touch, in all runs."""
     depths, rates = [], []
     for batch in forward.experiment.batches:
         nominal = forward.nominal(batch, fit.nu[None])
-        setup = fit.hypothesis.change(fit.u[None])(nominal, np.zeros(len(batch.runs), dtype=int))
-        history = forward.simulate(batch, setup).history
-        depth = (np.maximum(history.forces, 0.0) / stiffness) ** (2.0 / 3.0)
-        rate = np.gradient(depth, history.times, axis=-1)
-        touching = depth > 0.02 * depth.max()
+        chain = fit.hypothesis.change(fit.u[None])(nominal, np.zeros(len(batch.runs), dtype=int)).chain
+        first = min(1, max(chain.beads - 1, 0))
+        bodies = range(first, min(chain.beads, CONTACTS) + 1)
+        seen = simulate(chain, (), batch.duration, batch.interval, bodies=bodies, threads=forward.threads)
+        rate = -np.diff(seen.velocity, axis=1) if chain.beads else seen.velocity
+        depth = cumulative_trapezoid(rate, dx=batch.interval, axis=0, initial=0.0)
+        touching = depth > TOUCHING * depth.max()
         depths.append(depth[touching])
         rates.append(rate[touching])
     return np.concatenate(depths), np.concatenate(rates)

@@ -1,9 +1,10 @@
 """The free-form contact law fitted to what nothing of the catalogue explains.
 
-Three sets of coefficients are tried: what stores (even in the rate, no rate), what takes energy in proportion
-to the rate, and all. The width of the prior, which regularises, is the likeliest of a few, by the evidence of
-the linearised model (MacKay, Neural Comput. 4, 415, 1992). A law is kept where it is surely likelier than
-none and closes, on runs left out of its fit, a good share of what was left.
+Sets of coefficients are tried: what stores energy, what takes it in proportion to the rate, both, and all.
+The width of the prior, which regularises, is the likeliest of a few, by the evidence of the linearised model
+(MacKay, Neural Comput. 4, 415, 1992). Of the sets, the smallest is taken that does nearly as much as the
+likeliest: no polynomial is the true law, and what it errs by is no reason for more of it. A law is kept where
+it is surely likelier than none and closes, on runs left out of its fit, a good share of what was left.
 """
 
 import math
@@ -19,13 +20,9 @@ from sonicvacuum.discover.model.free_law import Scales, of_some, scales_of, with
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis
 from sonicvacuum.effects.free_form import COEFFICIENTS, EFFECT
 
-# Coefficients of each set, see `effects.free_form.SHAPES`.
-SETS = {
-    "elastic": ("a0", "a3", "a6"),
-    "lossy": ("a1", "a4", "a7", "a9", "a10"),
-    "both": ("a0", "a3", "a6", "a1", "a4", "a7", "a9", "a10"),
-    "all": COEFFICIENTS,
-}
+# Sets of coefficients in the order in which they are tried, see `effects.free_form.SHAPES`.
+_ELASTIC, _LOSSY = ("a0", "a3", "a6"), ("a1", "a4", "a7", "a9", "a10")
+SETS = (_ELASTIC, _LOSSY, (*_ELASTIC, *_LOSSY), COEFFICIENTS)
 # Widths of the prior that are compared; the first fit is made with the middle one.
 WIDTHS = (0.03, 0.1, 0.3, 1.0)
 FIRST = 0.3
@@ -93,16 +90,23 @@ def free_law(forward: Forward, base: Fit) -> FreeLaw | None:
     if not any(run.has_signals for run in e.runs):
         return None
     typical = scales_of(e)
-    tried = [_fitted(forward, base, names, typical) for names in SETS.values()]
-    best = max((one for one in tried if one is not None), key=lambda one: one[0], default=None)
+    best, tried = None, []
+    for names in SETS:
+        one = _fitted(forward, base, names, typical, best)
+        if one is not None:
+            tried.append(one)
+            best = max(tried, key=lambda t: t[0])
     if best is None or best[0] < policy.LAW_LOG_BAYES:
         return None
-    evidence_, width, found, model = best
+    most = base.objective - best[2].objective
+    evidence_, width, found, model = next(
+        t for t in tried if base.objective - t[2].objective >= policy.LAW_SHARE * most
+    )
     size = sum(e.size(k) for k in range(len(e.runs)))
     left, before = float(found.normal.chi2.sum()) - size, float(base.normal.chi2.sum()) - size
     if left > (1.0 - policy.LAW_CLOSES) * before:
         return None
-    names = tuple(one.of for one in model.experiment.shared if one.kind == "law")
+    names = _names(model)
     unseen = _unseen(forward, base, names, width, typical, found.nu[-len(names) :] * width)
     result = FreeLaw(model, found, typical, names, width, evidence_, *unseen)
     size = np.array([e.size(k) for k in range(len(e.runs))])
@@ -113,10 +117,18 @@ def free_law(forward: Forward, base: Fit) -> FreeLaw | None:
     return result
 
 
-def _fitted(forward, base, names, typical):
-    """(log evidence against none, width, fit, forward) of one set of coefficients."""
+def _fitted(forward, base, names, typical, known):
+    """(log evidence against none, width, fit, forward) of one set of coefficients.
+
+    It starts where the best set `known` before it ended, of those coefficients that both have.
+    """
     e, threads = forward.experiment, forward.threads
-    first = _at(e, base, names, FIRST, typical, threads)
+    start = np.zeros(len(names))
+    if known is not None:
+        _, scale, one, model = known
+        values = dict(zip(_names(model), scale * one.nu[model.layout.other("law")], strict=True))
+        start = np.array([values.get(name, 0.0) for name in names])
+    first = _at(e, base, names, FIRST, typical, threads, start)
     if first is None:
         return None
     values = {w: _evidence(first[0], FIRST, w, len(names)) for w in WIDTHS}
@@ -130,22 +142,25 @@ def _fitted(forward, base, names, typical):
     return own, width, *found
 
 
-def _at(experiment: Experiment, base: Fit, names, width, typical, threads, law=None):
-    """Fit and forward model with a prior of one width, from coefficients `law` on (zero where not given).
+def _names(forward):
+    """Coefficients that are free in a forward model."""
+    return tuple(one.of for one in forward.experiment.shared if one.kind == "law")
+
+
+def _at(experiment: Experiment, base: Fit, names, width, typical, threads, law):
+    """Fit and forward model with a prior of one width, from coefficients `law` on.
 
     None where the chain cannot be simulated.
     """
     forward = Forward(with_law(experiment, names, width, typical), threads)
-    start = np.zeros(len(names)) if law is None else law / width
-    found = fit(forward, base.hypothesis, base.u[None], np.concatenate([base.nu, start])[None])
+    found = fit(forward, base.hypothesis, base.u[None], np.concatenate([base.nu, law / width])[None])
     return (found, forward) if math.isfinite(found.objective) else None
 
 
 def _evidence(one: Fit, fitted: float, width: float, count: int) -> float:
     """Log evidence of a fit whose last `count` nuisances have the prior `width`, fitted at another one.
 
-    Quadratic around the fit; up to a constant of the data and of what both models share. The errors grow with
-    what is left (Birge, Phys. Rev. 40, 207, 1932), so that a poor fit earns no confidence from sharp data.
+    Quadratic around the fit; up to a constant of the data and of what both models share.
     """
     gradient, hessian = (part[0].copy() for part in one.normal.total())
     n = len(gradient)
