@@ -15,8 +15,8 @@ SI units throughout, except where a key carries its unit in its name. What a mod
 The signals of Fig. 3(a) of that paper, gauge by gauge, in N over s:
 
     card = sv.read_case("config.yaml", "fig3a", "matched")
-    study = sv.simulate(card)
-    signals = study.readings()
+    simulation = sv.simulate(card)
+    signals = simulation.readings()
 
 What ten steel beads of 20 mm will show, before they are bought:
 

@@ -7,7 +7,7 @@ unit in its name, as in `config.yaml` and `record.yaml`.
 from os import PathLike
 from typing import Any
 
-from sonicvacuum import config, study
+from sonicvacuum import config, simulation
 from sonicvacuum.card import Card, CaseBlock, resolve
 from sonicvacuum.discover import compare as comparison
 from sonicvacuum.discover.compare import Comparison
@@ -17,7 +17,7 @@ from sonicvacuum.laboratory.ranges import LaboratoryError
 from sonicvacuum.physics.run import available_threads
 from sonicvacuum.records import Record
 from sonicvacuum.records import read as read_record
-from sonicvacuum.study import Study
+from sonicvacuum.simulation import Simulation
 
 Path = str | PathLike[str]
 
@@ -69,11 +69,11 @@ def read_case(path: Path, name: str, variant: str = "nominal") -> Card:
     return config.card(config.read(path), name, variant, path)
 
 
-def simulate(card: Card) -> Study:
+def simulate(card: Card) -> Simulation:
     """A card integrated at the chosen step and at half of it; `readings()` of the result are its gauges.
 
     Returns:
-        `Study`: `time` (samples,) in s, `force` (samples, contacts, runs) in N, `readings()` gauge →
+        `Simulation`: `time` (samples,) in s, `force` (samples, contacts, runs) in N, `readings()` gauge →
         (samples, runs) in N without the static part; runs in the order of the striker's speeds.
 
     Raises:
@@ -90,7 +90,7 @@ def simulate(card: Card) -> Study:
     >>> found.readings()["wall"].shape
     (401, 1)
     """
-    return study.run(card)
+    return simulation.run(card)
 
 
 def compare(model: Model | Path, record: Record, threads: int | None = None) -> Comparison:

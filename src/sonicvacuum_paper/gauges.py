@@ -97,7 +97,8 @@ def offset_amplitude(run: OneRun, gauge: Gauge) -> Measured:
     e = PRINTED.gauge_offset / run.diameter
     before, after = (run.contact(c).force for c in (gauge.bead - 1, gauge.bead))
     shifted = [
-        main_pulse(Trace(0.0, run.study.interval, (0.5 + s) * before + (0.5 - s) * after)) for s in (e, -e)
+        main_pulse(Trace(0.0, run.simulation.interval, (0.5 + s) * before + (0.5 - s) * after))
+        for s in (e, -e)
     ]
     if not all(p.found for p in shifted):
         return missing(next(p.reason for p in shifted if not p.found))
@@ -150,7 +151,7 @@ def _plain(run, gauge):
     if gauge.kind == "wall":
         return run.contact(run.card.beads)
     force = 0.5 * (run.contact(gauge.bead - 1).force + run.contact(gauge.bead).force)
-    return Trace(0.0, run.study.interval, force)
+    return Trace(0.0, run.simulation.interval, force)
 
 
 def _discharged(run, gauge):

@@ -9,7 +9,7 @@ import numpy as np
 from sonicvacuum.blas import one_thread
 from sonicvacuum.files import InputError
 from sonicvacuum.observe.trace import Measured
-from sonicvacuum.study import Study
+from sonicvacuum.simulation import Simulation
 from sonicvacuum_paper import contacts, gauges, sweep, trains
 from sonicvacuum_paper.one_run import OneRun
 from sonicvacuum_paper.rows import Row, absent
@@ -62,7 +62,7 @@ CONTACTS_OF_SWEEPS = ("contact_force", "contact_depth", "strain_rate")
 
 
 @one_thread
-def card_rows(study: Study) -> list[Row]:
+def card_rows(simulation: Simulation) -> list[Row]:
     """The metrics of a card: of each run, and of the sweep where it has several.
 
     Runs of a sweep are named `card@speed` (m/s); the numerical error is the change on halving the step.
@@ -70,30 +70,40 @@ def card_rows(study: Study) -> list[Row]:
     Raises:
         InputError: for two speeds of a sweep that six digits do not tell apart.
     """
-    lanes = len(study.speeds)
-    names = [study.card.name if lanes == 1 else f"{study.card.name}@{speed:g}" for speed in study.speeds]
+    lanes = len(simulation.speeds)
+    names = [
+        simulation.card.name if lanes == 1 else f"{simulation.card.name}@{speed:g}"
+        for speed in simulation.speeds
+    ]
     for name in names:
         if names.count(name) > 1:
             raise InputError(f"{name}: striker.speed_m_s holds this speed twice; remove one")
     rows = []
-    both = [[OneRun(study, lane, refined) for lane in range(lanes)] for refined in (False, True)]
+    both = [[OneRun(simulation, lane, refined) for lane in range(lanes)] for refined in (False, True)]
     for name, plain, refined in zip(names, *both, strict=True):
         rows += _rows(_one(plain, name, lanes > 1), _one(refined, name, lanes > 1))
-        rows += list(_balance(study, name, plain.lane))
+        rows += list(_balance(simulation, name, plain.lane))
     if lanes > 1:
-        rows += _rows(*(_sweep(runs, study.card.name) for runs in both))
-    return [*rows, *_model(study)]
+        rows += _rows(*(_sweep(runs, simulation.card.name) for runs in both))
+    return [*rows, *_model(simulation)]
 
 
-def _model(study: Study) -> Iterator[Row]:
+def _model(simulation: Simulation) -> Iterator[Row]:
     """What was simulated: modulus of the beads' surface, effects included; number of effects with losses."""
-    yield Row(study.card.name, "modulus", "", float(study.chain.first.surface.modulus[0]) / 1e9, "GPa", 0.0)
-    yield Row(study.card.name, "loss_effects", "", float(_losses(study)), "1", 0.0)
+    yield Row(
+        simulation.card.name,
+        "modulus",
+        "",
+        float(simulation.chain.first.surface.modulus[0]) / 1e9,
+        "GPa",
+        0.0,
+    )
+    yield Row(simulation.card.name, "loss_effects", "", float(_losses(simulation)), "1", 0.0)
 
 
-def _losses(study: Study) -> int:
+def _losses(simulation: Simulation) -> int:
     """Number of effects that take energy."""
-    return sum(study.catalogue.effect(name).dissipative for name in study.card.effects)
+    return sum(simulation.catalogue.effect(name).dissipative for name in simulation.card.effects)
 
 
 def _one(run: OneRun, name: str, brief: bool) -> Found:
@@ -137,13 +147,13 @@ def _rows(plain: Found, refined: Found) -> list[Row]:
     return rows
 
 
-def _balance(study: Study, name: str, lane: int) -> Iterator[Row]:
+def _balance(simulation: Simulation, name: str, lane: int) -> Iterator[Row]:
     """Striker's speed, and the largest drift of energy and momentum in units of what the striker brought."""
-    speed, mass = float(study.speeds[lane]), study.card.striker.mass_kg
+    speed, mass = float(simulation.speeds[lane]), simulation.card.striker.mass_kg
     yield Row(name, "striker_speed", "", speed, "m/s", 0.0)
     brought = {"energy_drift": 0.5 * mass * speed**2, "momentum_drift": mass * speed}
-    for quantity, balance in (("energy_drift", study.energy), ("momentum_drift", study.momentum)):
-        taken = quantity == "energy_drift" and _losses(study) > 0
+    for quantity, balance in (("energy_drift", simulation.energy), ("momentum_drift", simulation.momentum)):
+        taken = quantity == "energy_drift" and _losses(simulation) > 0
         if len(balance) == 0 or taken:
             reason = "losses take energy" if taken else "the law keeps no simple balance"
             yield absent(name, quantity, "", "1", reason)

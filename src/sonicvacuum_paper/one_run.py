@@ -14,7 +14,7 @@ from sonicvacuum.gauges.base import Recorded
 from sonicvacuum.observe import quantities
 from sonicvacuum.observe.run import Geometry, Run
 from sonicvacuum.observe.trace import Measured, Trace
-from sonicvacuum.study import Study
+from sonicvacuum.simulation import Simulation
 
 # Gauges of the paper, counted from the bottom; virtual ones take their place in chains without.
 UPPER, LOWER = 9, 5
@@ -22,9 +22,9 @@ UPPER, LOWER = 9, 5
 
 @dataclass(frozen=True, eq=False)
 class OneRun:
-    """One lane of a study, with the chosen step or half of it."""
+    """One lane of a simulation, with the chosen step or half of it."""
 
-    study: Study
+    simulation: Simulation
     lane: int = 0
     refined: bool = False
     _contacts: dict = field(default_factory=dict, repr=False)
@@ -32,7 +32,7 @@ class OneRun:
     @property
     def card(self):
         """The simulated card."""
-        return self.study.card
+        return self.simulation.card
 
     @property
     def diameter(self) -> float:
@@ -45,7 +45,7 @@ class OneRun:
 
         Where they sit in fewer than two beads, virtual ones are put into those of g9 and g5.
         """
-        found = list(self.study.sensors)
+        found = list(self.simulation.sensors)
         if not any(s.kind == "wall" for s in found):
             found.append(Gauge(id=_free("wall", found), kind="wall", bead=None))
         taken = {s.bead for s in found if s.kind == "embedded"}
@@ -82,19 +82,19 @@ class OneRun:
         """Readings of all gauges, reported and virtual, in which pulses are found once."""
         beads = self.card.beads
         inner = [self._virtual(b) for b in range(1, beads + 1)]
-        kept = [s for s in inner if set(contacts_of(s, beads)) <= set(self.study.contacts)]
+        kept = [s for s in inner if set(contacts_of(s, beads)) <= set(self.simulation.contacts)]
         placed = (*self.gauges, *kept)
         recorded = self._recorded
         readings = {s.id: reading(s, recorded, beads) for s in placed}
-        return Run(readings, self.study.time, Geometry(beads, self.card.specimen.diameters, placed))
+        return Run(readings, self.simulation.time, Geometry(beads, self.card.specimen.diameters, placed))
 
     @property
     def _recorded(self):
         """What was recorded of this lane."""
-        found = self.study.recorded(self.refined)
-        forces = {c: self.contact(c).force for c in self.study.contacts}
+        found = self.simulation.recorded(self.refined)
+        forces = {c: self.contact(c).force for c in self.simulation.contacts}
         moved = [{b: m[:, self.lane] for b, m in one.items()} for one in (found.velocity, found.acceleration)]
-        return Recorded(self.study.time, forces, *moved)
+        return Recorded(self.simulation.time, forces, *moved)
 
     def speed(self) -> Measured:
         """Speed in m/s between the first and the last embedded gauge."""
@@ -105,8 +105,8 @@ class OneRun:
     def contact(self, contact: int) -> Trace:
         """Force of one contact without the static part."""
         if contact not in self._contacts:
-            force = self.study.force_of(contact, self.refined)[:, self.lane]
-            self._contacts[contact] = Trace(0.0, self.study.interval, np.ascontiguousarray(force))
+            force = self.simulation.force_of(contact, self.refined)[:, self.lane]
+            self._contacts[contact] = Trace(0.0, self.simulation.interval, np.ascontiguousarray(force))
         return self._contacts[contact]
 
     def static_force(self, contact: int) -> float:
@@ -115,7 +115,7 @@ class OneRun:
 
     def depth_at(self, contact: int, force: np.ndarray) -> np.ndarray:
         """(n,) compression in m of a contact that bears `force` (n,) in N, by the law of the run."""
-        chain = self.study.chain.take(np.array([self.lane]))
+        chain = self.simulation.chain.take(np.array([self.lane]))
         return chain.depth_at(contact, np.asarray(force)[:, None])[:, 0]
 
     def stiffness(self, contact: int) -> float:
@@ -128,7 +128,7 @@ class OneRun:
 
     @cached_property
     def _at_rest(self):
-        chain, bodies = self.study.chain, self.card.beads + 1
+        chain, bodies = self.simulation.chain, self.card.beads + 1
         tables = chain.static_forces(bodies), chain.reduced_radii(bodies), chain.stiffnesses(bodies)
         return [np.broadcast_to(t, (bodies, chain.lanes))[:, self.lane] for t in tables]
 

@@ -3,23 +3,23 @@
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-from sonicvacuum import config, study
+from sonicvacuum import config, simulation
 from sonicvacuum_paper import figures
 
 
 @pytest.fixture(scope="session")
-def studies(pytestconfig):
-    """Card name → study."""
+def simulations(pytestconfig):
+    """Card name → simulation."""
     cases = config.read(pytestconfig.rootpath / "config.yaml")
     cards = [card for name in figures.names() for card in figures.cards_of(name)]
-    return {card: study.run(config.card(cases, *card.split("."))) for card in cards}
+    return {card: simulation.run(config.card(cases, *card.split("."))) for card in cards}
 
 
 @pytest.fixture(scope="session")
-def made(studies, tmp_path_factory):
+def made(simulations, tmp_path_factory):
     """Figure name → paths of its CSV, SVG and PNG."""
     folder = tmp_path_factory.mktemp("figures")
-    return {name: figures.make(name, studies, folder) for name in figures.names()}
+    return {name: figures.make(name, simulations, folder) for name in figures.names()}
 
 
 @pytest.fixture(scope="session")

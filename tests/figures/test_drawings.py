@@ -144,8 +144,8 @@ def test_drawing_follows_the_csv_and_nothing_else(made, name, tmp_path):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_equal_studies_give_equal_bytes(made, studies, name, tmp_path):
-    again = figures.make(name, studies, tmp_path)
+def test_equal_simulations_give_equal_bytes(made, simulations, name, tmp_path):
+    again = figures.make(name, simulations, tmp_path)
     for old, new in zip(made[name], again, strict=True):
         assert old.read_bytes() == new.read_bytes(), new.suffix
     svg = again[1].read_text()

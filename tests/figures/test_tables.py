@@ -5,7 +5,7 @@ import numpy as np
 import pandas
 import pytest
 
-from sonicvacuum import study
+from sonicvacuum import simulation
 from sonicvacuum.files import InputError
 from sonicvacuum.physics.solitary import SolitaryWave
 from sonicvacuum_paper import figures
@@ -38,12 +38,12 @@ def test_every_gauge_is_shown_for_every_modulus_from_top_to_bottom(drawn, name):
             assert list(dict.fromkeys(shown.sensor)) == ["g9", "g5", "wall"]
 
 
-def test_thinning_a_trace_leaves_its_peak(drawn, studies):
+def test_thinning_a_trace_leaves_its_peak(drawn, simulations):
     for name in TRACES:
         table, _ = drawn[name]
         for card in figures.cards_of(name):
             panel, modulus = card.split(".")[0][-1], card.split(".")[1]
-            for sensor, reading in studies[card].readings().items():
+            for sensor, reading in simulations[card].readings().items():
                 here = (table.panel == panel) & (table.sensor == sensor) & (table.model == modulus)
                 peak = table[here & (table.series == "peak") & (table["pulse"] == 1)].force_N.item()
                 shown = table[here & (table.series == "simulated")].force_N.max()
@@ -148,12 +148,12 @@ def test_figures_are_small_enough_for_git(made):
     assert size < 3e6
 
 
-def test_an_absent_variant_leaves_a_figure_and_an_absent_panel_is_an_error(studies, tmp_path):
-    few = {name: studies[name] for name in ("fig3a.layer", "fig3b.nominal")}
+def test_an_absent_variant_leaves_a_figure_and_an_absent_panel_is_an_error(simulations, tmp_path):
+    few = {name: simulations[name] for name in ("fig3a.layer", "fig3b.nominal")}
     table = pandas.read_csv(figures.make("fig3", few, tmp_path)[0])
     assert set(table.model) == {"layer", "nominal"}
     with pytest.raises(InputError, match=r"fig3.*fig3b.*simulate one of fig3b\.nominal"):
-        figures.make("fig3", {"fig3a.layer": studies["fig3a.layer"]}, tmp_path / "none")
+        figures.make("fig3", {"fig3a.layer": simulations["fig3a.layer"]}, tmp_path / "none")
     assert not (tmp_path / "none").exists()
 
 
@@ -166,15 +166,15 @@ def test_an_unknown_figure_and_a_strange_csv_are_named(tmp_path):
         figures.draw("fig3", strange)
 
 
-def test_fig4_leaves_the_printed_reading_out_where_no_simulated_wave_is_as_weak(studies, tmp_path):
+def test_fig4_leaves_the_printed_reading_out_where_no_simulated_wave_is_as_weak(simulations, tmp_path):
     """A sweep that starts above 0.25 N does not say which contact force gives that reading."""
-    strong = studies["fig4a.matched"]
+    strong = simulations["fig4a.matched"]
     fast = strong.speeds > 0.1
     card = msgspec.structs.replace(
         strong.card,
         striker=msgspec.structs.replace(strong.card.striker, speeds_m_s=tuple(strong.speeds[fast])),
     )
-    kept = {"fig4a.matched": study.run(card), "fig4b.nominal": studies["fig4b.nominal"]}
+    kept = {"fig4a.matched": simulation.run(card), "fig4b.nominal": simulations["fig4b.nominal"]}
     table = pandas.read_csv(figures.make("fig4", kept, tmp_path)[0])
     assert PRINTED.speed_low not in set(table.speed_m_s[table.series == "paper"])
     assert "paper-as-read" in set(table.series)

@@ -29,7 +29,7 @@ from record_cases import CONTENT  # noqa: E402
 from test_card import CASE  # noqa: E402
 from test_histories import CARD, PARTS  # noqa: E402
 
-from sonicvacuum import card, config, study  # noqa: E402
+from sonicvacuum import card, config, simulation  # noqa: E402
 from sonicvacuum.cli.cards import read_card  # noqa: E402
 from sonicvacuum.discover.compare import read_model  # noqa: E402
 from sonicvacuum.files import InputError  # noqa: E402
@@ -128,7 +128,7 @@ class Files:
         }
         self.readers = {
             "config": ("config.yaml", self._config),
-            "card": ("card.json", lambda path: study.set_up(read_card(path))),
+            "card": ("card.json", lambda path: simulation.set_up(read_card(path))),
             "record": ("record/record.yaml", lambda path: read_record(path.parent)),
             "signals": ("record/fast.csv", lambda path: read_record(path.parent).signals),
             "model": ("model.json", read_model),
@@ -137,7 +137,7 @@ class Files:
             "candidates": ("found/candidates.csv", lambda path: section(path.parent)),
             "gap": ("found/gap.csv", lambda path: section(path.parent)),
             "limits": ("found/limits.csv", lambda path: section(path.parent)),
-            "history": ("history.npz", lambda path: study.load(CARD, path)),
+            "history": ("history.npz", lambda path: simulation.load(CARD, path)),
         }
         for file, tree, dumped in self.trees.values():
             (folder / file).write_text(dumped(tree))
@@ -150,7 +150,7 @@ class Files:
             case, variant = name.split(".")
             one = config.card(found, case, variant, path)
             card.check(one)
-            study.set_up(one)
+            simulation.set_up(one)
 
     def attempt(self, kind: str, draw: random.Random) -> tuple[str, str, str]:
         """(kind of mutation, accepted | refused | other, what was said) of one mutant."""

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from sonicvacuum import config, study
+from sonicvacuum import config, simulation
 from sonicvacuum_paper.columns import Metrics
 from sonicvacuum_paper.metrics import card_rows
 from sonicvacuum_paper.stages import derived_rows
@@ -22,7 +22,7 @@ def cases():
 def simulated(cases):
     """Card name → its rows."""
     cards = [config.card(cases, *name.split(".")) for name in config.card_names(cases)]
-    return {c.name: card_rows(study.run(c)) for c in cards}
+    return {c.name: card_rows(simulation.run(c)) for c in cards}
 
 
 @pytest.fixture(scope="session")

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from sonicvacuum import study
+from sonicvacuum import simulation
 from sonicvacuum.card import Card, CardSensor, CardStriker
 from sonicvacuum.laboratory.specimen import Bead, Material
 from sonicvacuum_paper.metrics import card_rows
@@ -30,7 +30,7 @@ def made(*sensors, speeds=(0.4, 0.8), effects=None):
         interval_s=0.5e-6,
         effects=effects or {},
     )
-    return study.run(card)
+    return simulation.run(card)
 
 
 def gauge(name, bead):

@@ -4,7 +4,7 @@ import pytest
 from msgspec.structs import replace
 from scipy.optimize import brentq
 
-from sonicvacuum import config, study
+from sonicvacuum import config, simulation
 from sonicvacuum_paper import gauges
 from sonicvacuum_paper.one_run import OneRun
 from sonicvacuum_paper.printed import PRINTED
@@ -13,7 +13,7 @@ from sonicvacuum_paper.printed import PRINTED
 def run(card, time_us):
     """The card with another time of its loss."""
     effects = {**card.effects, "kuwabara-kono": {"time_us": time_us}}
-    return OneRun(study.run(replace(card, effects=effects)))
+    return OneRun(simulation.run(replace(card, effects=effects)))
 
 
 def duration(card, time_us):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from sonicvacuum import config, study
+from sonicvacuum import config, simulation
 from sonicvacuum.card import ModelBlock, load
 from sonicvacuum.cli.card import card as card_command
 from sonicvacuum.cli.simulate import simulate
@@ -48,7 +48,7 @@ def test_the_same_chain_takes_all_of_a_model(base):
     assert found.bead.surface.modulus_Pa == 2.0 * base.bead.surface.modulus_Pa
     assert (found.striker, found.wall) == (base.striker, base.wall)
     assert list(found.effects) == ["kuwabara-kono", "mass-defect", "static-preload"]
-    chain = study.set_up(found).chain
+    chain = simulation.set_up(found).chain
     assert chain.masses(20)[13, 0] == pytest.approx(1.2 * chain.masses(20)[12, 0], rel=1e-12)  # rounding
 
 
@@ -57,7 +57,7 @@ def test_a_dynamic_modulus_is_the_modulus_of_the_card(base):
     assert found.effects == {}
     assert found.bead.surface.modulus_Pa == pytest.approx(3.3 * base.bead.surface.modulus_Pa, rel=1e-15)
     # The effect on the handbook's chain and the card say the same.
-    one, other = study.set_up(found).chain, study.set_up(extended(base, model(3.3))).chain
+    one, other = simulation.set_up(found).chain, simulation.set_up(extended(base, model(3.3))).chain
     assert one.first.surface.modulus[0] == pytest.approx(
         other.first.surface.modulus[0], rel=1e-15
     )  # rounding

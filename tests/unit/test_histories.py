@@ -8,7 +8,7 @@ import pytest
 from msgspec.structs import replace
 from test_card import CASE, resolved
 
-from sonicvacuum import study
+from sonicvacuum import simulation
 from sonicvacuum.files import InputError
 
 CARD = replace(resolved(CASE), duration_s=1e-5, interval_s=1e-6)
@@ -29,7 +29,7 @@ def saved(path, **changes):
 
 def test_a_whole_one_is_read(tmp_path):
     saved(tmp_path / "h.npz")
-    assert study.load(CARD, tmp_path / "h.npz").force.shape == SHAPE
+    assert simulation.load(CARD, tmp_path / "h.npz").force.shape == SHAPE
 
 
 @pytest.mark.parametrize(
@@ -50,7 +50,7 @@ def test_a_whole_one_is_read(tmp_path):
 def test_other_contents_are_refused(tmp_path, changes):
     saved(tmp_path / "h.npz", **changes)
     with pytest.raises(InputError, match=r"h.npz: .*; run sonicvacuum simulate again"):
-        study.load(CARD, tmp_path / "h.npz")
+        simulation.load(CARD, tmp_path / "h.npz")
 
 
 def test_a_file_that_unpacks_to_far_more_is_refused_unread(tmp_path):
@@ -59,7 +59,7 @@ def test_a_file_that_unpacks_to_far_more_is_refused_unread(tmp_path):
         np.save(array, np.zeros(10_000_000))
         bomb.writestr("force.npy", array.getvalue())
     with pytest.raises(InputError, match="it is packed"):
-        study.load(CARD, tmp_path / "h.npz")
+        simulation.load(CARD, tmp_path / "h.npz")
 
 
 @pytest.mark.parametrize("keep", [0, 3, 100, -30])
@@ -68,4 +68,4 @@ def test_a_cut_one_is_refused(tmp_path, keep):
     whole = (tmp_path / "h.npz").read_bytes()
     (tmp_path / "h.npz").write_bytes(whole[:keep])
     with pytest.raises(InputError, match=r"h.npz"):
-        study.load(CARD, tmp_path / "h.npz")
+        simulation.load(CARD, tmp_path / "h.npz")

@@ -36,7 +36,7 @@ def card(path, case, variant, model, out, own):
 
         resolved = with_model(resolved, model, catalogue(own), wanted)
     if resolved.effects:
-        from sonicvacuum.study import set_up
+        from sonicvacuum.simulation import set_up
 
         set_up(resolved, catalogue=catalogue(own))  # an effect that does not exist is best known now
     text = dump(resolved)

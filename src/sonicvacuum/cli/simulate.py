@@ -22,7 +22,7 @@ from sonicvacuum.outputs import check_apart
 @own_effects
 def simulate(card, model, no_limits, out, own):
     """Integrate the chains of a CARD and keep the contact forces."""
-    from sonicvacuum import study
+    from sonicvacuum import simulation
 
     check_apart([out], [card, model, *own])
     resolved, known = read_card(card), catalogue(own)
@@ -31,7 +31,7 @@ def simulate(card, model, no_limits, out, own):
 
         resolved = with_model(resolved, model, known)
     with progress():
-        simulated = study.run(resolved, known, limits=not no_limits)
+        simulated = simulation.run(resolved, known, limits=not no_limits)
     for told in simulated.warnings:
         click.echo(f"Warning: {resolved.name}: {told}", err=True)
-    study.save(simulated, out)
+    simulation.save(simulated, out)

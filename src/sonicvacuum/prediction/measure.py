@@ -20,7 +20,7 @@ from sonicvacuum.observe.run import Geometry, Run
 from sonicvacuum.observe.trace import Trace
 from sonicvacuum.physics.scales import COUNTING, impact_scales, passage_of, sampling_of
 from sonicvacuum.prediction.setup import card_of
-from sonicvacuum.study import Study, check_extent, run, set_up
+from sonicvacuum.simulation import Simulation, check_extent, run, set_up
 
 # Samples across a pulse at half its height: with so many its arrival is read to 2e-5 of that width, its
 # duration to 7e-4 (module `observe.trace`).
@@ -169,19 +169,19 @@ def _settled(card: Card) -> Card:
     return card
 
 
-def measured(study: Study) -> ChainPrediction:
-    """What a study of one run shows."""
-    card, extra = study.card, _extra(study)
-    geometry = Geometry(card.beads, card.specimen.diameters, (*study.sensors, *extra))
-    readings = {g.id: study.read(g)[:, 0] for g in geometry.sensors}
-    clear = Run(readings, study.time, geometry)
-    seen = tuple(_gauge(study, clear, gauge) for gauge in study.sensors)
-    fast, first, last = _speed(clear, study.sensors, extra)
+def measured(simulation: Simulation) -> ChainPrediction:
+    """What a simulation of one run shows."""
+    card, extra = simulation.card, _extra(simulation)
+    geometry = Geometry(card.beads, card.specimen.diameters, (*simulation.sensors, *extra))
+    readings = {g.id: simulation.read(g)[:, 0] for g in geometry.sensors}
+    clear = Run(readings, simulation.time, geometry)
+    seen = tuple(_gauge(simulation, clear, gauge) for gauge in simulation.sensors)
+    fast, first, last = _speed(clear, simulation.sensors, extra)
     return ChainPrediction(
         beads=card.beads,
         bead_mass_g=card.bead.mass_kg * 1e3,
         striker_mass_g=card.striker.mass_kg * 1e3,
-        striker_speed_m_s=float(study.speeds[0]),
+        striker_speed_m_s=float(simulation.speeds[0]),
         wave_speed_m_s=fast,
         speed_from=first,
         speed_to=last,
@@ -191,19 +191,19 @@ def measured(study: Study) -> ChainPrediction:
         sampling_us=min((g.duration_half_us for g in seen if g.duration_half_us), default=0.0)
         / SAMPLES_PER_PULSE
         or None,
-        time_us=study.time * 1e6,
-        readings_N={g.id: readings[g.id] for g in study.sensors},
+        time_us=simulation.time * 1e6,
+        readings_N={g.id: readings[g.id] for g in simulation.sensors},
     )
 
 
-def _extra(study):
+def _extra(simulation):
     """Gauges that only the simulation has: for the speed, and to know when the reflection returns."""
-    beads = study.card.beads
+    beads = simulation.card.beads
     pair = tuple(Gauge(f"bead {b}", "embedded", b) for b in gauge_beads(beads))
-    return (*pair, *virtual((*study.sensors, *pair), beads))
+    return (*pair, *virtual((*simulation.sensors, *pair), beads))
 
 
-def _gauge(study: Study, clear: Run, gauge: Gauge) -> GaugePrediction:
+def _gauge(simulation: Simulation, clear: Run, gauge: Gauge) -> GaugePrediction:
     """One gauge; where the reflection lies on its pulse, the first peak as it is, with a note."""
     overlapped = clear.main(gauge.id)
     shown = clear if overlapped.found else replace(clear, accept_overlap=True)
@@ -211,8 +211,8 @@ def _gauge(study: Study, clear: Run, gauge: Gauge) -> GaugePrediction:
         measure_run(q, shown, sensor=gauge.id)
         for q in ("amplitude", "arrival", "onset", "duration", "duration_half")
     )
-    contacts = gauge.what.contacts(gauge, study.card.beads)
-    peaks = [main_pulse(Trace.of(study.time, study.force_of(c)[:, 0])).force for c in contacts]
+    contacts = gauge.what.contacts(gauge, simulation.card.beads)
+    peaks = [main_pulse(Trace.of(simulation.time, simulation.force_of(c)[:, 0])).force for c in contacts]
     reasons = (m.reason for m in (overlapped, amplitude, lasting, half) if m.reason)
     us = 1e6
     return GaugePrediction(

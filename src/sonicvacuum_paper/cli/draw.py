@@ -16,13 +16,13 @@ _FOLDER = click.Path(exists=True, file_okay=False)
 @click.option("--out", required=True, type=click.Path(file_okay=False), help="Folder for CSV, SVG and PNG.")
 def draw(figure, cards, histories, out):
     """Draw FIGURE (fig3, fig4, fig5 or fig6) of simulated cards."""
-    from sonicvacuum import study
+    from sonicvacuum import simulation
     from sonicvacuum_paper import figures
 
     # A variant that the configuration does not have leaves its panel without that line.
     names = [name for name in figures.cards_of(figure) if (Path(cards) / f"{name}.json").exists()]
-    studies = {
-        name: study.load(read_card(Path(cards) / f"{name}.json"), Path(histories) / f"{name}.npz")
+    simulations = {
+        name: simulation.load(read_card(Path(cards) / f"{name}.json"), Path(histories) / f"{name}.npz")
         for name in names
     }
-    figures.make(figure, studies, out)
+    figures.make(figure, simulations, out)

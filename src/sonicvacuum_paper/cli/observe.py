@@ -20,12 +20,12 @@ from sonicvacuum.outputs import check_apart
 @own_effects
 def observe(card, history, signals, metrics, own):
     """Read the gauges of a simulated CARD's HISTORY and measure the pulses."""
-    from sonicvacuum import study
+    from sonicvacuum import simulation
     from sonicvacuum_paper.metrics import card_rows
     from sonicvacuum_paper.rows import write_rows
 
     check_apart([signals, metrics], [card, history])
-    simulated = study.load(read_card(card), history, catalogue(own))
+    simulated = simulation.load(read_card(card), history, catalogue(own))
     write_signals(simulated, signals)
     write_rows(card_rows(simulated), metrics)
 

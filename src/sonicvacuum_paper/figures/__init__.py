@@ -1,7 +1,7 @@
 """Figures 3–6 of the paper, redrawn from simulated cards: numbers first, pictures from these numbers only.
 
-Each module `figN` has `table(studies)`, which returns the numbers drawn, `draw(table)`, which makes a figure
-of them and of nothing else, and `CAPTION`. Importing this package loads neither matplotlib nor pandas.
+Each module `figN` has `table(simulations)`, which returns the numbers drawn, `draw(table)`, which makes a
+figure of them and of nothing else, and `CAPTION`. Importing this package loads neither matplotlib nor pandas.
 """
 
 from collections.abc import Mapping
@@ -48,15 +48,15 @@ def caption(name: str) -> str:
 
 
 @one_thread
-def make(name: str, studies: Mapping, out_dir) -> tuple[Path, Path, Path]:
+def make(name: str, simulations: Mapping, out_dir) -> tuple[Path, Path, Path]:
     """Write `name`.csv, then read it back and draw `name`.svg and `name`.png from it.
 
-    Equal studies give equal bytes.
+    Equal simulations give equal bytes.
 
     Args:
         name: of the figure.
-        studies: card name → `sonicvacuum.study.Study` of the cards in `cards_of(name)`; others are ignored,
-            and a card may be absent as long as its panel has another.
+        simulations: card name → `Simulation` of the cards in `cards_of(name)`; others are ignored, and
+            a card may be absent as long as its panel has another.
         out_dir: folder, made where it does not exist.
 
     Returns:
@@ -67,7 +67,7 @@ def make(name: str, studies: Mapping, out_dir) -> tuple[Path, Path, Path]:
     """
     from sonicvacuum.figures import style
 
-    wanted = {card: studies[card] for card in cards_of(name) if card in studies}
+    wanted = {card: simulations[card] for card in cards_of(name) if card in simulations}
     for panel in dict.fromkeys(card.split(".")[0] for card in CARDS[name]):
         if not any(card.startswith(f"{panel}.") for card in wanted):
             known = ", ".join(c for c in CARDS[name] if c.startswith(f"{panel}."))

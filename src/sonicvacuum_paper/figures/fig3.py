@@ -6,7 +6,7 @@ import pandas
 from matplotlib.figure import Figure
 
 from sonicvacuum.figures import style
-from sonicvacuum.study import Study
+from sonicvacuum.simulation import Simulation
 from sonicvacuum_paper.figures import traces
 from sonicvacuum_paper.printed import PRINTED
 
@@ -21,17 +21,17 @@ the loss). The paper's traces are not available.
 """)
 
 
-def table(studies: Mapping[str, Study]) -> pandas.DataFrame:
+def table(simulations: Mapping[str, Simulation]) -> pandas.DataFrame:
     """The numbers drawn; columns in `traces`."""
     found = []
-    for name, study in studies.items():
+    for name, simulation in simulations.items():
         panel = name.split(".")[0][-1]
-        found += traces.rows(panel, study, UNTIL_US[panel])
+        found += traces.rows(panel, simulation, UNTIL_US[panel])
     for panel, speed, duration in (
         ("a", PRINTED.speed_coated, 1e6 * PRINTED.duration_coated),
         ("b", PRINTED.speed_steel, None),
     ):
-        first = next(s for n, s in studies.items() if n.startswith(f"fig3{panel}."))
+        first = next(s for n, s in simulations.items() if n.startswith(f"fig3{panel}."))
         found += traces.paper_rows(panel, first, speed, duration)
     return traces.frame(found)
 

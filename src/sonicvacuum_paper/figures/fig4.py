@@ -20,7 +20,7 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 from sonicvacuum.figures import style
 from sonicvacuum.observe.pulse import main_pulse
 from sonicvacuum.physics import theory
-from sonicvacuum.study import Study
+from sonicvacuum.simulation import Simulation
 from sonicvacuum_paper.figures import traces
 from sonicvacuum_paper.one_run import OneRun
 from sonicvacuum_paper.printed import PRINTED
@@ -56,27 +56,27 @@ CRACKS = 3.0  # N, the level at which the paper saw cracks
 STRUCK = 0.44
 
 
-def table(studies: Mapping[str, Study]) -> pandas.DataFrame:
+def table(simulations: Mapping[str, Simulation]) -> pandas.DataFrame:
     """The numbers drawn; columns as above."""
     found = []
-    for name, study in studies.items():
-        found += _simulated(name.split(".")[0][-1], study)
+    for name, simulation in simulations.items():
+        found += _simulated(name.split(".")[0][-1], simulation)
     for panel in "ab":
-        found += _theory(panel, [s for n, s in studies.items() if n.startswith(f"fig4{panel}.")])
+        found += _theory(panel, [s for n, s in simulations.items() if n.startswith(f"fig4{panel}.")])
     found += _paper(pandas.DataFrame(found))
     return pandas.DataFrame(found, columns=COLUMNS)
 
 
-def _simulated(panel: str, study: Study):
-    for lane, speed in enumerate(study.speeds):
-        run = OneRun(study, lane)
+def _simulated(panel: str, simulation: Simulation):
+    for lane, speed in enumerate(simulation.speeds):
+        run = OneRun(simulation, lane)
         contacts = run.contacts_between_gauges()
         yield {
             "panel": panel,
             "series": "simulated",
-            "model": traces.model_of(study),
-            "modulus_GPa": study.card.bead.surface.modulus_Pa / 1e9,
-            "orientation": _orientation(study),
+            "model": traces.model_of(simulation),
+            "modulus_GPa": simulation.card.bead.surface.modulus_Pa / 1e9,
+            "orientation": _orientation(simulation),
             "striker_speed_m_s": speed,
             "gauge_N": np.mean([run.view.main(s.id).force for s in run.span]),
             "static_N": np.mean([run.static_force(c) for c in contacts]),
@@ -85,24 +85,24 @@ def _simulated(panel: str, study: Study):
         }
 
 
-def _orientation(study):
-    return "vertical" if study.card.gravity_m_s2 > 0.0 else "horizontal"
+def _orientation(simulation):
+    return "vertical" if simulation.card.gravity_m_s2 > 0.0 else "horizontal"
 
 
-def _theory(panel: str, studies: list[Study]):
+def _theory(panel: str, simulations: list[Simulation]):
     """Eq. (7) for each modulus of a vertical chain, Eq. (6) for each of a horizontal one."""
     force = np.geomspace(*FORCES[panel], POINTS)
-    for study in (s for s in studies if not s.card.effects):
-        bead, run = study.card.bead, OneRun(study)
+    for simulation in (s for s in simulations if not s.card.effects):
+        bead, run = simulation.card.bead, OneRun(simulation)
         beads = (bead.surface.modulus_Pa, bead.surface.poisson, bead.diameter_m, bead.mass_kg)
         static = np.mean([run.static_force(c) for c in run.contacts_between_gauges()])
         speed = theory.speed_with_precompression(force + static, static, *beads)
         shared = {
             "panel": panel,
             "series": "eq7" if static > 0.0 else "eq6",
-            "model": traces.model_of(study),
+            "model": traces.model_of(simulation),
             "modulus_GPa": bead.surface.modulus_Pa / 1e9,
-            "orientation": _orientation(study),
+            "orientation": _orientation(simulation),
             "static_N": static,
         }
         yield from (shared | {"force_N": f, "speed_m_s": v} for f, v in zip(force, speed, strict=True))

@@ -6,7 +6,7 @@ import pandas
 from matplotlib.figure import Figure
 
 from sonicvacuum.figures import style
-from sonicvacuum.study import Study
+from sonicvacuum.simulation import Simulation
 from sonicvacuum_paper.figures import traces
 from sonicvacuum_paper.printed import PRINTED
 
@@ -22,12 +22,12 @@ whose traces are not available, does not count.
 """)
 
 
-def table(studies: Mapping[str, Study]) -> pandas.DataFrame:
+def table(simulations: Mapping[str, Simulation]) -> pandas.DataFrame:
     """The numbers drawn; columns in `traces`."""
     found = []
-    for name, study in studies.items():
+    for name, simulation in simulations.items():
         panel = name.split(".")[0][-1]
-        found += traces.rows(panel, study, UNTIL_US[panel])
+        found += traces.rows(panel, simulation, UNTIL_US[panel])
     return traces.frame(found)
 
 

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from sonicvacuum.figures import style
-from sonicvacuum.study import Study
+from sonicvacuum.simulation import Simulation
 from sonicvacuum_paper.figures import traces
 
 COLUMNS = traces.COLUMNS
@@ -25,11 +25,11 @@ saw; its traces are not available. Legends: waves of at least 0.15 of the first.
 _SEEN = {"a": "paper: one solitary wave", "b": "paper: one shock-like pulse"}
 
 
-def table(studies: Mapping[str, Study]) -> pandas.DataFrame:
+def table(simulations: Mapping[str, Simulation]) -> pandas.DataFrame:
     """The numbers drawn; columns in `traces`."""
     found = []
-    for name, study in studies.items():
-        found += traces.rows(name.split(".")[0][-1], study, UNTIL_US)
+    for name, simulation in simulations.items():
+        found += traces.rows(name.split(".")[0][-1], simulation, UNTIL_US)
     wall = traces.frame(found)
     return wall[wall.sensor == "wall"].reset_index(drop=True)
 

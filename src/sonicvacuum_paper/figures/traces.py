@@ -21,7 +21,7 @@ from sonicvacuum.figures import style
 from sonicvacuum.gauges import Gauge
 from sonicvacuum.observe.pulse import pulses
 from sonicvacuum.observe.shape import onset
-from sonicvacuum.study import Study
+from sonicvacuum.simulation import Simulation
 from sonicvacuum_paper.one_run import OneRun
 from sonicvacuum_paper.printed import PRINTED
 
@@ -45,29 +45,31 @@ TRAIN = 0.05
 SMALL = 0.01
 
 
-def rows(panel: str, study: Study, until_us: float) -> list[dict]:
+def rows(panel: str, simulation: Simulation, until_us: float) -> list[dict]:
     """The traces of a card's gauges until a time, with their peaks."""
-    run = OneRun(study)
-    modulus = study.card.bead.surface.modulus_Pa / 1e9
+    run = OneRun(simulation)
+    modulus = simulation.card.bead.surface.modulus_Pa / 1e9
     found = []
     for sensor in run.gauges:
-        shared = {"panel": panel, "sensor": sensor.id, "model": model_of(study), "modulus_GPa": modulus}
+        shared = {"panel": panel, "sensor": sensor.id, "model": model_of(simulation), "modulus_GPa": modulus}
         found += [shared | point for point in _trace(run, sensor, until_us)]
         found += [shared | peak for peak in _peaks(run, sensor, until_us)]
     return found
 
 
-def paper_rows(panel: str, study: Study, speed: float, duration_us: float | None = None) -> list[dict]:
+def paper_rows(
+    panel: str, simulation: Simulation, speed: float, duration_us: float | None = None
+) -> list[dict]:
     """Printed speed (m/s) and duration, where the simulated pulse would show them.
 
     The arrival at the lower gauge that the printed speed means, counted from the simulated peak at the upper
     one, and the printed duration centred on that peak.
     """
-    view, (upper, lower) = OneRun(study).view, OneRun(study).span
+    view, (upper, lower) = OneRun(simulation).view, OneRun(simulation).span
     start = 1e6 * view.main(upper.id).time
     travel = 1e6 * (view.geometry.position(upper.id) - view.geometry.position(lower.id)) / speed
-    modulus = study.card.bead.surface.modulus_Pa / 1e9
-    shared = {"panel": panel, "model": model_of(study), "modulus_GPa": modulus}
+    modulus = simulation.card.bead.surface.modulus_Pa / 1e9
+    shared = {"panel": panel, "model": model_of(simulation), "modulus_GPa": modulus}
     arrival = {
         "series": "paper-arrival",
         "sensor": lower.id,
@@ -86,9 +88,9 @@ def paper_rows(panel: str, study: Study, speed: float, duration_us: float | None
     return found
 
 
-def model_of(study: Study) -> str:
+def model_of(simulation: Simulation) -> str:
     """Variant of its case that a card is."""
-    return study.card.name.split(".")[1]
+    return simulation.card.name.split(".")[1]
 
 
 def frame(found: list[dict]) -> pandas.DataFrame:

@@ -29,7 +29,7 @@ AIM_TOLERANCE = 1e-6
 
 
 @dataclass(frozen=True)
-class Study:
+class Simulation:
     """A simulated card.
 
     Attributes:
@@ -147,7 +147,7 @@ def check_extent(card: Card, catalogue: Catalogue = CATALOGUE) -> None:
 
 
 @one_thread
-def run(card: Card, catalogue: Catalogue = CATALOGUE, limits: bool = True) -> Study:
+def run(card: Card, catalogue: Catalogue = CATALOGUE, limits: bool = True) -> Simulation:
     """Simulate a card, at the chosen step and at half of it.
 
     Raises:
@@ -164,7 +164,7 @@ def run(card: Card, catalogue: Catalogue = CATALOGUE, limits: bool = True) -> St
         warnings = _doubts(card, set_up(card, speeds, catalogue), plain)
     except (FloatingPointError, validity.MeaninglessError) as error:
         raise InputError(f"{card.name}: {error}") from None
-    return Study(
+    return Simulation(
         card=card,
         speeds=speeds,
         time=plain.time,
@@ -217,24 +217,28 @@ def _aimed(card, speeds, catalogue):
     )
 
 
-def save(study: Study, path) -> None:
-    """Write all but the card to an .npz file; equal studies give equal bytes."""
+def save(simulation: Simulation, path) -> None:
+    """Write all but the card to an .npz file; equal simulations give equal bytes."""
     with replacing(path, "wb") as stream:
         np.savez(
             stream,
-            speeds=study.speeds,
-            contacts=np.array(study.contacts),
-            force=study.force,
-            refined=study.refined,
-            energy=study.energy,
-            momentum=study.momentum,
-            **({"warnings": np.array(study.warnings)} if study.warnings else {}),
-            **({"bodies": np.array(study.bodies), "motion": study.motion} if study.bodies else {}),
+            speeds=simulation.speeds,
+            contacts=np.array(simulation.contacts),
+            force=simulation.force,
+            refined=simulation.refined,
+            energy=simulation.energy,
+            momentum=simulation.momentum,
+            **({"warnings": np.array(simulation.warnings)} if simulation.warnings else {}),
+            **(
+                {"bodies": np.array(simulation.bodies), "motion": simulation.motion}
+                if simulation.bodies
+                else {}
+            ),
         )
 
 
-def load(card: Card, path, catalogue: Catalogue = CATALOGUE) -> Study:
-    """The study that `save` wrote for this card; InputError where the file is not one."""
+def load(card: Card, path, catalogue: Catalogue = CATALOGUE) -> Simulation:
+    """The simulation that `save` wrote for this card; InputError where the file is not one."""
     with reading_file(path, "run sonicvacuum simulate again"):
         parts = _arrays(path)
         time = np.arange(len(parts["force"])) * card.interval_s
@@ -242,9 +246,9 @@ def load(card: Card, path, catalogue: Catalogue = CATALOGUE) -> Study:
         bodies = tuple(int(b) for b in parts.pop("bodies", ()))
         warnings = tuple(str(w) for w in parts.pop("warnings", ()))
         known = {"bodies": bodies, "warnings": warnings, "catalogue": catalogue}
-        study = Study(card=card, time=time, contacts=contacts, **known, **parts)
-        _check_whole(study)
-    return study
+        simulation = Simulation(card=card, time=time, contacts=contacts, **known, **parts)
+        _check_whole(simulation)
+    return simulation
 
 
 def _arrays(path):
@@ -257,21 +261,21 @@ def _arrays(path):
         return dict(data)
 
 
-def _check_whole(study):
+def _check_whole(simulation):
     """ValueError for arrays of other shapes than the card's, or numbers that are none."""
-    card, runs = study.card, len(study.card.striker.speeds_m_s)
+    card, runs = simulation.card, len(simulation.card.striker.speeds_m_s)
     samples = int(np.floor(card.duration_s / card.interval_s * (1.0 + 1e-12))) + 1
-    force = (samples, len(study.contacts), runs)
-    if study.contacts != recorded_contacts(card):
+    force = (samples, len(simulation.contacts), runs)
+    if simulation.contacts != recorded_contacts(card):
         raise ValueError("other contacts than the card's are recorded")
     for name, shape in (("speeds", (runs,)), ("force", force), ("refined", force)):
-        if getattr(study, name).shape != shape:
-            raise ValueError(f"{name} has the shape {getattr(study, name).shape}, the card's is {shape}")
+        if getattr(simulation, name).shape != shape:
+            raise ValueError(f"{name} has the shape {getattr(simulation, name).shape}, the card's is {shape}")
     for name in ("speeds", "force", "refined", "energy", "momentum"):
-        array = getattr(study, name)
+        array = getattr(simulation, name)
         if array.dtype != np.float64 or not np.isfinite(array).all():
             raise ValueError(f"{name} holds what is no finite number")
-    if study.bodies:
-        moved = (2, 2, samples, len(study.bodies), runs)
-        if study.motion.shape != moved or not np.isfinite(study.motion).all():
+    if simulation.bodies:
+        moved = (2, 2, samples, len(simulation.bodies), runs)
+        if simulation.motion.shape != moved or not np.isfinite(simulation.motion).all():
             raise ValueError("motion is not that of the recorded bodies")

@@ -4,7 +4,7 @@ import msgspec
 import numpy as np
 import pytest
 
-from sonicvacuum import study
+from sonicvacuum import simulation
 from sonicvacuum.card import AimBlock, Card, CardSensor, CardStriker
 from sonicvacuum.files import InputError
 from sonicvacuum.laboratory.specimen import Bead, Material
@@ -31,8 +31,8 @@ def card(**changes):
 
 
 def test_the_error_from_half_the_step_bounds_the_true_error():
-    done = study.run(card())
-    fine = study._simulate(card(), done.speeds, done.contacts, refine=8.0)
+    done = simulation.run(card())
+    fine = simulation._simulate(card(), done.speeds, done.contacts, refine=8.0)
     estimate = np.abs(done.force - done.refined).max()
     truth = np.abs(done.refined - fine.force).max()
     # An order above one halves the error at least, so the finer run is off by less than the difference.
@@ -41,7 +41,7 @@ def test_the_error_from_half_the_step_bounds_the_true_error():
 
 
 def test_energy_and_momentum_stay_in_balance():
-    done = study.run(card(gravity_m_s2=9.81))
+    done = simulation.run(card(gravity_m_s2=9.81))
     assert np.ptp(done.energy[:, 0]) < 1e-4 * done.energy[0, 0]  # the splitting method's bounded error
     assert np.ptp(done.momentum[:, 0]) < 1e-11 * done.momentum[0, 0]  # exact but for rounding in 1e3 steps
 
@@ -50,17 +50,17 @@ def test_a_sweep_keeps_the_contacts_between_its_gauges_only():
     striker = CardStriker(mass_kg=0.5e-3, surface=STEEL, speeds_m_s=(0.2, 0.4, 0.8))
     upper = CardSensor(id="u", kind="embedded", bead=4)
     sweep = card(striker=striker, sensors=(upper, *card().sensors))
-    assert study.recorded_contacts(sweep) == (3, 4, 5, 8)
-    assert study.recorded_contacts(card()) == tuple(range(9))
-    assert study.recorded_contacts(card(striker=striker)) == tuple(range(9))
-    assert study.run(sweep).force.shape == (601, 4, 3)
+    assert simulation.recorded_contacts(sweep) == (3, 4, 5, 8)
+    assert simulation.recorded_contacts(card()) == tuple(range(9))
+    assert simulation.recorded_contacts(card(striker=striker)) == tuple(range(9))
+    assert simulation.run(sweep).force.shape == (601, 4, 3)
 
 
 def test_the_aimed_amplitude_is_met():
     striker = CardStriker(
         mass_kg=0.5e-3, surface=STEEL, speeds_m_s=(0.5,), aim=AimBlock(sensor="g", amplitude_N=2.0)
     )
-    done = study.run(card(striker=striker))
+    done = simulation.run(card(striker=striker))
     assert done.readings()["g"].max() == pytest.approx(
         2.0, rel=1e-5
     )  # tolerance of the aim, and the sampling
@@ -72,14 +72,16 @@ def test_an_aim_out_of_reach_is_said():
         mass_kg=0.5e-3, surface=STEEL, speeds_m_s=(0.5,), aim=AimBlock(sensor="wall", amplitude_N=1e-9)
     )
     with pytest.raises(InputError, match=r"c\.nominal: striker\.aim: no speed found"):
-        study.run(card(striker=striker, duration_s=20e-6))
+        simulation.run(card(striker=striker, duration_s=20e-6))
 
 
 def test_effects_of_a_card_are_simulated():
-    plain = study.run(card()).readings()["g"].max()
-    damped = study.run(card(effects={"kuwabara-kono": {"time_us": 0.5}})).readings()["g"].max()
+    plain = simulation.run(card()).readings()["g"].max()
+    damped = simulation.run(card(effects={"kuwabara-kono": {"time_us": 0.5}})).readings()["g"].max()
     louder = (
-        study.run(card(effects={"sensor-gain": {"gain_ratio": 1.5, "sensor": "g"}})).readings()["g"].max()
+        simulation.run(card(effects={"sensor-gain": {"gain_ratio": 1.5, "sensor": "g"}}))
+        .readings()["g"]
+        .max()
     )
     assert damped < 0.95 * plain
     assert louder == pytest.approx(1.5 * plain, rel=1e-12)  # the same simulation, times a number
@@ -95,13 +97,13 @@ def test_effects_of_a_card_are_simulated():
 )
 def test_an_effect_that_cannot_be_is_refused(effects, hint):
     with pytest.raises(InputError, match=f"c.nominal: effects.*{hint}"):
-        study.run(card(effects=effects))
+        simulation.run(card(effects=effects))
 
 
 def test_a_study_survives_its_file(tmp_path):
-    done = study.run(card())
-    study.save(done, tmp_path / "h.npz")
-    read = study.load(card(), tmp_path / "h.npz")
+    done = simulation.run(card())
+    simulation.save(done, tmp_path / "h.npz")
+    read = simulation.load(card(), tmp_path / "h.npz")
     for name in ("speeds", "time", "force", "refined", "energy", "momentum"):
         assert np.array_equal(getattr(read, name), getattr(done, name))
     assert read.contacts == done.contacts
