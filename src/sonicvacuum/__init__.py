@@ -12,11 +12,20 @@ SI units throughout, except where a key carries its unit in its name. What a mod
     found = sv.discover(sv.read("my-record"))
     print(found.verdict.named, found.verdict.probabilities)
 
-The signals of Fig. 3(a) of that paper, gauge by gauge, in N over s:
+The signals of Fig. 3(a) of that paper, gauge by gauge in N, over `seen.time` in s:
 
-    card = sv.read_case("config.yaml", "fig3a", "matched")
-    simulation = sv.simulate(card)
-    signals = simulation.readings()
+    card = sv.read_case("config.yaml", "fig3a", "layer")
+    seen = sv.simulate(card)
+    for gauge, reading in seen.readings().items():
+        print(gauge, reading.max())
+
+A dimer, and the velocity of its bead 15 as a laser vibrometer sees it, in m/s:
+
+    big, small = (sv.bead(diameter_mm=d, material="bearing-steel") for d in (20.0, 10.0))
+    dimer = sv.chain(pattern=[big, small], beads=20)
+    laser = sv.gauge("velocity", bead=15)
+    card = sv.case(dimer, sv.striker(big, speed_m_s=0.5), [laser], duration_us=800)
+    velocity = sv.simulate(card).readings()["velocity-15"]
 
 What ten steel beads of 20 mm will show, before they are bought:
 
@@ -36,7 +45,8 @@ from typing import TYPE_CHECKING, Any
 __version__ = "0.1.0"
 
 if TYPE_CHECKING:
-    from sonicvacuum.api import case, compare, read, read_case, simulate
+    from sonicvacuum.api import compare, read, read_case, simulate
+    from sonicvacuum.builders import bead, case, chain, gauge, striker
     from sonicvacuum.card import Card
     from sonicvacuum.discover.session import discover
     from sonicvacuum.files import InputError
@@ -44,6 +54,7 @@ if TYPE_CHECKING:
     from sonicvacuum.physics.chain import Chain
     from sonicvacuum.prediction import predict
     from sonicvacuum.records import Record
+    from sonicvacuum.simulation import Simulation
 
 # Name → module, or module:attribute.
 _PUBLIC = {
@@ -51,14 +62,19 @@ _PUBLIC = {
     "Chain": "sonicvacuum.physics.chain:Chain",
     "InputError": "sonicvacuum.files:InputError",
     "Record": "sonicvacuum.records:Record",
-    "case": "sonicvacuum.api:case",
+    "Simulation": "sonicvacuum.simulation:Simulation",
+    "bead": "sonicvacuum.builders:bead",
+    "case": "sonicvacuum.builders:case",
+    "chain": "sonicvacuum.builders:chain",
     "compare": "sonicvacuum.api:compare",
     "discover": "sonicvacuum.discover",
+    "gauge": "sonicvacuum.builders:gauge",
     "predict": "sonicvacuum.prediction:predict",
     "read": "sonicvacuum.api:read",
     "read_case": "sonicvacuum.api:read_case",
     "simulate": "sonicvacuum.api:simulate",
     "solitary": "sonicvacuum.physics.solitary",
+    "striker": "sonicvacuum.builders:striker",
     "theory": "sonicvacuum.physics.theory",
 }
 
@@ -67,14 +83,19 @@ __all__ = [
     "Chain",
     "InputError",
     "Record",
+    "Simulation",
+    "bead",
     "case",
+    "chain",
     "compare",
     "discover",
+    "gauge",
     "predict",
     "read",
     "read_case",
     "simulate",
     "solitary",
+    "striker",
     "theory",
 ]
 

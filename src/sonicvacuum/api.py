@@ -1,19 +1,18 @@
-"""Public functions, as `import sonicvacuum as sv` shows them; `sv.discover` stands in `discover.session`.
+"""Public functions, as `import sonicvacuum as sv` shows them.
+
+Cases are built in `builders`; `sv.discover` stands in `discover.session`, `sv.predict` in `prediction`.
 
 Each is a few lines over the module that does the work. SI units throughout, except where a key carries its
 unit in its name, as in `config.yaml` and `record.yaml`.
 """
 
 from os import PathLike
-from typing import Any
 
 from sonicvacuum import config, simulation
-from sonicvacuum.card import Card, CaseBlock, resolve
+from sonicvacuum.card import Card
 from sonicvacuum.discover import compare as comparison
 from sonicvacuum.discover.compare import Comparison
 from sonicvacuum.discover.verdict import Model
-from sonicvacuum.files import InputError, convert
-from sonicvacuum.laboratory.ranges import LaboratoryError
 from sonicvacuum.physics.run import available_threads
 from sonicvacuum.records import Record
 from sonicvacuum.records import read as read_record
@@ -31,35 +30,6 @@ def read(folder: Path) -> Record:
     return read_record(folder)
 
 
-def case(title: str = "case", **blocks: Any) -> Card:
-    """A case of one's own, resolved into SI: the same keys as a case of `config.yaml`, as Python objects.
-
-    Args:
-        title: one line.
-        **blocks: `chain`, `striker`, `sensors`, `duration_us`; optional `sample_us`, `materials`, `effects`.
-
-    Raises:
-        InputError: for an unknown key, a value out of range, a gauge outside the chain and the like.
-
-    >>> import sonicvacuum as sv
-    >>> steel = {"diameter_mm": 5.0, "mass_g": 0.5, "material": "bearing-steel"}
-    >>> wall = {"material": "bearing-steel"}
-    >>> card = sv.case(
-    ...     chain={"beads": 8, "orientation": "horizontal", "bead": steel, "wall": wall},
-    ...     striker={"shape": "sphere", **steel, "speed_m_s": 0.5},
-    ...     sensors=[{"id": "wall", "kind": "wall"}],
-    ...     duration_us=200,
-    ... )
-    >>> card.beads, card.bead.mass_kg
-    (8, 0.0005)
-    """
-    block = convert({"title": title, **blocks}, CaseBlock, "case")
-    try:
-        return resolve("case", "own", block)
-    except LaboratoryError as error:
-        raise InputError(f"case: {error}") from None
-
-
 def read_case(path: Path, name: str, variant: str = "nominal") -> Card:
     """One variant of one case of a configuration file, resolved into SI.
 
@@ -74,21 +44,19 @@ def simulate(card: Card) -> Simulation:
 
     Returns:
         `Simulation`: `time` (samples,) in s, `force` (samples, contacts, runs) in N, `readings()` gauge →
-        (samples, runs) in N without the static part; runs in the order of the striker's speeds.
+        (samples, runs) in the gauge's unit without the static part; runs in the order of the speeds.
 
     Raises:
         InputError: for an effect that does not exist, or an aim that no speed reaches.
 
     >>> import sonicvacuum as sv
-    >>> steel = {"diameter_mm": 5.0, "mass_g": 0.5, "material": "bearing-steel"}
-    >>> wall = {"material": "bearing-steel"}
-    >>> found = sv.simulate(sv.case(
-    ...     chain={"beads": 3, "orientation": "horizontal", "bead": steel, "wall": wall},
-    ...     striker={"shape": "sphere", **steel, "speed_m_s": 0.5},
-    ...     sensors=[{"id": "wall", "kind": "wall"}], duration_us=200,
-    ... ))
-    >>> found.readings()["wall"].shape
-    (401, 1)
+    >>> big, small = (sv.bead(diameter_mm=d, material="bearing-steel") for d in (20.0, 10.0))
+    >>> dimer = sv.chain(pattern=[big, small], beads=20)
+    >>> vibrometer = sv.gauge("velocity", bead=15)
+    >>> card = sv.case(dimer, sv.striker(big, speed_m_s=0.5), [vibrometer], duration_us=800)
+    >>> seen = sv.simulate(card)
+    >>> seen.readings()["velocity-15"].shape  # samples, runs; m/s
+    (1601, 1)
     """
     return simulation.run(card)
 

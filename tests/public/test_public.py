@@ -3,6 +3,8 @@
 import doctest
 import json
 import os
+import re
+import shutil
 import subprocess
 import sys
 
@@ -10,7 +12,7 @@ import pytest
 from ball import RECORD
 
 import sonicvacuum as sv
-from sonicvacuum import api, blas
+from sonicvacuum import api, blas, builders
 from sonicvacuum.prediction import measure
 
 
@@ -37,7 +39,7 @@ def test_importing_loads_nothing_and_every_public_name_is_there():
         _ = sv.nothing
 
 
-@pytest.mark.parametrize("module", [sv, api, measure])
+@pytest.mark.parametrize("module", [sv, api, builders, measure])
 def test_the_examples_hold(module):
     failed, tried = doctest.testmod(module)
     assert tried > 0
@@ -48,6 +50,20 @@ def test_three_lines_give_a_verdict(ball):
     found = sv.discover(sv.read(ball), threads=1)
     assert found.verdict.named == []
     assert sv.discover.__name__ == "sonicvacuum.discover"  # a package and a function at once
+
+
+def test_the_lines_of_the_readme_run_as_they_stand(pytestconfig, tmp_path, monkeypatch, capsys):
+    root = pytestconfig.rootpath
+    (tmp_path / "my-record").mkdir()
+    (tmp_path / "my-record/record.yaml").write_text(RECORD)
+    shutil.copy(root / "config.yaml", tmp_path)
+    monkeypatch.chdir(tmp_path)
+    (code,) = re.findall(r"^```python\n(.*?)^```$", (root / "README.md").read_text("utf-8"), re.M | re.S)
+    seen = {}
+    exec(code, seen)
+    assert capsys.readouterr().out.startswith("[] {")  # nothing named in the record
+    assert seen["velocity"].shape == (1601, 1)  # 800 us, a sample each 0.5 us
+    assert 0.01 < seen["velocity"].max() < 1.0  # m/s, the striker has 0.5
 
 
 def test_a_case_of_ones_own_is_refused_with_key_value_and_cure():

@@ -7,12 +7,12 @@ import math
 from difflib import get_close_matches
 from typing import Any
 
+from sonicvacuum.builders import ball_mass
 from sonicvacuum.card import Card, CaseBlock, resolve
 from sonicvacuum.files import InputError, convert
 from sonicvacuum.laboratory.next_run import gauge_beads
 from sonicvacuum.laboratory.ranges import LaboratoryError
 from sonicvacuum.materials import MATERIALS
-from sonicvacuum.physics.theory import bead_mass
 from sonicvacuum.scope.units import quantity
 
 # What is asked for → base unit (or `g`, which here is the gram) → factor to SI; an example to write.
@@ -61,13 +61,6 @@ def _positive(name, number, given):
     if not (math.isfinite(number) and number > 0.0):
         raise InputError(f"{name}: is {given!r}; it must be a positive number, as in {_UNITS[name][1]}")
     return number
-
-
-def ball_mass(diameter_m: float, material: str, coating_m: float | None = None, core: str | None = None):
-    """Mass in kg of a ball of table materials; with a coating by Eq. (2) of the paper."""
-    coating = coating_m or 0.0
-    inner = MATERIALS[core or material].density
-    return float(bead_mass(diameter_m / 2.0 - coating, coating, inner, MATERIALS[material].density))
 
 
 def card_of(

@@ -1,0 +1,106 @@
+"""Cases built in Python: the same cards as from mappings, masses from densities, mistakes named."""
+
+import numpy as np
+import pytest
+
+import sonicvacuum as sv
+from sonicvacuum import card
+
+STEEL = {"diameter_mm": 5.0, "mass_g": 0.5, "material": "bearing-steel"}
+BALL = sv.bead(**STEEL)
+WALL = sv.gauge("wall")
+
+
+def test_builders_and_mappings_give_the_same_card():
+    built = sv.case(
+        sv.chain(pattern=[BALL, sv.bead(**STEEL | {"mass_g": 0.4})], beads=8, bodies={3: {"mass_g": 0.6}}),
+        sv.striker(BALL, speed_m_s=0.5),
+        [sv.gauge("velocity", bead=4, id="laser", lowpass_us=1.0)],
+        duration_us=200,
+    )
+    mapped = sv.case(
+        chain={
+            "beads": 8,
+            "orientation": "horizontal",
+            "pattern": [STEEL, STEEL | {"mass_g": 0.4}],
+            "bodies": {3: {"mass_g": 0.6}},
+            "wall": {"material": "bearing-steel"},
+        },
+        striker={"shape": "sphere", **STEEL, "speed_m_s": 0.5},
+        sensors=[{"id": "laser", "kind": "velocity", "bead": 4, "lowpass_us": 1.0}],
+        duration_us=200,
+    )
+    assert card.dump(built) == card.dump(mapped)
+
+
+def test_a_bead_in_place_of_another_replaces_it_whole():
+    coated = sv.bead(diameter_mm=5.0, material="parylene-c", coating_um=50.0, core="bearing-steel")
+    made = sv.case(
+        sv.chain(bead=coated, beads=5, bodies={2: BALL}),
+        sv.striker(BALL, speed_m_s=0.5),
+        [WALL],
+        duration_us=9,
+    )
+    assert made.wall.name == "bearing-steel"  # the core's material
+    assert made.bodies[2].coating_m is None
+    assert made.bead.coating_m == 50e-6
+
+
+@pytest.mark.parametrize(
+    ("coating", "mass_g"),
+    [
+        ({}, np.pi / 6 * 0.02**3 * 7810e3),
+        # A shell of parylene, 1289 kg/m³, around a core that is 0.1 mm thinner across: Eq. (2) of the paper.
+        (
+            {"material": "parylene-c", "coating_um": 50, "core": "bearing-steel"},
+            np.pi / 6 * (0.0199**3 * 7810e3 + (0.02**3 - 0.0199**3) * 1289e3),
+        ),
+    ],
+)
+def test_masses_follow_from_densities(coating, mass_g):
+    made = sv.bead(**({"diameter_mm": 20.0, "material": "bearing-steel"} | coating))
+    assert made.mass_g == pytest.approx(mass_g, rel=1e-12)  # rounding
+
+
+def test_numbers_of_numpy_are_numbers():
+    balls = [sv.bead(diameter_mm=d, material="glass") for d in 10 * 0.9 ** np.arange(6)]
+    hit = sv.striker(balls[0], speed_m_s=np.array([0.1, 0.2]))
+    made = sv.case(sv.chain(pattern=balls), hit, [sv.gauge("velocity", bead=np.int64(3))], duration_us=10.0)
+    assert made.beads == 6
+    assert made.striker.speeds_m_s == (0.1, 0.2)
+
+
+def whole(**changes):
+    parts = {
+        "chain": sv.chain(bead=BALL, beads=3),
+        "striker": sv.striker(BALL, speed_m_s=1.0),
+        "sensors": [WALL],
+    }
+    return sv.case(**parts | changes, duration_us=10.0)
+
+
+@pytest.mark.parametrize(
+    ("make", "told"),
+    [
+        (lambda: sv.bead(diameter_mm=-1, material="glass"), r"bead: diameter_mm: is -1: .*> 0"),
+        (lambda: sv.bead(diameter_mm="5", material="glass"), "bead: diameter_mm: is '5': .*without quotes"),
+        (lambda: sv.bead(diameter_mm=5, material="glas"), "bead: mass_g: missing; .*'glas'"),
+        (lambda: sv.bead(diameter_mm=5, material="glass", mass_g=0), "bead: mass_g: is 0"),
+        (lambda: sv.bead(diameter_mm=5, material="glass", faces="flat"), "bead: mass_g: missing; only that"),
+        (lambda: sv.bead(diameter_mm=5, material="parylene-c", coating_um=50), r"bead.*core"),
+        (
+            lambda: sv.bead(diameter_mm=5, material="parylene-c", coating_um=5000, core="glass"),
+            r"bead\.coating_um: .*5000",
+        ),
+        (lambda: sv.chain(beads=3), "chain: bead: missing"),
+        (lambda: sv.chain(bead=BALL), "chain: beads: missing"),
+        (lambda: sv.striker(speed_m_s=1.0, shape="flat", material="glass"), "striker: mass_g: missing"),
+        (lambda: sv.striker(BALL, speed_m_s=object()), "striker: holds a object"),
+        (lambda: whole(sensors=[sv.gauge("velocity", bead=9)]), r"case: sensors\[0\]\.bead"),
+        (lambda: whole(sensors=[sv.gauge("speed", bead=2)]), r"case: sensors\[0\]\.kind: .*velocity"),
+        (lambda: whole(chain=sv.chain(bead=BALL, beads=3, bodies={9: BALL})), r"case: chain\.bodies\.9"),
+    ],
+)
+def test_mistakes_are_named_with_key_value_and_cure(make, told):
+    with pytest.raises(sv.InputError, match=told):
+        make()
