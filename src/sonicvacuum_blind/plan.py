@@ -55,9 +55,9 @@ class Plan:
         modulus_ratio: on the modulus of every body made of the beads' material.
         mass_ratios, stiffness_ratios: (body, factor) and (contact, factor).
         gaps: (contact, opening in m).
-        law: departures of contact and bead laws from Hertz, keys in `problem`; and `push` (N, s, s),
+        law: deviations of contact and bead laws from Hertz, keys in `problem`; and `push` (N, s, s),
             `wall_mass` kg with `wall_stiffness` N/m and `wall_damping` kg/s.
-        electronics: departures of all gauges from ideal ones, keys in `gauges.read`.
+        electronics: deviations of all gauges from ideal ones, keys in `gauges.read`.
     """
 
     beads: int
@@ -81,11 +81,11 @@ class Plan:
     electronics: Mapping[str, float] = field(default_factory=dict, hash=False)
 
     def with_law(self, **numbers) -> "Plan":
-        """The plan with more departures of the force laws."""
+        """The plan with more deviations of the force laws."""
         return replace(self, law={**self.law, **numbers})
 
     def with_electronics(self, **numbers) -> "Plan":
-        """The plan with more departures of the gauges."""
+        """The plan with more deviations of the gauges."""
         return replace(self, electronics={**self.electronics, **numbers})
 
     def modulus(self, solid: Solid) -> float:

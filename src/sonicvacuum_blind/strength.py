@@ -88,7 +88,7 @@ class Rival:
     """A unit vector in data space: what an effect of the catalogue does at one place, shape and sign.
 
     The two signs are two directions: behind the pulse contacts stand open, and a bead slightly too heavy
-    leaves them otherwise than one too light, so that signatures of small departures are no mirror images.
+    leaves them otherwise than one too light, so that signatures of small deviations are no mirror images.
     """
 
     id: str

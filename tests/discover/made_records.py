@@ -66,7 +66,7 @@ def made(effects=(), seed=0, speeds=(0.3, 0.9), noise=1.0, departures=(), sensor
             setup = catalogue.effect(name).apply(setup, **given)
         chain = setup.chain
         for what, place, ratio in departures:
-            chain = chain.with_departure(what, place, ratio)
+            chain = chain.with_defect(what, place, ratio)
         return replace(setup, chain=chain)
 
     found = forward.sampled(Hypothesis(), np.zeros((1, 0)), nu, change=change)

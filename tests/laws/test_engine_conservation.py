@@ -13,7 +13,7 @@ CHAINS = {
     "horizontal": coated(),
     "vertical": coated(gravity=9.81),
     "loaded": coated(static_force=5.0, gravity=9.81, striker_mass=1.23e-3),
-    "with a gap": coated().with_departure("gap", 8, 2e-6),
+    "with a gap": coated().with_defect("gap", 8, 2e-6),
 }
 
 

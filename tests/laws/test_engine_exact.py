@@ -37,7 +37,7 @@ def test_one_ball_on_the_wall():
 @pytest.mark.parametrize("ratio", [0.1, 1.0, 5.0])
 def test_two_bodies_exchange_momentum(ratio):
     # The bead is free to fly: its next contact is 1 m away.
-    pair = coated(beads=1, striker_mass=ratio * 0.44e-3).with_departure("gap", 1, 1.0)
+    pair = coated(beads=1, striker_mass=ratio * 0.44e-3).with_defect("gap", 1, 1.0)
     h = simulate(pair, [0, 1], 3e-4, 1e-7)
     m, v, k = ratio * 0.44e-3, 0.44, pair.striker_stiffness[0]
     reduced = m * 0.44e-3 / (m + 0.44e-3)
@@ -52,7 +52,7 @@ CASES = {
     "horizontal": coated(beads=6),
     "vertical, loaded, heavy striker": coated(beads=6, gravity=9.81, static_force=0.5, striker_mass=1.23e-3),
     "light striker": coated(beads=6, striker_mass=0.088e-3),
-    "gap and light bead": coated(beads=6).with_departure("gap", 3, 1e-6).with_departure("mass", 4, 0.3),
+    "gap and light bead": coated(beads=6).with_defect("gap", 3, 1e-6).with_defect("mass", 4, 0.3),
 }
 
 

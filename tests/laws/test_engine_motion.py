@@ -16,7 +16,7 @@ ACCURACY, SPEED_ACCURACY = 1e-5, 3e-5
 CASES = {
     "horizontal": coated(beads=6),
     "vertical, loaded, heavy striker": coated(beads=6, gravity=9.81, static_force=0.5, striker_mass=1.23e-3),
-    "gap and light bead": coated(beads=6).with_departure("gap", 3, 1e-6).with_departure("mass", 4, 0.3),
+    "gap and light bead": coated(beads=6).with_defect("gap", 3, 1e-6).with_defect("mass", 4, 0.3),
 }
 
 

@@ -137,7 +137,7 @@ def test_normal_impacts_of_chung_and_ooi(name):
     body = Body(Elastic(*material), one.mass, radius)
     made = Chain(1 if two else 0, body, body.surface, Elastic(*rigid), radius, one.mass, speed)
     if two:
-        made = made.with_departure("gap", 1, 1.0)  # the second sphere flies freely
+        made = made.with_defect("gap", 1, 1.0)  # the second sphere flies freely
     found = simulate(made, [0], 1.2 * lasting, lasting / 500.0, refine=4.0)
     force = found.of(0)[:, 0]
     assert peak(found.time, force)[0] == pytest.approx(largest, rel=1e-6)  # of the quartic through the top

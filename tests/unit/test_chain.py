@@ -83,12 +83,7 @@ def test_static_forces_carry_the_beads_above():
 
 
 def test_departures_change_one_body_or_contact():
-    c = (
-        chain()
-        .with_departure("mass", 2, 1.5)
-        .with_departure("stiffness", 4, 0.5)
-        .with_departure("gap", 1, 1e-6)
-    )
+    c = chain().with_defect("mass", 2, 1.5).with_defect("stiffness", 4, 0.5).with_defect("gap", 1, 1e-6)
     plain = chain()
     assert c.masses(5)[:, 0] / plain.masses(5)[:, 0] == pytest.approx([1, 1, 1.5, 1, 1])
     assert c.stiffnesses(5)[:, 0] / plain.stiffnesses(5)[:, 0] == pytest.approx([1, 1, 1, 1, 0.5])
@@ -97,7 +92,7 @@ def test_departures_change_one_body_or_contact():
 
 
 def test_lanes_can_be_taken_apart():
-    c = chain(speed=np.array([0.1, 0.2, 0.3])).with_departure("mass", 1, [1.0, 2.0, 3.0])
+    c = chain(speed=np.array([0.1, 0.2, 0.3])).with_defect("mass", 1, [1.0, 2.0, 3.0])
     part = c.take(np.array([2, 0]))
     assert part.speed.tolist() == [0.3, 0.1]
     assert part.masses(5)[1] / 0.44e-3 == pytest.approx([3.0, 1.0])

@@ -74,14 +74,20 @@ def _bare_kernel(c, table, step, steps):
         for _ in range(steps):
             speed = get(c, table, first, V)
             x = get(c, table, first, U) + step * speed
-            pull = speed - speed
+            force_before = speed - speed
             for body in range(first, first + bodies):
                 ahead_speed = get(c, table, body + 1, V)
                 ahead = get(c, table, body + 1, U) + step * ahead_speed
                 force = get(c, table, body, REST) * power_3_2(x - ahead)
                 put(c, table, body, U, x)
-                put(c, table, body, V, speed + step * get(c, table, body, INVERSE_MASS) * (pull - force))
-                pull = force
+                put(
+                    c,
+                    table,
+                    body,
+                    V,
+                    speed + step * get(c, table, body, INVERSE_MASS) * (force_before - force),
+                )
+                force_before = force
                 x = ahead
                 speed = ahead_speed
 

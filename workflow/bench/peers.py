@@ -71,15 +71,15 @@ def _plain(u, v, stiffness, gain, step, every, contact, out):
     for q in range(chains):
         for s in range(out.shape[0]):
             for _ in range(every):
-                pull = 0.0
+                force_before = 0.0
                 x = u[q, 0] + step * v[q, 0]
                 for i in range(bodies):
                     ahead = u[q, i + 1] + step * v[q, i + 1]
                     d = max(x - ahead, 0.0)
                     push = stiffness[i, q] * d * np.sqrt(d)
                     u[q, i] = x
-                    v[q, i] += gain[i, q] * (pull - push)
-                    pull = push
+                    v[q, i] += gain[i, q] * (force_before - push)
+                    force_before = push
                     x = ahead
             rate = v[q, contact] - v[q, contact + 1]
             d = max(u[q, contact] - u[q, contact + 1] + 0.5 * step * rate, 0.0)
@@ -110,13 +110,13 @@ void setup(char *p, long bytes, long count, long ax, const double *stiffness)
 { particles = p; size = bytes; n = count; offset = ax; k = stiffness; }
 void force(void *simulation)
 {
-    double pull = 0.0;
+    double force_before = 0.0;
     for (long i = 0; i < n; i++) {
         double *x = (double *)(particles + i * size), *next = (double *)(particles + (i + 1) * size);
         double d = x[0] - (i + 1 < n ? next[0] : 0.0), push = d > 0.0 ? k[i] * d * sqrt(d) : 0.0;
         double *acceleration = (double *)((char *)x + offset);
-        *acceleration += (pull - push) / x[9];
-        pull = push;
+        *acceleration += (force_before - push) / x[9];
+        force_before = push;
     }
 }
 """
@@ -258,14 +258,14 @@ def numbalsoda_dop853(problem, rtol):
     @cfunc(lsoda_sig)
     def motion(t, y, f, parameters):
         p = carray(parameters, (2 * bodies,))
-        pull = 0.0
+        force_before = 0.0
         for i in range(bodies):
             ahead = y[i + 1] if i + 1 < bodies else 0.0
             d = max(y[i] - ahead, 0.0)
             push = p[i] * d * np.sqrt(d)
             f[i] = y[bodies + i]
-            f[bodies + i] = (pull - push) * p[bodies + i]
-            pull = push
+            f[bodies + i] = (force_before - push) * p[bodies + i]
+            force_before = push
 
     start = np.zeros(2 * bodies)
     start[bodies] = 0.44

@@ -133,8 +133,8 @@ def separation(old: Forward, new: Forward, best, rival) -> float:
     miss, slopes = truth - columns[0], columns[1:]
     prior = _precision(old, new, rival)
     matrix = slopes @ slopes.T + prior
-    pull = slopes @ miss
-    return float(max(miss @ miss - pull @ np.linalg.lstsq(matrix, pull, rcond=1e-12)[0], 0.0))
+    projection = slopes @ miss
+    return float(max(miss @ miss - projection @ np.linalg.lstsq(matrix, projection, rcond=1e-12)[0], 0.0))
 
 
 def _shared(old, new, fit):

@@ -50,12 +50,12 @@ class Parameter:
         low, high: bounds of the search.
         prior: one of `PRIORS`; "normal" and "log-normal" are centred at `off` with the width `scale`
             (relative for "log-normal"), the others lie between low and high.
-        scale: typical departure from `off`; typical value where `off` is None or infinite.
+        scale: typical deviation from `off`; typical value where `off` is None or infinite.
         help: one line.
         least, most: values outside [least, most] have no meaning and are refused.
         acts_like: the nuisance of a record that this parameter, a ratio, moves exactly as: "modulus" of the
             beads' material, "speed" of the striker, "gain" of the gauge where the effect sits; None for none.
-        least_strength: departure over `scale` below which the effect is not what it is called (a gap opens at
+        least_strength: deviation over `scale` below which the effect is not what it is called (a gap opens at
             once), so that slopes are taken from there on; 0 where it sets in smoothly.
         tried_at_once: whether slopes at off mislead, so that finite values are tried as well; so it always is
             for effects at one bead or contact.
@@ -87,7 +87,7 @@ class Parameter:
         return self.off(setup) if callable(self.off) else self.off
 
     def at(self, strength: float, setup: Setup):
-        """Value at `strength` times the typical departure: 0 is off, 1 is typical; linear near off.
+        """Value at `strength` times the typical deviation: 0 is off, 1 is typical; linear near off.
 
         Where the effect fades as the value grows, the value is scale / strength. A parameter that only shapes
         stays at its typical value, one that cannot exceed `high` departs downwards.
@@ -272,7 +272,7 @@ def depart_at(setup: Setup, what: str, place, value, neutral: float) -> Setup:
     """The setup with `value` at `place` and `neutral` elsewhere; both may differ from lane to lane."""
     chain = setup.chain
     for index in np.unique(place):
-        chain = chain.with_departure(what, int(index), np.where(np.asarray(place) == index, value, neutral))
+        chain = chain.with_defect(what, int(index), np.where(np.asarray(place) == index, value, neutral))
     return replace(setup, chain=chain)
 
 

@@ -19,7 +19,7 @@ from sonicvacuum.physics.chain import Chain
 from sonicvacuum.physics.run import simulate
 
 _ID = re.compile(r"[a-z][a-z0-9]*(-[a-z0-9]+)*")
-# The lanes of the trial, in typical departures: off, hardly there, typical.
+# The lanes of the trial, in typical deviations: off, hardly there, typical.
 STRENGTHS = (0.0, 1e-6, 1.0)
 # What is off or hardly there may change forces by so much of the largest one.
 FAINT = 1e-3
@@ -68,7 +68,7 @@ def _header(effect):
 
 def _parameter(p):
     _need(p.prior in PRIORS, f"{p.name}: prior is {p.prior!r}; use one of {', '.join(PRIORS)}")
-    _need(p.scale > 0.0, f"{p.name}: scale is {p.scale}; give a typical departure above 0")
+    _need(p.scale > 0.0, f"{p.name}: scale is {p.scale}; give a typical deviation above 0")
     in_order = p.least <= p.low < p.high <= p.most and math.isfinite(p.high - p.low)
     _need(
         in_order,
@@ -110,7 +110,7 @@ def _try(effect):
         try:
             force = _forces(effect, p, setup)
         except FloatingPointError:
-            raise ValueError(f"{p.name}: forces do not stay finite at the typical departure") from None
+            raise ValueError(f"{p.name}: forces do not stay finite at the typical deviation") from None
         except NumbaError as error:
             told = " ".join(str(error).split())
             raise ValueError(f"its formula cannot be compiled: {told[:300]}") from None

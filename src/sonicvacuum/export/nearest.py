@@ -155,7 +155,7 @@ def _fitted(id, name, bare: Chain, ball: Ball):
             value = float(np.exp(brentq(lambda x: np.nan_to_num(excess(x), nan=-1.0), low, high, xtol=1e-7)))
         near = _with(one, chain, {name: value})
         ratio = (ball_of(near, ball.speed).duration / ball.duration) ** 2.5
-        chain = chain.with_departure("stiffness", 0, ratio)
+        chain = chain.with_defect("stiffness", 0, ratio)
     return value, _with(one, chain, {name: value})
 
 

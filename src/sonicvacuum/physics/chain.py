@@ -25,8 +25,8 @@ from sonicvacuum.physics.laws import HERTZ, LawSet, Term, depth_at
 
 
 @dataclass(frozen=True)
-class Departure:
-    """One number that departs from what the bodies make it.
+class Defect:
+    """One number at one place that is not what the bodies make it: a defect of the chain.
 
     Attributes:
         what: "mass", "stiffness" (factors) or "gap" (m, open at rest).
@@ -74,7 +74,7 @@ class Chain:
         speed: striker's speed at impact in m/s.
         gravity: acceleration towards the wall in m/s², 0 for a horizontal chain.
         static_force: axial preload on bead 1 in N, besides gravity.
-        departures: what departs from these numbers at single places.
+        defects: numbers that differ from these at single places.
         actions: force laws beyond (or instead of) Hertz.
 
     Raises:
@@ -90,7 +90,7 @@ class Chain:
     speed: np.ndarray
     gravity: np.ndarray = 0.0
     static_force: np.ndarray = 0.0
-    departures: tuple[Departure, ...] = ()
+    defects: tuple[Defect, ...] = ()
     actions: tuple[Action, ...] = ()
 
     def __post_init__(self):
@@ -195,7 +195,7 @@ class Chain:
 
     @property
     def load(self) -> np.ndarray:
-        """(lanes,) force in N that the beads press on the wall with at rest, departures aside."""
+        """(lanes,) force in N that the beads press on the wall with at rest, without its defects."""
         counts = self.bodies.counts(1, self.beads)
         weights = (n * self.bodies.kinds[kind].mass * self.gravity for kind, n in sorted(counts.items()))
         return self.static_force + sum(weights, start=np.zeros(self.lanes))
@@ -215,7 +215,7 @@ class Chain:
 
     def take(self, lanes) -> "Chain":
         """The chains with the given indices."""
-        departures = tuple(replace(e, value=e.value[lanes]) for e in self.departures)
+        defects = tuple(replace(e, value=e.value[lanes]) for e in self.defects)
         actions = tuple(
             replace(a, parameters={k: np.asarray(p)[lanes] for k, p in a.parameters.items()})
             for a in self.actions
@@ -225,7 +225,7 @@ class Chain:
             **{name: getattr(self, name)[lanes] for name in _NUMBERS},
             **{name: getattr(self, name).mapped(lambda value: value[lanes]) for name in _ENDS},
             bodies=self.bodies.replaced(lambda body: body.mapped(lambda value: value[lanes])),
-            departures=departures,
+            defects=defects,
             actions=actions,
         )
 
@@ -238,10 +238,10 @@ class Chain:
         }
         return replace(self, bodies=self.bodies.replaced(lambda b: b.stiffened(material, ratio)), **ends)
 
-    def with_departure(self, what: str, index: int, value) -> "Chain":
-        """This chain with one more departure; `value` broadcasts to (lanes,)."""
+    def with_defect(self, what: str, index: int, value) -> "Chain":
+        """This chain with one more defect; `value` broadcasts to (lanes,)."""
         value = np.broadcast_to(np.asarray(value, dtype=float), (self.lanes,))
-        return replace(self, departures=(*self.departures, Departure(what, index, value)))
+        return replace(self, defects=(*self.defects, Defect(what, index, value)))
 
     def with_action(self, term: Term, coefficients: Callable, **parameters) -> "Chain":
         """This chain with one more term; each parameter broadcasts to (lanes,)."""
@@ -281,7 +281,7 @@ class Chain:
     def gaps(self, bodies: int) -> np.ndarray:
         """(bodies, lanes) gap in m of each contact at rest."""
         gap = np.zeros((bodies, self.lanes))
-        for e in self.departures:
+        for e in self.defects:
             if e.what == "gap" and e.index < bodies:
                 gap[e.index] = e.value
         return gap
@@ -289,7 +289,7 @@ class Chain:
     @cached_property
     def preloaded(self) -> bool:
         """Whether any contact bears a force or has a gap at rest."""
-        gap = any(e.what == "gap" for e in self.departures)
+        gap = any(e.what == "gap" for e in self.defects)
         return bool(gap or np.any(self.gravity > 0.0) or np.any(self.static_force > 0.0))
 
     def laws(self, symplectic: bool = True) -> LawSet:
@@ -322,7 +322,7 @@ class Chain:
         return depth_at(laws, self.coefficients(laws, bodies)[contact:], force)
 
     def _scaled(self, values, what):
-        for e in self.departures:
+        for e in self.defects:
             if e.what == what and e.index < len(values):
                 values[e.index] = values[e.index] * e.value
         return values

@@ -69,7 +69,7 @@ _inlined = njit(**INLINED)
 
 
 @_inlined
-def _pass_splitting(c, table, first, beyond, pull, drift, kick):
+def _pass_splitting(c, table, first, beyond, force_before, drift, kick):
     """Drift all bodies, then kick them; returns the force on the body beyond."""
     speed = get(c, table, first, V)
     x = get(c, table, first, U) + drift * speed
@@ -78,11 +78,11 @@ def _pass_splitting(c, table, first, beyond, pull, drift, kick):
         ahead = get(c, table, body + 1, U) + drift * speed_ahead
         force = push(c, table, body, x - ahead, speed, 0)
         put(c, table, body, U, x)
-        put(c, table, body, V, speed + kick * get(c, table, body, INVERSE_MASS) * (pull - force))
-        pull = force
+        put(c, table, body, V, speed + kick * get(c, table, body, INVERSE_MASS) * (force_before - force))
+        force_before = force
         x = ahead
         speed = speed_ahead
-    return pull
+    return force_before
 
 
 @_inlined
@@ -98,7 +98,7 @@ def _step_splitting(c, table, first, beyond, weight, factors, gains, step, pendi
 
 
 @_inlined
-def _pass_runge_kutta(c, table, first, beyond, pull, keep, gain, step, moved_column):
+def _pass_runge_kutta(c, table, first, beyond, force_before, keep, gain, step, moved_column):
     """One low-storage stage of all bodies; returns the force on the body beyond."""
     sped_column = moved_column + 1
     x = get(c, table, first, U)
@@ -108,7 +108,7 @@ def _pass_runge_kutta(c, table, first, beyond, pull, keep, gain, step, moved_col
         speed_ahead = get(c, table, body + 1, V)
         force = push(c, table, body, x - ahead, speed - speed_ahead, first_memory(c))
         advance_memory(c, table, body, x - ahead, keep, gain, step)
-        acceleration = get(c, table, body, INVERSE_MASS) * (pull - force)
+        acceleration = get(c, table, body, INVERSE_MASS) * (force_before - force)
         if body > first:
             acceleration = acceleration + body_acceleration(c, table, body, speed)
         moved = keep * get(c, table, body, moved_column) + step * speed
@@ -117,10 +117,10 @@ def _pass_runge_kutta(c, table, first, beyond, pull, keep, gain, step, moved_col
         put(c, table, body, sped_column, sped)
         put(c, table, body, U, x + gain * moved)
         put(c, table, body, V, speed + gain * sped)
-        pull = force
+        force_before = force
         x = ahead
         speed = speed_ahead
-    return pull
+    return force_before
 
 
 @_inlined

@@ -18,7 +18,7 @@ POWER = 1.75  # of the relative velocity, the catalogue's middle
 # Relaxation times over the contact time.
 RELAXATION = (0.5, 3.0, 20.0)
 HERTZ = "hertz"
-# Term → effect that it stands for; the Hertz term's departure from 1 is the modulus.
+# Term → effect that it stands for; the Hertz term's deviation from 1 is the modulus.
 EFFECTS = {
     HERTZ: "dynamic-modulus",
     "exponent": "contact-exponent",

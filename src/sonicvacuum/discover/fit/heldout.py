@@ -38,7 +38,7 @@ def held_out(fit: Fit, sizes: np.ndarray, nominal: HeldOut | None = None) -> Hel
 
 
 def _seen_without(fit: Fit, run: int) -> bool:
-    """Whether the other runs show every effect of a fit, by a departure above its standard error."""
+    """Whether the other runs show every effect of a fit, by a deviation above its standard error."""
     _, hessian = fit.normal.total()
     free = fit.normal.free
     others = hessian[0] - fit.normal.hessian[run, 0]
@@ -59,8 +59,8 @@ def _seen_without(fit: Fit, run: int) -> bool:
 def _without(normal: Normal, run: int) -> float:
     gradient, hessian = (part[0] for part in normal.total())
     own_gradient, own = normal.gradient[run, 0], normal.hessian[run, 0]
-    others, pull = hessian - own, gradient - own_gradient
-    moved = np.linalg.lstsq(others, pull, rcond=1e-12)[0]
+    others, slope = hessian - own, gradient - own_gradient
+    moved = np.linalg.lstsq(others, slope, rcond=1e-12)[0]
     free = normal.free
     # On the run itself: minimise χ²_run + (δ − moved)ᵀ others (δ − moved) over the nuisances, parameters at
     # `moved`.
@@ -84,8 +84,8 @@ def predictive(fit: Fit) -> np.ndarray:
     whole = np.linalg.slogdet(hessian)[1]
     result = []
     for run in range(len(normal.chi2)):
-        others, pull = hessian - normal.hessian[run, 0], gradient - normal.gradient[run, 0]
-        drop = pull @ np.linalg.solve(others, pull)
+        others, slope = hessian - normal.hessian[run, 0], gradient - normal.gradient[run, 0]
+        drop = slope @ np.linalg.solve(others, slope)
         result.append(-0.5 * (normal.chi2[run, 0] + drop + whole - np.linalg.slogdet(others)[1]))
     return np.array(result)
 

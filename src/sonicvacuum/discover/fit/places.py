@@ -1,7 +1,7 @@
 """The last step of finding where an effect sits: from bead to bead, or contact to contact, while χ² falls.
 
-A screen of slopes ranks places by what a small departure would do. Behind the pulse contacts stand open, so
-that a departure large enough to be seen acts a little otherwise: the best place may be the next but one, with
+A screen of slopes ranks places by what a small deviation would do. Behind the pulse contacts stand open, so
+that a deviation large enough to be seen acts a little otherwise: the best place may be the next but one, with
 another strength.
 """
 
@@ -20,7 +20,7 @@ REACH = (-2, -1, 1, 2)
 # next one too light). Of each kind so many starts are followed, as the second look bad at first.
 FACTORS = ((0.6, 1.0, 1.6), (-1.0,))
 KEEP = 4
-HOPS, ITERATIONS = 8, 6
+MOVES, ITERATIONS = 8, 6
 # In χ², less is no reason to move.
 WORTH = 0.5
 
@@ -31,14 +31,14 @@ def placed(one: Fit) -> bool:
 
 
 def settled(forward: Forward, one: Fit, setup: Setup) -> Fit:
-    """The fit with each of its effects at the best place that hops of up to two beads lead to.
+    """The fit with each of its effects at the best place that moves of up to two beads lead to.
 
     Args:
         forward: the predictor.
         one: a fit, followed to its minimum at its places.
         setup: which knows the places.
     """
-    for _ in range(HOPS):
+    for _ in range(MOVES):
         near = [
             fit(forward, one.hypothesis, u, one.nu[None], places, KEEP, ITERATIONS)
             for u, places in (_around(one, setup, factors) for factors in FACTORS)
@@ -74,6 +74,6 @@ def _around(one, setup, factors):
 
 
 def _stronger(coordinate, u, factor):
-    """The coordinate of a departure multiplied by a factor, within the bounds of the search."""
+    """The coordinate of a deviation multiplied by a factor, within the bounds of the search."""
     moved = u + np.log(factor) if coordinate.kind == "log" else u * factor
     return np.clip(moved, coordinate.low, coordinate.high)

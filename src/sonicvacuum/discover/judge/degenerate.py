@@ -27,7 +27,7 @@ class Limit:
 
     Attributes:
         effect, parameter: which.
-        value: largest departure that is left, as a value of the parameter, bounds of the search observed.
+        value: largest deviation that is left, as a value of the parameter, bounds of the search observed.
         estimate: its best value given the final model.
         testable: whether the limit lies within the bounds.
         place: where it is weakest.

@@ -134,8 +134,8 @@ class Forward:
             value = value.reshape(lanes, sets, -1)
             base = value[:, :1]
             slopes = (value[:, 1 : 1 + p] - base) / divide[..., None]
-            departures = (value[:, 1 + p :] - base) / h
-            nuisances = self._nuisance_columns(run, base[:, 0], departures, timing)
+            changes = (value[:, 1 + p :] - base) / h
+            nuisances = self._nuisance_columns(run, base[:, 0], changes, timing)
             self._like_nuisances(hypothesis, run, places, slopes, nuisances)
             columns = np.concatenate([base, slopes, nuisances], axis=1)
             columns[:, 1:, self.counts(run)] = 0.0
@@ -150,21 +150,21 @@ class Forward:
         for place in self.layout.other("speed-common") or range(runs):
             many_nu[sets - 1 :: sets, place] += h / sigma[place] if sigma[place] else 0.0
 
-    def _nuisance_columns(self, run, value, departures, timing):
+    def _nuisance_columns(self, run, value, changes, timing):
         """(L, S + 3 + others, M) changes of the data of a run with its nuisances, as in `Layout.local`.
 
         Args:
             run: index of the run.
             value: (L, M) predictions.
-            departures: (L, simulated + 1, M) slopes to the simulated ones, relative, and to the speeds.
+            changes: (L, simulated + 1, M) slopes to the simulated ones, relative, and to the speeds.
             timing: (L, 1 + clock + delays, M) slopes to time zero, clock and delays.
         """
         layout, sigma = self.layout, self.nuisance_sigma
         gains = self._gain_columns(run, value)
-        own = {place: departures[:, k] for k, place in enumerate(layout.simulated)}
-        own |= {layout.speed(run): departures[:, -1], layout.trigger(run): timing[:, 0]}
+        own = {place: changes[:, k] for k, place in enumerate(layout.simulated)}
+        own |= {layout.speed(run): changes[:, -1], layout.trigger(run): timing[:, 0]}
         own |= {place: gains[:, s] for s, place in enumerate(layout.gains)}
-        own |= dict.fromkeys(layout.other("speed-common"), departures[:, -1])
+        own |= dict.fromkeys(layout.other("speed-common"), changes[:, -1])
         own |= dict.fromkeys(layout.other("gain-common"), gains.sum(axis=1))
         timed = [*layout.other("clock"), *layout.other("delay")]
         own |= {place: timing[:, 1 + k] for k, place in enumerate(timed)}

@@ -1,4 +1,4 @@
-"""Small departures from a model, one for each way in which it may lack something: what the screen projects
+"""Small deviations from a model, one for each way in which it may lack something: what the screen projects
 on.
 
 A direction is an effect of the catalogue at a place and with a shape, at a strength small enough for the
@@ -15,7 +15,7 @@ from sonicvacuum.discover.model.hypothesis import Hypothesis, is_law, with_commo
 from sonicvacuum.discover.model.parameters import coordinate, shape_grid
 from sonicvacuum.effects import Effect, Setup
 
-# The first trial strength (typical departures), and the change of all data, in standard errors, that is
+# The first trial strength (typical deviations), and the change of all data, in standard errors, that is
 # aimed at.
 TRIAL, AIM = 0.03, 6.0
 WEAKEST, STRONGEST = 1e-5, 0.5
@@ -31,7 +31,7 @@ class Direction:
         shape: values of the parameters that only shape.
         place: where it sits, None where it has no place.
         two_sided: whether it may depart either way.
-        unit: typical departure of the strength.
+        unit: typical deviation of the strength.
     """
 
     effect: str

@@ -19,7 +19,7 @@ from sonicvacuum.discover.search import directions, screen, secants, singles
 from sonicvacuum.effects import Setup
 
 # Singles that pairs start from.
-BEAM = 4
+STARTED = 4
 # Pairs refitted from the nominal screen, from single fits, and in each round of exchanges.
 LINEAR, BESIDE, EXCHANGED, ROUNDS = 3, 3, 4, 2
 # Pairs this far behind the best one are not followed along the chain.
@@ -54,7 +54,7 @@ def search(
     """The best pairs, best first; `scores` is the screen of the nominal model, `candidates` the singles."""
     setup = singles.setup_of(forward)
     seen = linear(scores, setup)
-    asked = [s for c in candidates[:BEAM] if c.gain > 0.0 for s in beside(forward, null, c.fit, setup)]
+    asked = [s for c in candidates[:STARTED] if c.gain > 0.0 for s in beside(forward, null, c.fit, setup)]
     found: dict[frozenset, Combination] = {}
     _refit(forward, null, setup, _best(asked, found, BESIDE), found)
     _refit(forward, null, setup, _best(seen, found, LINEAR), found)
@@ -65,8 +65,8 @@ def search(
             break
         near = [s for s in (*seen, *asked) if len(s.effects & set(best.effects)) == 1]
         _refit(forward, null, setup, _best(near, found, EXCHANGED), found)
-        borrowed = [b for s in near if (b := _borrowed(s, best)) and _key(b, best) not in tried]
-        chosen = _best(borrowed, {}, EXCHANGED)
+        adapted = [b for s in near if (b := _adapted(s, best)) and _key(b, best) not in tried]
+        chosen = _best(adapted, {}, EXCHANGED)
         tried |= {_key(b, best) for b in chosen}
         _refit(forward, null, setup, chosen, found)
         if max(found.values(), key=lambda p: p.log_bayes) is best:
@@ -75,14 +75,14 @@ def search(
 
 
 def _key(start: Start, best: Combination) -> tuple:
-    """What a borrowed start shares with the best pair, coarsely: much the same need not be fitted twice."""
+    """What an adapted start shares with the best pair, coarsely: much the same need not be fitted twice."""
     (name,) = start.effects & set(best.effects)
     k = start.hypothesis.ids.index(name)
     values = start.u[0, start.hypothesis.columns[k]]
     return (start.hypothesis.ids, name, int(start.places[0, k]), *np.round(values, 2).tolist())
 
 
-def _borrowed(start: Start, best: Combination) -> Start | None:
+def _adapted(start: Start, best: Combination) -> Start | None:
     """The start with the effect that it shares with the best pair as it is there; None where that has other
     parameters.
 

@@ -1,8 +1,8 @@
-"""The score test: what the residual of a fitted model says about every departure from it, before any is
+"""The score test: what the residual of a fitted model says about every deviation from it, before any is
 fitted.
 
 Slopes of the free parameters and the nuisances are projected out; what is left of a direction is its
-signature, of length d′ for one typical departure. All is algebra on the products of columns (`Screen.gram`),
+signature, of length d′ for one typical deviation. All is algebra on the products of columns (`Screen.gram`),
 run by run.
 
 The Fisher score with nuisance parameters: Rao, Proc. Camb. Phil. Soc. 44, 50 (1948).
@@ -56,7 +56,7 @@ class Screen:
 
     @cached_property
     def length(self) -> np.ndarray:
-        """(K,) d′ of one typical departure; 0 where nothing of it is left."""
+        """(K,) d′ of one typical deviation; 0 where nothing of it is left."""
         raw = np.sqrt(np.einsum("kk->k", self.products.sum(axis=0)))
         left = np.sqrt(np.maximum(np.diag(self.projected[1]), 0.0))
         return np.where(left > RESOLVED * raw, left, 0.0)
@@ -80,7 +80,7 @@ class Screen:
 
     @property
     def strength(self) -> np.ndarray:
-        """(K,) estimated departures in typical ones."""
+        """(K,) estimated deviations in typical ones."""
         return np.divide(self.z, self.length, out=np.zeros_like(self.z), where=self.length > 0.0)
 
     def moved(self, k, strength=None) -> tuple[np.ndarray, np.ndarray]:
@@ -90,8 +90,8 @@ class Screen:
         gradient, hessian = self.normal.total()
         strength = self.strength[k] if strength is None else strength
         cross = self.cross.sum(axis=0)[:, np.atleast_1d(k)]
-        pull = gradient[0] - cross @ np.atleast_1d(strength)
-        step = np.linalg.lstsq(hessian[0], pull, rcond=1e-12)[0]
+        rest = gradient[0] - cross @ np.atleast_1d(strength)
+        step = np.linalg.lstsq(hessian[0], rest, rcond=1e-12)[0]
         free = self.normal.free
         return self.fit.u + step[:free], self.fit.nu + step[free:]
 

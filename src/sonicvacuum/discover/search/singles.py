@@ -23,7 +23,7 @@ HOPELESS, ERR = 20.0, 0.2
 PLACES_TRIED = 5
 # Below this largest z² nothing can be named, and slopes suffice.
 CLEAR = 9.0
-# A departure that the screen puts beyond this many typical ones may lie where slopes do not reach.
+# A deviation that the screen puts beyond this many typical ones may lie where slopes do not reach.
 FAR = 0.1
 # Steps of the search; of the first one where all effects are followed and the best are polished later.
 ITERATIONS, FIRST = 14, 5
@@ -42,7 +42,7 @@ def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
     largest = max(gains.values(), default=0.0)
     traced = any(r.has_signals for r in forward.experiment.runs)
     nonlinear = largest > NONLINEAR
-    # Few scalars with large errors leave room for large departures, which slopes do not foresee.
+    # Few scalars with large errors leave room for large deviations, which slopes do not foresee.
     loose = nonlinear or (not traced and largest > CLEAR)
     steps = FIRST if loose else ITERATIONS
     setup = setup_of(forward)
@@ -170,13 +170,13 @@ def _from_screen(scores, effect, free):
 
 
 def coordinates(free, direction, size: float) -> list[float]:
-    """Coordinates of an effect's parameters for a direction taken `size` typical departures far."""
+    """Coordinates of an effect's parameters for a direction taken `size` typical deviations far."""
     shape = dict(direction.shape)
     return [_start(c, direction, shape, size) for c in free]
 
 
 def _start(c, direction, shape, size):
-    """Coordinate of one parameter for a direction taken `size` typical departures far."""
+    """Coordinate of one parameter for a direction taken `size` typical deviations far."""
     p = c.parameter
     if p.name in shape:
         return c.inverse(shape[p.name])

@@ -169,13 +169,13 @@ def _places(beads):
         for k, d in enumerate(places):
             here = np.where(index == k, 1.0 + strengths, 1.0)
             if np.any(here != 1.0):
-                chain = chain.with_departure(d.strength, d.place, here)
+                chain = chain.with_defect(d.strength, d.place, here)
         return replace(setup, chain=chain)
 
     return Family(tuple(places), change, 0.02)
 
 
-# Departures along the chain, x from −1 at the striker to 1 at the wall, k counted from there.
+# Deviations along the chain, x from −1 at the striker to 1 at the wall, k counted from there.
 _PROFILES = {
     "linear": lambda x, k: x,
     "quadratic": lambda x, k: x**2 - 1.0 / 3.0,
@@ -194,9 +194,9 @@ def _profiles():
             size = np.array([_PROFILES[name](x, at) for _, name in kinds])[index]
             ratio = np.exp(np.clip(strengths * size, -1.0, 1.0))
             stiff = np.array([what == "stiffness" for what, _ in kinds])[index]
-            chain = chain.with_departure("stiffness", at, np.where(stiff, ratio, 1.0))
+            chain = chain.with_defect("stiffness", at, np.where(stiff, ratio, 1.0))
             if at:
-                chain = chain.with_departure("mass", at, np.where(stiff, 1.0, ratio))
+                chain = chain.with_defect("mass", at, np.where(stiff, 1.0, ratio))
         return replace(setup, chain=chain)
 
     return Family(directions, change, 0.01)
