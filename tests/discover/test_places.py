@@ -1,4 +1,4 @@
-"""Where an effect sits: hops along the chain from a neighbouring place."""
+"""Where an effect sits: moves along the chain from a neighbouring place."""
 
 import numpy as np
 import pytest

@@ -28,7 +28,7 @@ MUTATIONS = (
         "_ONE_SIDED, _TWO_SIDED = 1.645",
         "_ONE_SIDED, _TWO_SIDED = 0.0",
     ),
-    ("NULL_ALARM is 0", "policy.py", "NULL_ALARM = 1e-3", "NULL_ALARM = 0.0"),
+    ("NULL_MISFIT is 0", "policy.py", "NULL_MISFIT = 1e-3", "NULL_MISFIT = 0.0"),
     ("occam_strength is 0", "evidence.py", "return math.log(min(1.0, factor))", "return 0.0"),
     (
         "separation is constant",

@@ -11,10 +11,10 @@ FALSE_ALARM = 0.01
 # component; at this, 1.6 % (the comparison of evidences of Nelson et al., Astron. J. 159, 73, 2020).
 LEAST_LOG10_BAYES = 1.0
 # p below which the nominal model leaves a sure misfit: with nothing to name, only that is called unknown.
-NULL_ALARM = 1e-3
+NULL_MISFIT = 1e-3
 # p below which shapes outside the catalogue are left beside what is named: `unknown` is then the likelier.
-ALARM = 4e-3
-# p below which goodness of fit fails: its tests know no shape, and more is asked of them than of the alarm.
+SHAPE_MISFIT = 4e-3
+# p below which goodness of fit fails: its tests know no shape, and more is asked of them than of shapes.
 MISFIT = 1e-3
 # What is named must gain as much as the simplest shape outside the catalogue, within a χ² of noise and the
 # share by which linear predictions err.

@@ -132,16 +132,16 @@ def log_weights(log_bayes: Mapping[str, float], odds: Mapping[str, float] | None
 
 def probabilities(
     candidates: list[Candidate],
-    alarm_p: float,
+    residual_p: float,
     calibration: Calibration | None = None,
     odds: Mapping[str, float] | None = None,
 ) -> dict[str, float]:
     """Probability of none, unknown and every single effect; they sum to 1.
 
-    `alarm_p` is the p-value of the residual of the most probable of them; `calibration` that of the package
-    where not given; `odds` those of `log_weights`.
+    `residual_p` is the p-value of the residual of the most probable of them; `calibration` that of the
+    package where not given; `odds` those of `log_weights`.
     """
     logs = log_weights({c.effect: c.log_bayes for c in candidates}, odds)
-    found = (calibration or of_package()).probabilities(logs, math.log(unknown_odds(alarm_p)))
+    found = (calibration or of_package()).probabilities(logs, math.log(unknown_odds(residual_p)))
     own = sorted(name for name in found if name not in ("none", "unknown", *IDS))
     return {name: found[name] for name in ("none", "unknown", *IDS, *own) if name in found}

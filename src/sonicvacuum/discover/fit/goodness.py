@@ -1,10 +1,10 @@
 """Goodness of fit: does what a model leaves look like noise, whatever its shape may be?
 
-The alarm (`unknown`) looks along chosen directions. Here nothing is chosen: for each run and gauge the
-whitened residual is asked for its total χ², its whiteness (Ljung & Box, Biometrika 65, 297, 1978), outliers,
-and for oscillations of any frequency that set in anywhere and die away at any rate, or not at all (a bank of
-damped sinusoids; the same summed over the runs of a gauge, setting in with the pulse). The smallest p counts,
-times the number of independent tests.
+The test of shapes (`unknown`) looks along chosen directions. Here nothing is chosen: for each run and gauge
+the whitened residual is asked for its total χ², its whiteness (Ljung & Box, Biometrika 65, 297, 1978),
+outliers, and for oscillations of any frequency that set in anywhere and die away at any rate, or not at all
+(a bank of damped sinusoids; the same summed over the runs of a gauge, setting in with the pulse). The
+smallest p counts, times the number of independent tests.
 """
 
 from dataclasses import dataclass

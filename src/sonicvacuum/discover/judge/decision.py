@@ -91,7 +91,7 @@ class Case:
         instead = self._smooth_instead(best, seen)
         if instead is not None:
             return instead
-        if seen.alarm.raised or seen.fit.failed or seen.size.found:
+        if seen.shapes.failed or seen.fit.failed or seen.size.found:
             return self._more(scores.threshold(policy.FALSE_ALARM), most, shape, alarms, seen)
         if seen.behind > 0.0:
             return self._unknown(alarms, [f"{shape} explains more than {best.effect}"], seen)
@@ -130,7 +130,7 @@ class Case:
             alarms.setdefault("pair", after.p)
             if pair.log_bayes + max(0.0, after.size.log_bayes) <= rival:
                 continue
-            if not after.raised:
+            if not after.failed:
                 alarms["pair"] = after.p
                 reason = "a pair leaves nothing significant"
                 return Decision(list(pair.effects), pair.fit, alarms, [reason], after.p, tried)
@@ -156,7 +156,7 @@ class Case:
             own = pairs.combination(self.null, final, self.setup)
             tried = [own, *(c for c in tried if set(c.effects) != set(effects))]
             tried = sorted(tried, key=lambda c: -c.log_bayes)
-        if effects and not after.raised:
+        if effects and not after.failed:
             reason = f"{len(effects)} effects together leave nothing significant"
             return Decision(effects, final, alarms, [reason], after.p, tried)
         if behind > 0.0:
@@ -166,8 +166,8 @@ class Case:
     def _beside(self, grown: several.Grown, needed, alarms, after: Left, tried) -> Decision:
         """What stays named beside something unknown."""
         fit_, reasons = grown.best.fit, [f"{after.where} is left"]
-        counted = unknown.alarm(grown.forward, fit_)
-        if counted.raised and fit_.hypothesis.components:
+        counted = unknown.shape_test(grown.forward, fit_)
+        if counted.failed and fit_.hypothesis.components:
             kept = several.irreplaceable(counted, fit_, needed)
             for k in reversed(range(len(fit_.hypothesis.components))):
                 if k not in kept:

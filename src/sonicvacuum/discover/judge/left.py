@@ -11,7 +11,7 @@ from sonicvacuum.discover.fit.goodness import Goodness
 from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.search import screen, unknown
-from sonicvacuum.discover.search.unknown import Alarm
+from sonicvacuum.discover.search.unknown import ShapeTest
 
 
 @dataclass(frozen=True)
@@ -19,26 +19,26 @@ class Left:
     """What a model leaves.
 
     Attributes:
-        alarm: along chosen shapes.
+        shapes: the test along chosen shapes.
         fit: in any shape.
         size: the smooth discrepancy.
         behind: Δχ² by which the model falls short of one shape outside the catalogue.
     """
 
-    alarm: Alarm
+    shapes: ShapeTest
     fit: Goodness
     size: smooth.Size
     behind: float = 0.0
 
     @property
-    def raised(self) -> bool:
+    def failed(self) -> bool:
         """Whether a real misfit is left."""
-        return self.alarm.raised or self.fit.failed or self.size.found or self.behind > 0.0
+        return self.shapes.failed or self.fit.failed or self.size.found or self.behind > 0.0
 
     @property
     def p(self) -> float:
         """p-value of what is left; goodness of fit, which asks for more, counts only where it fails."""
-        found = [self.alarm.p, math.exp(-0.5 * self.behind)]
+        found = [self.shapes.p, math.exp(-0.5 * self.behind)]
         found += [self.fit.p] if self.fit.failed else []
         found += [float(0.5 * stats.chi2.sf(self.size.drop, 1))] if self.size.found else []
         return min(found)
@@ -48,9 +48,9 @@ class Left:
         """In words."""
         if self.size.found:
             return f"a smooth misfit of {100.0 * self.size.size:.2g} % of the peak"
-        if self.fit.failed and self.fit.p < self.alarm.p:
+        if self.fit.failed and self.fit.p < self.shapes.p:
             return _WORDS.get(self.fit.worst, self.fit.worst)
-        return f"a misfit in {self.alarm.group}"
+        return f"a misfit in {self.shapes.group}"
 
 
 _WORDS = {
@@ -70,9 +70,9 @@ def left(forward: Forward, fit: Fit, known, scores: screen.Screen | None = None,
     screen at the fit, where at hand.
     """
     size = smooth.Size(0.0, 0.0) if known is None else smooth.infer(forward, fit, known)
-    return Left(unknown.alarm(forward, fit, scores), goodness.goodness(forward, fit), size, behind)
+    return Left(unknown.shape_test(forward, fit, scores), goodness.goodness(forward, fit), size, behind)
 
 
 def sure(found: Left) -> bool:
     """Whether the nominal model leaves a misfit beyond doubt: nothing is named then but that."""
-    return found.p < policy.NULL_ALARM
+    return found.p < policy.NULL_MISFIT

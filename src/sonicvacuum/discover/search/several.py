@@ -19,7 +19,7 @@ from sonicvacuum.discover.fit.refit import Fit, polish
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Hypothesis, is_law
 from sonicvacuum.discover.search import pairs
-from sonicvacuum.discover.search.unknown import Alarm
+from sonicvacuum.discover.search.unknown import ShapeTest
 from sonicvacuum.effects import Setup
 
 # Starts that are fitted jointly at each turn, by what they should gain; rounds of exchanges.
@@ -183,15 +183,15 @@ class Turns:
         return None
 
 
-def irreplaceable(alarm: Alarm, fit: Fit, needed: float) -> list[int]:
-    """Effects of a fit that are still seen when the shapes which raise an alarm may take what they like.
+def irreplaceable(shapes: ShapeTest, fit: Fit, needed: float) -> list[int]:
+    """Effects of a fit that are still seen when the shapes that fail their test may take what they like.
 
     Where a shape outside the catalogue is left beside an effect, the effect may be no more than what comes
     nearest to it. In the linearised model with those shapes free, its strength has to stand off from zero by
     as much as an effect needs to be named.
     """
-    scores, free = alarm.screen, fit.normal.free
-    at = alarm.raising
+    scores, free = shapes.screen, fit.normal.free
+    at = shapes.failing
     gradient, hessian = (part[0] for part in scores.normal.total())
     cross, products = scores.cross.sum(axis=0)[:, at], scores.products.sum(axis=0)[np.ix_(at, at)]
     length = np.sqrt(np.maximum(np.diag(products), 1e-300))

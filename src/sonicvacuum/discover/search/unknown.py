@@ -1,5 +1,4 @@
-"""The alarm: is anything left in the residual of a fitted model that it should not contain, whatever its
-name?
+"""The test of shapes: is anything left in the residual of a fitted model that it should not contain?
 
 The residual is projected on groups of directions: the catalogue, a flexible contact law and drag, stiffness
 and mass of each contact and bead, their smooth and alternating profiles along the chain, distortions of each
@@ -28,8 +27,8 @@ _BINS = np.arange(-2.0, 9.0, 1.0)
 
 
 @dataclass(frozen=True)
-class Alarm:
-    """What is left.
+class ShapeTest:
+    """What is left in a residual along each group of shapes.
 
     Attributes:
         groups: group → (χ², degrees of freedom, p).
@@ -44,18 +43,18 @@ class Alarm:
     screen: screen.Screen
 
     @property
-    def raised(self) -> bool:
+    def failed(self) -> bool:
         """Whether a real misfit is left."""
-        return self.p < policy.ALARM
+        return self.p < policy.SHAPE_MISFIT
 
     @property
-    def raising(self) -> np.ndarray:
+    def failing(self) -> np.ndarray:
         """(K',) places in the screen of the directions of all groups that are surely not empty."""
-        sure = [g for g, (_, _, p) in self.groups.items() if p * len(self.groups) < policy.ALARM]
+        sure = [g for g, (_, _, p) in self.groups.items() if p * len(self.groups) < policy.SHAPE_MISFIT]
         return np.flatnonzero([d.effect in sure for d in self.screen.directions])
 
 
-def alarm(forward: Forward, fit: Fit, catalogue: screen.Screen | None = None) -> Alarm:
+def shape_test(forward: Forward, fit: Fit, catalogue: screen.Screen | None = None) -> ShapeTest:
     """Test what a fitted model leaves; `catalogue` is its screen, where at hand."""
     shapes = list(distortions(forward, fit)) if _traced(forward) else []
     scalars = scalar_directions(forward)
@@ -64,7 +63,7 @@ def alarm(forward: Forward, fit: Fit, catalogue: screen.Screen | None = None) ->
     if catalogue is not None and len(catalogue.z):
         groups["catalogue"] = _largest(catalogue)
     worst = min(groups, key=lambda g: groups[g][2])
-    return Alarm(groups, min(1.0, groups[worst][2] * len(groups)), worst, whole)
+    return ShapeTest(groups, min(1.0, groups[worst][2] * len(groups)), worst, whole)
 
 
 def simplest(forward: Forward, null: Fit) -> tuple[str, float]:
