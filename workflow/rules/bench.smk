@@ -3,7 +3,6 @@
 
 rule bench:
     input:
-        sources("simulate", "discover", "blind hide", without=PAGES),
         bench=Path(home("workflow/bench")).glob("*.[pc]*"),
     output:
         "results/bench.csv",
@@ -17,6 +16,8 @@ rule bench:
         "results/logs/bench.log",
     conda:
         ENVIRONMENT
+    params:
+        sources=sources("simulate", "discover", "blind hide", without=PAGES),
     message:
         "Measuring all codes in turns; this takes some minutes and wants an idle machine"
     shell:

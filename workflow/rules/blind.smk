@@ -13,8 +13,6 @@ wildcard_constraints:
 
 
 rule hide:
-    input:
-        sources=sources("blind hide", without=CATALOGUE),
     output:
         records=directory(f"{BLIND}/records/{{batch}}"),
         truth=directory(f"{BLIND}/truth/{{batch}}"),
@@ -25,6 +23,7 @@ rule hide:
     conda:
         ENVIRONMENT
     params:
+        sources=sources("blind hide", without=CATALOGUE),
         batches=lambda wildcards: BATCHES[wildcards.study],
     message:
         "Hiding effects in batch {wildcards.batch} of the {wildcards.study} study"
@@ -36,7 +35,6 @@ rule hide:
 rule discover_hidden:
     input:
         records=f"{BLIND}/records/{{batch}}",
-        sources=sources("discover", without=PAGES),
     output:
         directory(f"{BLIND}/verdicts/{{batch}}"),
     log:
@@ -45,6 +43,8 @@ rule discover_hidden:
         "results/benchmarks/discover_hidden/{study}-{batch}.tsv"
     conda:
         ENVIRONMENT
+    params:
+        sources=sources("discover", without=PAGES),
     message:
         "Discovering what is hidden in batch {wildcards.batch} of the {wildcards.study} study"
     shell:
@@ -55,7 +55,6 @@ rule score:
     input:
         truth=batches("truth"),
         verdicts=batches("verdicts"),
-        sources=sources("blind score", without=CATALOGUE),
     output:
         f"{BLIND}/score.csv",
         f"{BLIND}/summary.csv",
@@ -67,6 +66,7 @@ rule score:
     conda:
         ENVIRONMENT
     params:
+        sources=sources("blind score", without=CATALOGUE),
         folder=lambda wildcards: f"results/blind/{wildcards.study}",
     message:
         "Scoring the {wildcards.study} study"
@@ -83,7 +83,6 @@ rule baselines:
         verdicts=batches("verdicts"),
         training=training,
         lock=home("requirements-study.lock"),
-        sources=sources("blind baselines"),
     output:
         f"{BLIND}/baselines.csv",
     log:
@@ -93,6 +92,7 @@ rule baselines:
     conda:
         ENVIRONMENT
     params:
+        sources=sources("blind baselines"),
         folder=lambda wildcards: f"results/blind/{wildcards.study}",
         training=lambda wildcards, input: repeated(
             "--training", ["results/blind/training"] if input.training else []
@@ -107,7 +107,6 @@ rule baselines:
 rule draw_study:
     input:
         table=f"{BLIND}/{{picture}}.csv",
-        sources=sources("blind draw"),
     output:
         svg=f"{BLIND}/{{picture}}.svg",
         png=f"{BLIND}/{{picture}}.png",
@@ -116,6 +115,7 @@ rule draw_study:
     conda:
         ENVIRONMENT
     params:
+        sources=sources("blind draw"),
         folder=lambda wildcards, input: Path(input.table).parent,
     message:
         "Drawing {wildcards.picture} of the {wildcards.study} study"
@@ -127,7 +127,6 @@ rule draw_study:
 rule draw_kept:
     input:
         table=f"{STUDY_TABLES}/{{picture}}.csv",
-        sources=sources("blind draw"),
     output:
         svg="figures/blind_{picture}.svg",
         png="figures/blind_{picture}.png",
@@ -136,6 +135,7 @@ rule draw_kept:
     conda:
         ENVIRONMENT
     params:
+        sources=sources("blind draw"),
         folder=lambda wildcards, input: Path(input.table).parent,
     message:
         "Drawing {wildcards.picture} of the full study as kept in git"
@@ -185,7 +185,6 @@ rule publish_study:
 rule follow:
     input:
         verdicts=f"{BLIND}/verdicts/{{batch}}",
-        sources=sources("blind follow", without=CATALOGUE),
     output:
         directory(f"{BLIND}/followed/{{choice}}/{{batch}}"),
     log:
@@ -195,6 +194,7 @@ rule follow:
     conda:
         ENVIRONMENT
     params:
+        sources=sources("blind follow", without=CATALOGUE),
         batches=lambda wildcards: BATCHES[wildcards.study],
     message:
         "Making {wildcards.choice} runs for ambiguous cases in batch {wildcards.batch} of the {wildcards.study} study"
@@ -207,7 +207,6 @@ rule discover_followed:
     input:
         records=f"{BLIND}/records/{{batch}}",
         followed=f"{BLIND}/followed/{{choice}}/{{batch}}",
-        sources=sources("discover", without=PAGES),
     output:
         directory(f"{BLIND}/joint/{{choice}}/{{batch}}"),
     log:
@@ -216,6 +215,8 @@ rule discover_followed:
         "results/benchmarks/discover_followed/{study}-{choice}-{batch}.tsv"
     conda:
         ENVIRONMENT
+    params:
+        sources=sources("discover", without=PAGES),
     message:
         "Discovering with {wildcards.choice} runs in batch {wildcards.batch} of the {wildcards.study} study"
     shell:
@@ -233,7 +234,6 @@ rule resolved:
         proposed_joint=some_batches("joint/proposed"),
         random=some_batches("followed/random"),
         random_joint=some_batches("joint/random"),
-        sources=sources("blind resolved", without=CATALOGUE),
     output:
         rows=f"{BLIND}/resolved.csv",
         summary=f"{BLIND}/resolved_summary.csv",
@@ -244,6 +244,7 @@ rule resolved:
     conda:
         ENVIRONMENT
     params:
+        sources=sources("blind resolved", without=CATALOGUE),
         folder=lambda wildcards: f"results/blind/{wildcards.study}",
     message:
         "Counting the ambiguous cases of the {wildcards.study} study that one more run decides"

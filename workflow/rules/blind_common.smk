@@ -12,7 +12,7 @@ BATCHES = {"small": 4, "training": 4, "full": 24}
 FOLLOWED = {"small": 4, "training": 4, "full": 4}
 BLIND = "results/blind/{study}"
 # Asked only for the priors that a record may state, which hidden data never do: they stay when an effect changes.
-CATALOGUE = ["sonicvacuum.effects"]
+CATALOGUE = ("sonicvacuum.effects",)
 PICTURES = ["confusion", "accuracy", "reliability", "baselines"]
 DETAILS = ["confusion", "accuracy", "reliability", "coverage", "seconds"]
 CHOICES = ["proposed", "random"]

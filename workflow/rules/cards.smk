@@ -4,7 +4,6 @@
 rule card:
     input:
         model=model_of,
-        sources=lambda wildcards: sources("card", without=[] if model_of(wildcards) else MODEL),
     output:
         "results/cards/{card}.json",
     log:
@@ -14,6 +13,7 @@ rule card:
     conda:
         ENVIRONMENT
     params:
+        sources=lambda wildcards: sources("card", without=() if model_of(wildcards) else MODEL),
         config=CONFIG_FILE,
         case=lambda wildcards: wildcards.card.split(".")[0],
         variant=lambda wildcards: wildcards.card.split(".")[1],

@@ -1,15 +1,16 @@
-"""What all rules share: the checked configuration, the names of cards and figures, the sources of each verb."""
+"""What all rules share: the checked configuration, the names of cards and figures, the digest of each verb's sources."""
 
 import os
 import shlex
 import sys
+from functools import cache
 from pathlib import Path
 
 import msgspec
 from snakemake.exceptions import WorkflowError
 
 from sonicvacuum import config as configuration
-from sonicvacuum.cli.sources import files
+from sonicvacuum.cli.sources import digest
 from sonicvacuum.files import InputError
 from sonicvacuum_paper.figures import caption, cards_of
 
@@ -53,14 +54,18 @@ wildcard_constraints:
 
 LOCKS = [home("requirements.lock"), home("requirements-build.lock")]
 # The verb `discover` loads this for pictures and page, which the workflow makes by the verb `page`.
-PAGES = ["sonicvacuum.cli.page"]
+PAGES = ("sonicvacuum.cli.page",)
 # Verbs that take a card load this where a model is put into it.
-MODEL = ["sonicvacuum.cli.model"]
+MODEL = ("sonicvacuum.cli.model",)
 
 
+@cache
 def sources(*verbs, without=()):
-    """Files that some verbs of the command run, read off their imports, and the locks, in a fixed order."""
-    return files(verbs, without) + LOCKS
+    """Digest of all that some verbs of the command run, read off their imports, and of the locks.
+
+    As a parameter it reruns a rule when the code behind it changes. It is worked out once in each start of Snakemake.
+    """
+    return digest(verbs, without, LOCKS)
 
 
 def repeated(option, values):
@@ -90,3 +95,13 @@ def record_files(wildcards):
 def drawn(figure):
     """Cards that a figure shows and the configuration has."""
     return [name for name in cards_of(figure) if name in CARDS]
+
+
+class Caption:
+    """Caption of a figure, looked up where it is printed: that loads the engine, and Snakemake's own report alone asks."""
+
+    def __init__(self, figure):
+        self.figure = figure
+
+    def __str__(self):
+        return caption(self.figure)

@@ -15,7 +15,6 @@ FOUND = [
 rule discover:
     input:
         record=record_files,
-        sources=sources("discover", without=PAGES),
     output:
         expand(f"{DISCOVERY}/{{name}}", name=FOUND, allow_missing=True),
     log:
@@ -25,6 +24,7 @@ rule discover:
     conda:
         ENVIRONMENT
     params:
+        sources=sources("discover", without=PAGES),
         folder=lambda wildcards: RECORDS[wildcards.record],
         out=lambda wildcards: f"results/discover/{wildcards.record}",
     message:
@@ -36,7 +36,6 @@ rule discover:
 rule record_page:
     input:
         expand(f"{DISCOVERY}/{{name}}", name=FOUND, allow_missing=True),
-        sources=sources("page"),
     output:
         table=f"{DISCOVERY}/parameters.csv",
         page=report(f"{DISCOVERY}/index.html", category="Discovery", labels={"record": "{record}"}),
@@ -47,6 +46,7 @@ rule record_page:
     conda:
         ENVIRONMENT
     params:
+        sources=sources("page"),
         out=lambda wildcards: f"results/discover/{wildcards.record}",
     message:
         "Writing the page of {wildcards.record}"

@@ -5,7 +5,6 @@ rule draw:
     input:
         cards=lambda wildcards: expand("results/cards/{card}.json", card=drawn(wildcards.figure)),
         histories=lambda wildcards: expand("results/histories/{card}.npz", card=drawn(wildcards.figure)),
-        sources=sources("paper draw"),
     output:
         table="figures/{figure}.csv",
         svg=report(
@@ -22,8 +21,9 @@ rule draw:
     conda:
         ENVIRONMENT
     params:
+        sources=sources("paper draw"),
         # Read by the caption file of Snakemake's own report.
-        caption=lambda wildcards: caption(wildcards.figure),
+        caption=lambda wildcards: Caption(wildcards.figure),
     message:
         "Drawing {wildcards.figure}"
     shell:

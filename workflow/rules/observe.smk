@@ -5,7 +5,6 @@ rule observe:
     input:
         card="results/cards/{card}.json",
         history="results/histories/{card}.npz",
-        sources=sources("paper observe"),
     output:
         signals="results/signals/{card}.csv",
         metrics="results/metrics/{card}.csv",
@@ -15,6 +14,8 @@ rule observe:
         "results/benchmarks/observe/{card}.tsv"
     conda:
         ENVIRONMENT
+    params:
+        sources=sources("paper observe"),
     message:
         "Reading the gauges of {wildcards.card}"
     shell:
@@ -25,7 +26,6 @@ rule observe:
 rule metrics:
     input:
         metrics=expand("results/metrics/{card}.csv", card=CARDS),
-        sources=sources("paper metrics"),
     output:
         metrics="results/metrics.csv",
         absent="results/absent.csv",
@@ -36,6 +36,7 @@ rule metrics:
     conda:
         ENVIRONMENT
     params:
+        sources=sources("paper metrics"),
         config=CONFIG_FILE,
         # The columns of the ledger decide which variants are compared.
         ledger=CONFIG.ledger,

@@ -9,7 +9,6 @@ rule ledger:
         metrics="results/metrics.csv",
         absent="results/absent.csv",
         claims=CLAIMS,
-        sources=sources("paper ledger"),
     output:
         report("results/ledger.csv", category="Tables", caption="../report/ledger.rst"),
     log:
@@ -19,6 +18,7 @@ rule ledger:
     conda:
         ENVIRONMENT
     params:
+        sources=sources("paper ledger"),
         config=CONFIG_FILE,
         columns=CONFIG.ledger,
     message:
@@ -33,7 +33,6 @@ rule audit:
         metrics="results/metrics.csv",
         absent="results/absent.csv",
         assumptions=ASSUMPTIONS,
-        sources=sources("paper audit"),
     output:
         report("results/assumptions.csv", category="Tables", caption="../report/assumptions.rst"),
     log:
@@ -43,6 +42,7 @@ rule audit:
     conda:
         ENVIRONMENT
     params:
+        sources=sources("paper audit"),
         config=CONFIG_FILE,
         columns=CONFIG.ledger,
     message:
@@ -65,7 +65,6 @@ rule page:
         blind_small="results/blind/small/summary.csv",
         blind_full=sorted(Path(STUDY_TABLES).glob("*.csv")),
         pictures=expand("figures/{picture}.svg", picture=STUDY),
-        sources=sources("paper report"),
     output:
         report("results/report.html", category="Report", caption="../report/page.rst"),
     log:
@@ -75,6 +74,7 @@ rule page:
     conda:
         ENVIRONMENT
     params:
+        sources=sources("paper report"),
         figures=lambda wildcards, input: repeated("--figure", input.figures),
         cards=lambda wildcards, input: repeated("--card", input.cards),
         locks=lambda wildcards, input: repeated("--lock", input.locks),
@@ -96,13 +96,14 @@ rule timings:
     input:
         # Benchmark files are no outputs: this waits for the last rules and reads what stands there.
         "results/report.html",
-        sources=sources("paper timings"),
     output:
         "results/benchmarks.csv",
     log:
         "results/logs/timings.log",
     conda:
         ENVIRONMENT
+    params:
+        sources=sources("paper timings"),
     message:
         "Summarising the time that each rule took"
     shell:

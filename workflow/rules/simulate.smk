@@ -4,7 +4,6 @@
 rule simulate:
     input:
         card="results/cards/{card}.json",
-        sources=sources("simulate", without=MODEL),
     output:
         "results/histories/{card}.npz",
     log:
@@ -13,6 +12,8 @@ rule simulate:
         "results/benchmarks/simulate/{card}.tsv"
     conda:
         ENVIRONMENT
+    params:
+        sources=sources("simulate", without=MODEL),
     message:
         "Simulating {wildcards.card}"
     shell:

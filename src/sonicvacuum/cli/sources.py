@@ -1,9 +1,11 @@
 """Which source files a verb runs, read off the imports: what a rule of the workflow depends on.
 
-Snakemake does not see edits to an installed package; a rule that names these files as inputs is run again
-when one of them changes, and left alone when another does. Needs grimp (extra `workflow`).
+Snakemake does not see edits to an installed package; a rule that takes the digest of these files as a parameter is run
+again when one of them changes, and left alone when another does. (As inputs of some 250 jobs the same files were looked
+up 22 000 times in each run.) Needs grimp (extra `workflow`).
 """
 
+import hashlib
 from collections.abc import Iterable
 from functools import cache
 from importlib import import_module
@@ -54,15 +56,39 @@ def imported(modules: Iterable[str], without: Iterable[str] = ()) -> set[str]:
     return found
 
 
-def files(verbs: Iterable[str], without: Iterable[str] = ()) -> list[str]:
-    """Source files of some verbs and the data beside them, sorted; relative to the working folder."""
-    here, found = Path.cwd(), set()
+def files(verbs: Iterable[str], without: Iterable[str] = ()) -> dict[str, Path]:
+    """Source files of some verbs and the data beside them: name from the package on → path, sorted by name."""
+    found: dict[str, Path] = {}
     for module in imported(map(module_of, verbs), without):
-        path = _path(module)
-        found.add(path)
-        if path.name != "__init__.py":
-            found.update(p for p in path.parent.iterdir() if p.suffix in DATA)
-    return sorted(str(p.relative_to(here) if p.is_relative_to(here) else p) for p in found)
+        path, folder = _path(module), module.split(".")
+        folder = folder if path.name == "__init__.py" else folder[:-1]
+        beside = [] if path.name == "__init__.py" else [p for p in _listing(path.parent) if p.suffix in DATA]
+        found |= {"/".join([*folder, p.name]): p for p in (path, *beside)}
+    return dict(sorted(found.items()))
+
+
+def digest(verbs: Iterable[str], without: Iterable[str] = (), beside: Iterable[str | Path] = ()) -> str:
+    """SHA-256 of what some verbs run: names and contents of their files, wherever these lie.
+
+    Args:
+        verbs, without: as in `files`.
+        beside: further files that decide what is run, such as lock files; their order counts.
+    """
+    whole = hashlib.sha256()
+    named = [*files(verbs, without).items(), *((Path(path).name, Path(path)) for path in beside)]
+    for name, path in named:
+        whole.update(f"{name}\0{_content(path)}\n".encode())
+    return whole.hexdigest()
+
+
+@cache
+def _content(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+@cache
+def _listing(folder: Path) -> list[Path]:
+    return list(folder.iterdir())
 
 
 @cache
@@ -70,6 +96,7 @@ def _graph() -> grimp.ImportGraph:
     return grimp.build_graph(*PACKAGES, cache_dir=None, exclude_type_checking_imports=True)
 
 
+@cache
 def _path(module: str) -> Path:
     """File of a module, which is not loaded; its package is, and loads nothing."""
     package, *rest = module.split(".")
