@@ -5,14 +5,12 @@ plan.
 """
 
 import json
-import os
 import re
 import shutil
-import subprocess
-import sys
 
 import pytest
 from ball import RECORD
+from planner import Planner
 
 # A folder's name may be anything; of this one a shell would make commands.
 ODD = """a b; touch pwned $(touch pwned) `touch pwned` 'q' "d" * ü"""
@@ -56,25 +54,28 @@ PAGE = "results/discover/ball/index.html"
 ODD_PAGE = f"results/discover/{ODD}/index.html"
 
 
-def snakemake(folder, *arguments):
-    """The finished process of a snakemake call in a folder."""
-    command = [sys.executable, "-m", "snakemake", "--cores", "2", *arguments]
-    # The folder's own copy of the source, which the tests edit.
-    own = {"PYTHONPATH": str(folder / "src")} if (folder / "src").exists() else {}
-    environment = os.environ | own
-    return subprocess.run(command, cwd=folder, capture_output=True, text=True, env=environment)
-
-
-def planned(folder, target=TARGET):
-    """Rule → number of jobs that a run would start now."""
-    done = snakemake(folder, "--dry-run", target)
-    assert done.returncode == 0, done.stderr
-    rows = re.findall(r"^(\w+)\s+(\d+)$", done.stdout + done.stderr, flags=re.MULTILINE)
-    return {rule: int(count) for rule, count in rows if rule != "total"}
+@pytest.fixture(scope="session")
+def snakemake():
+    """Call of snakemake in a folder: (returncode, said)."""
+    with Planner() as planner:
+        yield planner
 
 
 @pytest.fixture(scope="session")
-def finished(tmp_path_factory, pytestconfig):
+def planned(snakemake):
+    """Call: rule → number of jobs that a run in a folder would start now."""
+
+    def plan(folder, target=TARGET):
+        done = snakemake(folder, "--dry-run", target)
+        assert done.returncode == 0, done.said
+        rows = re.findall(r"^(\w+)\s+(\d+)$", done.said, flags=re.MULTILINE)
+        return {rule: int(count) for rule, count in rows if rule != "total"}
+
+    return plan
+
+
+@pytest.fixture(scope="session")
+def finished(tmp_path_factory, pytestconfig, snakemake, planned):
     """A copy of the project in which the small pipeline has run."""
     root, folder = pytestconfig.rootpath, tmp_path_factory.mktemp("project")
     for part in ("workflow", "src"):
@@ -87,7 +88,7 @@ def finished(tmp_path_factory, pytestconfig):
         (folder / "records" / name / "record.yaml").write_text(RECORD)
     assert planned(folder) == ALL
     done = snakemake(folder, TARGET, PAGE, ODD_PAGE)
-    assert done.returncode == 0, done.stderr
+    assert done.returncode == 0, done.said
     return folder
 
 
@@ -99,7 +100,7 @@ def project(finished, tmp_path):
     return folder
 
 
-def test_a_second_run_plans_nothing(finished):
+def test_a_second_run_plans_nothing(finished, planned):
     assert planned(finished) == {}
 
 
@@ -125,100 +126,99 @@ def test_every_interpolation_of_a_shell_command_is_quoted(pytestconfig):
     assert loose == []
 
 
-def test_touching_without_changing_plans_nothing(project):
+def test_touching_without_changing_plans_nothing(project, planned):
     for path in (project / "src/sonicvacuum/observe").glob("*.py"):
         path.touch()
     assert planned(project) == {}
 
 
-def test_an_edit_above_the_simulation_leaves_the_simulation_alone(project):
+def test_an_edit_above_the_simulation_leaves_the_simulation_alone(project, planned):
     with open(project / "src/sonicvacuum/observe/pulse.py", "a") as stream:
         stream.write("# edited\n")
     assert planned(project) == FOUND | {"observe": 4}
 
 
-def test_an_edit_of_the_stepper_replans_all_that_follows(project):
+def test_an_edit_of_the_stepper_replans_all_that_follows(project, planned):
     with open(project / "src/sonicvacuum/physics/kernel.py", "a") as stream:
         stream.write("# edited\n")
     assert planned(project) == FOUND | {"card": 4, "simulate": 4, "observe": 4}
 
 
-def test_changing_one_variant_reruns_that_card_alone(project):
+def test_changing_one_variant_reruns_that_card_alone(project, planned):
     (project / "config.yaml").write_text(CONFIG.replace("15.0", "14.0"))
     assert planned(project) == {"card": 1, "simulate": 1, "observe": 1, "metrics": 1}
 
 
-def test_adding_a_case_runs_that_case_alone(project):
+def test_adding_a_case_runs_that_case_alone(project, planned):
     block = "  third:\n" + CONFIG.split("  sweep:\n")[1].replace("*chain", "*chain\n    materials: {}")
     (project / "config.yaml").write_text(CONFIG + block)
     assert planned(project) == {"card": 1, "simulate": 1, "observe": 1, "metrics": 1}
 
 
-def test_new_data_are_looked_into_and_change_the_cases_that_take_their_model(project):
+def test_new_data_are_looked_into_and_change_the_cases_that_take_their_model(project, planned):
     (project / "records/ball/record.yaml").write_text(RECORD.replace("0.99", "0.98"))
     assert planned(project) == FOUND
 
 
-def test_an_edit_of_the_wording_discovers_nothing_anew(project):
+def test_an_edit_of_the_wording_discovers_nothing_anew(project, planned):
     with open(project / "src/sonicvacuum/report/words.py", "a") as stream:
         stream.write("# edited\n")
     assert planned(project) == {}
     assert planned(project, PAGE) == {"record_page": 1}
 
 
-def test_a_folder_without_a_record_stops_with_one_sentence(project):
+def test_a_folder_without_a_record_stops_with_one_sentence(project, snakemake):
     (project / "config.yaml").write_text(CONFIG.replace("records/ball", "records/bell"))
     done = snakemake(project, "--dry-run", TARGET)
     assert done.returncode != 0
-    assert "model.record: is 'ball'; no such record under discover; known: bell" in done.stdout + done.stderr
+    assert "model.record: is 'ball'; no such record under discover; known: bell" in done.said
     (project / "config.yaml").write_text(CONFIG.replace("records/ball", "elsewhere/ball"))
     done = snakemake(project, "--dry-run", TARGET)
     assert done.returncode != 0
-    assert "discover: elsewhere/ball: no record.yaml in this folder" in done.stdout + done.stderr
+    assert "discover: elsewhere/ball: no record.yaml in this folder" in done.said
 
 
-def test_a_new_lock_replans_everything(project):
+def test_a_new_lock_replans_everything(project, planned):
     with open(project / "requirements.lock", "a") as stream:
         stream.write("# edited\n")
     assert planned(project) == ALL
 
 
-@pytest.mark.parametrize(
-    ("output", "jobs"),
-    [
-        ("results/cards/coated.soft.json", {"card": 1, "simulate": 1, "observe": 1, "metrics": 1}),
-        ("results/histories/coated.soft.npz", {"simulate": 1, "observe": 1, "metrics": 1}),
-        ("results/metrics/coated.soft.csv", {"observe": 1, "metrics": 1}),
-        ("results/metrics.csv", {"metrics": 1}),
-    ],
-)
-def test_deleting_an_output_rebuilds_it_and_its_descendants(project, output, jobs):
-    (project / output).unlink()
-    wanted = planned(project, target=output)
-    assert sum(wanted.values()) == 1
-    done = snakemake(project, output)
-    assert done.returncode == 0, done.stderr
-    # The rebuilt file is the same to the byte, so nothing that follows from it is made again.
-    assert planned(project) == {}
-    (project / output).unlink()
-    assert planned(project).items() <= jobs.items() | {("metrics", 1)}
+def test_deleting_an_output_rebuilds_it_and_its_descendants(project, snakemake, planned):
+    follow = {}
+    for output, rule in (
+        ("results/metrics.csv", "metrics"),
+        ("results/metrics/coated.soft.csv", "observe"),
+        ("results/histories/coated.soft.npz", "simulate"),
+        ("results/cards/coated.soft.json", "card"),
+    ):
+        whole = (project / output).read_bytes()
+        (project / output).unlink()
+        # Of what follows Snakemake may learn only later that nothing is to be done.
+        follow |= {rule: 1}
+        assert {rule} <= planned(project, output).keys() <= follow.keys()
+        done = snakemake(project, output)
+        assert done.returncode == 0, done.said
+        # The rebuilt file is the same to the byte, so nothing that follows from it is made again.
+        assert (project / output).read_bytes() == whole
+        assert planned(project) == {}
 
 
-def test_a_bad_configuration_stops_with_one_sentence(project):
+def test_a_bad_configuration_stops_with_one_sentence(project, snakemake):
     (project / "config.yaml").write_text(CONFIG.replace("beads: 5", "beads: five"))
     done = snakemake(project, "--dry-run", TARGET)
     assert done.returncode != 0
-    assert "config.yaml: cases.coated.chain.beads: is 'five'" in done.stdout + done.stderr
-    assert "Traceback" not in done.stdout + done.stderr
+    assert "config.yaml: cases.coated.chain.beads: is 'five'" in done.said
+    assert "Traceback" not in done.said
 
 
-def test_the_root_makes_by_default_all_that_the_workflow_makes(pytestconfig):
+def test_the_root_makes_by_default_all_that_the_workflow_makes(pytestconfig, snakemake):
     done = snakemake(pytestconfig.rootpath, "--dry-run", "--forceall", "--quiet", "host")
-    jobs = set(re.findall(r"^(\w+)\s+\d+$", done.stdout + done.stderr, flags=re.MULTILINE))
+    jobs = set(re.findall(r"^(\w+)\s+\d+$", done.said, flags=re.MULTILINE))
     assert {"pipeline", "page", "ledger", "draw", "record_page", "timings", "draw_kept", "score"} <= jobs
 
 
-def test_another_workflow_can_use_this_one_as_a_module(tmp_path, pytestconfig):
+def test_another_workflow_can_use_this_one_as_a_module(tmp_path, pytestconfig, planned):
     """Config and records are the other's, code and resources stay here."""
     (tmp_path / "own.yaml").write_text(CONFIG)
     for name in ("ball", ODD):
@@ -236,6 +236,6 @@ use rule * from sonicvacuum as sv_*
     assert planned(tmp_path) == {f"sv_{rule}": count for rule, count in ALL.items()}
 
 
-def test_the_workflow_passes_its_lint(pytestconfig):
+def test_the_workflow_passes_its_lint(pytestconfig, snakemake):
     done = snakemake(pytestconfig.rootpath, "--lint")
-    assert done.returncode == 0, done.stdout + done.stderr
+    assert done.returncode == 0, done.said

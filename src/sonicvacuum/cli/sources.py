@@ -1,8 +1,8 @@
 """Which source files a verb runs, read off the imports: what a rule of the workflow depends on.
 
-Snakemake does not see edits to an installed package; a rule that takes the digest of these files as a parameter is run
-again when one of them changes, and left alone when another does. (As inputs of some 250 jobs the same files were looked
-up 22 000 times in each run.) Needs grimp (extra `workflow`).
+Snakemake does not see edits to an installed package; a rule that takes the digest of these files as a
+parameter is run again when one of them changes, and left alone when another does. (As inputs of some 250 jobs
+the same files would be looked up 22 000 times in each run.) Needs grimp (extra `workflow`).
 """
 
 import hashlib
@@ -57,7 +57,7 @@ def imported(modules: Iterable[str], without: Iterable[str] = ()) -> set[str]:
 
 
 def files(verbs: Iterable[str], without: Iterable[str] = ()) -> dict[str, Path]:
-    """Source files of some verbs and the data beside them: name from the package on → path, sorted by name."""
+    """Source files of some verbs and the data beside them: name from the package on → path, in order."""
     found: dict[str, Path] = {}
     for module in imported(map(module_of, verbs), without):
         path, folder = _path(module), module.split(".")
