@@ -142,6 +142,7 @@ def test_the_schema_knows_the_same_keys_as_the_contract():
     assert set(parts["RecordBlock"]["properties"]) == {
         "format", "title", "source", "chain", "materials", "sensors", "trigger_sigma_us", "runs",
         "clock_rel_sigma", "tolerances", "model_floor_rel", "priors",
+        "apparatus",
     }  # fmt: skip
     assert all(p["additionalProperties"] is False for p in parts.values())
 

@@ -6,7 +6,7 @@ the run is expected to decide (Box & Hill, Technometrics 9, 57, 1967; Buzzi-Ferr
 Sci. 38, 225, 1983).
 """
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -17,8 +17,8 @@ from sonicvacuum.discover.verdict import Next
 from sonicvacuum.laboratory.next_run import FASTEST, MASSES, PRELOADS, SLOWEST, SPEEDS, gauge_beads
 from sonicvacuum.laboratory.ranges import likely_ball
 from sonicvacuum.laboratory.specimen import GRAVITY
+from sonicvacuum.physics.chain import Chain
 
-# A run without signals is imagined with traces of this length.
 _RIVALS = 2
 
 
@@ -66,6 +66,49 @@ def _rivals(found: Investigation, alike):
     return [("none", found.null), *ranked[:_RIVALS]] if not found.named else ranked[: 1 + _RIVALS]
 
 
+@dataclass(frozen=True)
+class Means:
+    """What a laboratory can change, for the last of its runs.
+
+    Attributes:
+        speeds: of the striker in m/s.
+        masses: of the striker in kg.
+        preloads: static force in N.
+        turned: whether the chain can be hung the other way.
+        beads: that may hold the first embedded gauge.
+    """
+
+    speeds: tuple[float, ...]
+    masses: tuple[float, ...]
+    preloads: tuple[float, ...]
+    turned: bool
+    beads: tuple[int, ...]
+
+
+def means(experiment: Experiment, chain: Chain) -> Means:
+    """What the record's `apparatus` allows, or what most laboratories can do where it has none."""
+    speed, mass, force = (float(x[0]) for x in (chain.speed, chain.striker_mass, chain.static_force))
+    given = experiment.record.block.apparatus if experiment.record is not None else None
+    if given is None:
+        return Means(
+            speeds=tuple(speed * f for f in SPEEDS if SLOWEST <= speed * f <= FASTEST),
+            masses=tuple(mass * f for f in MASSES),
+            preloads=tuple(force + more for more in PRELOADS),
+            turned=True,
+            beads=tuple(gauge_beads(experiment.beads)),
+        )
+    slow, fast = given.speed_m_s or (speed, speed)
+    speeds = {slow, fast, *(speed * f for f in SPEEDS if slow <= speed * f <= fast)} - {speed}
+    other = "horizontal" if chain.gravity[0] > 0.0 else "vertical"
+    return Means(
+        speeds=tuple(sorted(speeds)),
+        masses=tuple(m / 1e3 for m in given.striker_mass_g if abs(m / 1e3 - mass) > 1e-9 * mass),
+        preloads=tuple(f for f in given.static_force_N if f != force),
+        turned=other in given.orientation,
+        beads=tuple(given.gauge_beads),
+    )
+
+
 def changes(experiment: Experiment):
     """(change, experiment with that one run) for every run that can be imagined; the last run is varied."""
     batch = next(b for b in experiment.batches if experiment.runs[b.runs[0]].has_signals)
@@ -73,35 +116,31 @@ def changes(experiment: Experiment):
     run = experiment.runs[batch.runs[lane]]
     chain = batch.chain.take([lane])
     speed = float(chain.speed[0])
-    for factor in SPEEDS:
-        if SLOWEST <= speed * factor <= FASTEST:
-            changed = replace(chain, speed=chain.speed * factor)
-            yield (
-                {"striker.speed_m_s": round(speed * factor, 4)},
-                _with(experiment, batch, run, changed, factor),
-            )
-    for factor in MASSES:
-        mass = float(chain.striker_mass[0]) * factor
+    can = means(experiment, chain)
+    for value in can.speeds:
+        changed = replace(chain, speed=np.full_like(chain.speed, value))
+        imagined = _with(experiment, batch, run, changed, value / speed)
+        yield {"striker.speed_m_s": round(value, 4)}, imagined
+    for mass in can.masses:
         # The contact keeps its radius, so that a ball keeps its size.
         if likely_ball(mass, float(np.max(chain.striker_radius))):
-            changed = replace(chain, striker_mass=chain.striker_mass * factor)
+            changed = replace(chain, striker_mass=np.full_like(chain.striker_mass, mass))
             yield {"striker.mass_g": round(mass * 1e3, 4)}, _with(experiment, batch, run, changed)
-    for force in PRELOADS:
-        changed = replace(chain, static_force=chain.static_force + force)
-        yield {"chain.static_force_N": float(changed.static_force[0])}, _with(experiment, batch, run, changed)
-    upright = bool(chain.gravity[0] > 0.0)
-    changed = replace(chain, gravity=np.array([0.0 if upright else GRAVITY]))
-    yield (
-        {"chain.orientation": "horizontal" if upright else "vertical"},
-        _with(experiment, batch, run, changed),
-    )
-    yield from _gauges(experiment, batch, run, chain)
+    for force in can.preloads:
+        changed = replace(chain, static_force=np.full_like(chain.static_force, force))
+        yield {"chain.static_force_N": float(force)}, _with(experiment, batch, run, changed)
+    if can.turned:
+        upright = bool(chain.gravity[0] > 0.0)
+        changed = replace(chain, gravity=np.array([0.0 if upright else GRAVITY]))
+        imagined = _with(experiment, batch, run, changed)
+        yield {"chain.orientation": "horizontal" if upright else "vertical"}, imagined
+    yield from _gauges(experiment, batch, run, chain, can.beads)
 
 
-def _gauges(experiment, batch, run, chain):
-    """An embedded gauge moved near either end."""
+def _gauges(experiment, batch, run, chain, beads):
+    """The first embedded gauge moved to one of some beads."""
     embedded = [k for k, g in enumerate(experiment.gauges) if g.kind == "embedded"]
-    for bead in gauge_beads(experiment.beads) if embedded else ():
+    for bead in beads if embedded else ():
         gauge = experiment.gauges[embedded[0]]
         moved = tuple(
             replace(g, bead=bead) if k == embedded[0] else g for k, g in enumerate(experiment.gauges)

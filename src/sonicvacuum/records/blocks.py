@@ -4,6 +4,7 @@ One class for each quantity that an observable may give, so that what it needs, 
 stand in one place and an editor can be told (`schema`).
 """
 
+import datetime
 from typing import Annotated, Any, Literal, get_args
 
 import msgspec
@@ -24,9 +25,10 @@ Fraction = Annotated[float, Meta(gt=0.0, lt=1.0)]
 
 
 class SourceBlock(_Block, kw_only=True):
-    """Where the data come from, in free text."""
+    """Where the data come from, in free text, and the day on which they were taken (2026-05-01)."""
 
     citation: str | None = None
+    date: datetime.date | None = None
     doi: str | None = None
     licence: str | None = None
     note: str | None = None
@@ -77,6 +79,20 @@ class TolerancesBlock(_Block, kw_only=True):
     striker_mass_rel: NonNegative | None = None
     speed_common_rel: NonNegative | None = None
     gain_common_rel: NonNegative | None = None
+
+
+class ApparatusBlock(_Block, kw_only=True):
+    """What the laboratory could do in a further run; what is left out here cannot be changed there.
+
+    `speed_m_s` are the slowest and the fastest striker; the others list what is to be had: masses of strikers
+    of the same kind, preloads, beads that may hold a gauge, orientations.
+    """
+
+    speed_m_s: tuple[Positive, Positive] | None = None
+    striker_mass_g: list[Positive] = field(default_factory=list)
+    static_force_N: list[NonNegative] = field(default_factory=list)
+    gauge_beads: list[Annotated[int, Meta(ge=1)]] = field(default_factory=list)
+    orientation: list[Literal["vertical", "horizontal"]] = field(default_factory=list)
 
 
 class RecordStrikerBlock(StrikerBlock, kw_only=True):
@@ -222,6 +238,7 @@ class RecordBlock(_Block, kw_only=True):
     tolerances: TolerancesBlock = TolerancesBlock()
     model_floor_rel: NonNegative | None = None
     priors: dict[str, NonNegative] = field(default_factory=dict)
+    apparatus: ApparatusBlock | None = None
     runs: Annotated[list[RunBlock], Meta(min_length=1)]
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from sonicvacuum.files import InputError, replacing
 from sonicvacuum.records.blocks import RunBlock, schema
+from sonicvacuum.records.described import chain_of
 from sonicvacuum.records.reader import FILE, read
 from sonicvacuum.records.record import Record, Run
 from sonicvacuum.records.review import content, lines, review
@@ -49,12 +50,10 @@ def check(folders, as_json: bool = False) -> str:
 
 def summary(record: Record) -> str:
     """What is in a record, and what in it looks suspicious."""
-    kind = "one ball on a wall" if record.beads == 0 else f"{record.beads} beads"
     gauges = ", ".join(f"{g.id} ({'wall' if g.bead is None else f'bead {g.bead}'})" for g in record.gauges)
     said = [
         f"{record.name}: {record.title}",
-        f"  {kind} of {_beads(record.specimen)}, {record.block.chain.orientation}; "
-        f"gauges: {gauges or 'none'}",
+        f"  {chain_of(record)}; gauges: {gauges or 'none'}",
         *(
             line
             for run, block in zip(record.runs, record.block.runs, strict=True)
@@ -62,18 +61,6 @@ def summary(record: Record) -> str:
         ),
     ]
     return "\n".join([*said, *lines(review(record))])
-
-
-def _beads(specimen):
-    """Material, diameter and mass of the beads, of each kind where they differ."""
-    bodies = specimen.bodies
-    pattern, single = [_bead(b) for b in bodies.pattern], bodies.exceptions.items()
-    return "; ".join([" / ".join(pattern), *(f"bead {k} {_bead(b)}" for k, b in sorted(single))])
-
-
-def _bead(bead):
-    faces = ", flat faces" if bead.flat else ""
-    return f"{bead.surface.name}, {bead.diameter_m * 1e3:g} mm, {bead.mass_kg * 1e3:g} g{faces}"
 
 
 def _run(record: Record, run: Run, block: RunBlock):

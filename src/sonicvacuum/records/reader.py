@@ -1,5 +1,6 @@
 """Reading a record: closed schema, physical ranges, traces; the first fault ends it with one message."""
 
+import hashlib
 import re
 from pathlib import Path
 
@@ -48,11 +49,20 @@ def read(path) -> Record:
     block = parse(read_yaml(file), file)
     ids = [s.id for s in block.sensors]
     traces = {r.id: signals.read(folder / r.signals, ids) for r in block.runs if r.signals}
-    record = Record(block, traces, folder.resolve().name)
+    files = dict.fromkeys([file, *(folder / r.signals for r in block.runs if r.signals)])
+    record = Record(block, traces, folder.resolve().name, _digest(files))
     for run in block.runs:
         if run.signals:
             check_scales(record, run.id, folder / run.signals)
     return record
+
+
+def _digest(files):
+    """SHA-256 of some files one after the other, as `cat … | sha256sum` gives it."""
+    found = hashlib.sha256()
+    for file in files:
+        found.update(file.read_bytes())
+    return found.hexdigest()
 
 
 def parse(content: dict, path=FILE) -> RecordBlock:

@@ -88,11 +88,14 @@ class Record:
         block: `record.yaml`.
         signals: run id → traces, for the runs that have any.
         name: of its folder, "" where it was not read from one.
+        digest: SHA-256 of the files read, one after the other (record.yaml, then the traces in the order of
+            the runs), "" where it was not read from any.
     """
 
     block: RecordBlock
     signals: Mapping[str, Signals] = field(default_factory=dict)
     name: str = ""
+    digest: str = ""
 
     @property
     def title(self) -> str:

@@ -42,6 +42,7 @@ def validate(block: RecordBlock) -> None:
     _check_materials(block)
     _check_sensors(block)
     _check_shared(block)
+    _check_apparatus(block)
     _check_unique("runs", [r.id for r in block.runs])
     for k, run in enumerate(block.runs):
         _check_run(block, specimen, run, f"runs[{k}]")
@@ -108,6 +109,27 @@ def _check_shared(block):
         ranges.TOLERANCE.check("model_floor_rel", block.model_floor_rel)
     for name, odds in block.priors.items():
         ranges.ODDS.check(f"priors.{name}", odds)
+
+
+def _check_apparatus(block):
+    """What the laboratory says it could do is something that this chain can have done to it."""
+    given = block.apparatus
+    if given is None:
+        return
+    for speed in given.speed_m_s or ():
+        ranges.SPEED.check("apparatus.speed_m_s", speed)
+    if given.speed_m_s and given.speed_m_s[0] > given.speed_m_s[1]:
+        slow, fast = given.speed_m_s
+        raise LaboratoryError("apparatus.speed_m_s", f"is [{slow:g}, {fast:g}]; give the slowest first")
+    for mass in given.striker_mass_g:
+        ranges.MASS.check("apparatus.striker_mass_g", mass)
+    for force in given.static_force_N:
+        ranges.STATIC_FORCE.check("apparatus.static_force_N", force)
+    for bead in given.gauge_beads:
+        if bead > block.chain.beads:
+            raise LaboratoryError(
+                "apparatus.gauge_beads", f"{bead}: no such bead; the chain has {block.chain.beads} beads"
+            )
 
 
 def _check_unique(key, ids: Iterable[str]):

@@ -16,6 +16,8 @@ from sonicvacuum.scope.options import Options
 GAIN_REL_SIGMA = 0.05
 # Written for `unknown` while the format knows numbers only: the largest that it takes.
 _LARGEST = {"gain_rel_sigma": 2.0, "trigger_sigma_us": 1e4}
+# Blocks of the template that go into the record as they are.
+_KEPT = ("chain", "materials", "tolerances", "priors", "apparatus")
 _SIGMA_KEY = {"m/s": "sigma_m_s", "m/s^2": "sigma_m_s2"}
 _KIND = {"m/s": "velocity", "m/s^2": "acceleration"}
 _CHAIN = """\
@@ -55,8 +57,9 @@ def unknown(kind: type, key: str) -> str | float:
 
 def content(runs: list[CleanRun], given: dict, options: Options, title: str | None) -> dict:
     """The mapping of record.yaml; what neither files nor template tell is left out."""
-    kept = {k: given[k] for k in ("source", "chain", "materials", "tolerances", "priors") if k in given}
-    result = {"format": 1, "title": title or f"Imported: {', '.join(r.id for r in runs)}"[:100]} | kept
+    kept = {k: given[k] for k in ("source", *_KEPT) if k in given}
+    named = title or given.get("title") or f"Imported: {', '.join(r.id for r in runs)}"[:100]
+    result = {"format": 1, "title": named} | kept
     result["sensors"] = [_sensor(g, runs, given, options) for g in _gauges(runs)]
     result["trigger_sigma_us"] = _trigger(runs)
     result["runs"] = [_run(r, given, options) for r in runs]
@@ -121,7 +124,7 @@ def _listed(given, key):
 def text(record: dict, runs: list[CleanRun], options: Options) -> str:
     """record.yaml with comments on what was done, assumed, and is to be filled in."""
     head = {k: record[k] for k in ("format", "title", "source") if k in record}
-    chain = {k: record[k] for k in ("chain", "materials", "tolerances", "priors") if k in record}
+    chain = {k: record[k] for k in _KEPT if k in record}
     parts = [
         "# Imported from a recorder's files; what was done to each run stands at the end.\n",
         _yaml(head),
