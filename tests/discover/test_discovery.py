@@ -92,7 +92,8 @@ def test_files_are_written_and_read_back(verdict, tmp_path):
     assert msgspec.json.decode(text, type=Verdict) == verdict.verdict
     names = {p.name for p in (tmp_path / "out").iterdir()}
     assert names == {
-        "verdict.json", "model.json", "where.csv", "candidates.csv", "gap.csv", "limits.csv", "traces.csv"
+        "verdict.json", "model.json", "where.csv", "candidates.csv", "gap.csv", "limits.csv", "traces.csv",
+        "given.json",
     }  # fmt: skip
     model = read_model(tmp_path / "out/model.json")
     assert list(model.effects) == [n for n in verdict.verdict.named if n != "unknown"]

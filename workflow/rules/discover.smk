@@ -8,6 +8,7 @@ DISCOVERY = "results/discover/{record}"
 FOUND = [
     "verdict.json",
     "model.json",
+    "given.json",
     *(f"{table}.csv" for table in ["where", "candidates", "gap", "limits", "traces"]),
 ]
 

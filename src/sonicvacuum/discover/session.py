@@ -9,7 +9,7 @@ import numpy as np
 from msgspec import UNSET
 
 from sonicvacuum.blas import one_thread
-from sonicvacuum.discover import law, next_experiment, verdict
+from sonicvacuum.discover import given, law, next_experiment, verdict
 from sonicvacuum.discover.faults import competition
 from sonicvacuum.discover.fit import goodness, heldout
 from sonicvacuum.discover.fit.refit import Fit
@@ -28,9 +28,19 @@ from sonicvacuum.records import Record
 
 @dataclass(frozen=True)
 class Result:
-    """What `discover` found in one record, with all that tables and figures need."""
+    """What `discover` found in one record, with all that tables and figures need.
+
+    Attributes:
+        record: the record put right; of several taken together the first.
+        given: the records as they were given.
+        found: the search.
+        places, after: disagreements of the nominal and of the extended model.
+        limits: of all effects that were not named.
+        verdict: what is written.
+    """
 
     record: Record
+    given: tuple[Record, ...]
     found: Investigation
     places: list[locate.Place]
     after: list[locate.Place]
@@ -113,7 +123,7 @@ def discover(*records: Record, threads: int | None = None, catalogue: Catalogue 
         warnings=_doubts(found, records[0]) or UNSET,
         nuisances=verdict.nuisances(counted.forward, counted.final),
     )
-    return Result(outcome.record, found, places, after, limits, result, free)
+    return Result(outcome.record, records, found, places, after, limits, result, free)
 
 
 def _doubts(found: Investigation, record: Record) -> list[str]:
@@ -202,6 +212,8 @@ def write(result: Result, folder: Path) -> None:
     verdict.write_table(folder / "traces.csv", *trace_rows(result))
     if result.law:
         verdict.write_table(folder / "law.csv", *law.rows(surface(result.law)))
+    notes = result.found.forward.experiment.notes
+    verdict.write_json(given.inputs(result.given, notes), folder / given.FILE)
     verdict.write_json(verdict.model(result.found, result.law), folder / "model.json")
     verdict.write_json(result.verdict, folder / "verdict.json")
 
