@@ -10,7 +10,7 @@ from msgspec.structs import replace
 from sonicvacuum.discover.verdict import write_json
 from sonicvacuum.figures import disagreement, discovery, posterior, style
 from sonicvacuum.files import InputError
-from sonicvacuum.report import record, words
+from sonicvacuum.report import bench, record, words
 from sonicvacuum.report.record import write_page
 
 
@@ -25,8 +25,9 @@ class Page(HTMLParser):
     def handle_starttag(self, tag, attributes):
         given = dict(attributes)
         self.ids += [given["id"]] if "id" in given else []
-        if tag in ("script", "img", "link", "iframe"):
-            self.fetched.append(given.get("src", given.get("href")))
+        source = given.get("src") or (given.get("href") if tag == "link" else None)
+        if source and not source.startswith("data:"):
+            self.fetched.append(source)
 
     def handle_data(self, data):
         self.words.append(data)
@@ -52,7 +53,7 @@ SENTENCES = {
         "Nothing is named: the nominal model explains these data",
         "That none of the effects that these data could show is missing is probable (0.91)",
         "Nowhere: of 8 comparisons",
-        "The nearest single effects: tsuji (0.08)",
+        "The nearest single effects: damping with constant restitution (0.08)",
         "No proposal: no rivals are left",
     ),
     "single": (
@@ -60,22 +61,23 @@ SENTENCES = {
         "very probable (0.97)",
         "In 1 of 8 comparisons (run, gauge and feature of the trace)",
         "run fast, gauge g1: the data show a lower peak than predicted, by 12 standard errors",
-        "1.980 ± 0.060",
+        "1.980 ± 0.060 µs",
         "1.881 to 2.079",
         "falls from 80.7 to 1.05 (99.9 % of the gap closed)",
         "No rival comes near",
-        "with the striker at 1.25 m/s would tell kuwabara-kono from tsuji best: an expected Δχ² of 25",
-        "Not testable with these data: gravity",
+        "with the striker at 1.25 m/s would tell viscoelastic Hertz contact from damping with constant "
+        "restitution best: they would differ by about 5 standard errors",
+        "These data cannot test: gravity along the chain",
     ),
     "class": (
-        "one of kuwabara-kono or tsuji, which these data cannot tell apart",
+        "one of viscoelastic Hertz contact or damping with constant restitution, which these data cannot",
         "together practically certain (0.99)",
-        "These data cannot tell kuwabara-kono from tsuji.",
+        "These data cannot tell viscoelastic Hertz contact from damping with constant restitution.",
     ),
     "pair": (
         "Two effects are missing: Mass defect (mass-defect)",
         "sits at bead",
-        "These data cannot tell kuwabara-kono from tsuji.",
+        "These data cannot tell viscoelastic Hertz contact from damping with constant restitution.",
         "mass-defect + kuwabara-kono",
     ),
     "unknown": (
@@ -168,9 +170,9 @@ def test_a_gap_that_is_not_closed_is_not_called_closed():
 
 def test_a_modulus_that_had_to_move_far_is_told_first():
     far = replace(model(KINDS["none"]), modulus_ratio=3.07)
-    assert "has to be 3.07 times as large as recorded" in words.moved_modulus(KINDS["none"], far)
-    assert words.moved_modulus(KINDS["none"], replace(far, modulus_ratio=1.1)) == ""
-    assert words.moved_modulus(KINDS["single"], far) == ""
+    assert "has to be 3.07 times as large as recorded" in bench.moved_modulus(KINDS["none"], far)
+    assert bench.moved_modulus(KINDS["none"], replace(far, modulus_ratio=1.1)) == ""
+    assert bench.moved_modulus(KINDS["single"], far) == ""
 
 
 def test_data_in_which_nothing_would_show_are_not_called_free_of_effects():
@@ -187,7 +189,7 @@ def test_data_in_which_nothing_would_show_are_not_called_free_of_effects():
 def test_none_that_is_less_probable_than_an_effect_says_so():
     odds = {"none": 0.3, "tsuji": 0.6, "unknown": 0.1}
     text = words.headline(verdict(named=[], probabilities=odds, parameters={}))
-    assert "tsuji (0.60 against 0.30 for none)" in text
+    assert "damping with constant restitution (0.60 against 0.30 for none)" in text
 
 
 def beyond_the_page(figure):
@@ -256,10 +258,10 @@ def test_what_leaves_the_range_of_the_physics_stands_on_the_page(tmp_path):
 
 def test_a_name_of_any_kind_leaves_ids_whole(tmp_path):
     folder = write(tmp_path / "made", "single")
-    (folder / "gap.svg").write_text('<svg width="100pt"><g id="a"/><use href="#a"/></svg>')
+    (folder / "parameters.svg").write_text('<svg width="100pt"><g id="a"/><use href="#a"/></svg>')
     write_json(verdict(record='"><script>x</script> µ'), folder / "verdict.json")
     page = write_page(folder).read_text(encoding="utf-8")
-    assert "<script>" not in page
-    (id,) = re.findall(r'<g id="([^"]*-gap[^"]*)"', page)
+    assert "<script>x" not in page
+    (id,) = re.findall(r'<g id="([^"]*-parameters[^"]*)"', page)
     assert re.fullmatch(r"[A-Za-z0-9_.-]+", id)
     assert f'href="#{id}"' in page

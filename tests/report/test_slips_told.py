@@ -7,7 +7,7 @@ from made_verdicts import KINDS, verdict, write
 from sonicvacuum.cli.discover import _sentence
 from sonicvacuum.discover.faults.table import FAULTS
 from sonicvacuum.discover.verdict import PUT_RIGHT, Fault, Verdict, write_json
-from sonicvacuum.report import record, words
+from sonicvacuum.report import bench, record
 
 SWAPPED = Fault(fault="gauges-swapped", run=None, sensor=["g9", "g5"], probability=0.998, value=None)
 
@@ -15,11 +15,11 @@ SWAPPED = Fault(fault="gauges-swapped", run=None, sensor=["g9", "g5"], probabili
 @pytest.mark.parametrize("fault", FAULTS)
 def test_every_slip_has_words_for_the_bench(fault):
     one = Fault(fault=fault, run="v1", sensor="g4", probability=0.9, value=1.03)
-    (line,) = words.slips(verdict(faults=[one]))
+    (line,) = bench.slips(verdict(faults=[one]))
     assert FAULTS[fault].check in line
     assert "{" not in line
     everywhere = Fault(fault=fault, run=None, sensor=None, probability=0.9, value=None)
-    assert "None" not in words.slips(verdict(faults=[everywhere]))[0]
+    assert "None" not in bench.slips(verdict(faults=[everywhere]))[0]
 
 
 def test_the_sentence_names_slips_first():

@@ -43,6 +43,7 @@ def page_files() -> tuple[str, ...]:
 
 def slips_of(verdict) -> str:
     """What a verdict says to check at the bench first, in one line; empty where there is nothing."""
-    from sonicvacuum.report.words import share, slip
+    from sonicvacuum.report.bench import slip
+    from sonicvacuum.report.words import share
 
     return "; ".join(f"{slip(f)} (probability {share(f.probability)})" for f in verdict.faults)

@@ -39,7 +39,7 @@ def _echo_slips(folders):
     """What the traces alone betray, as `discover` would say it."""
     from sonicvacuum.discover.faults.examine import examine
     from sonicvacuum.records import read
-    from sonicvacuum.report.words import slip
+    from sonicvacuum.report.bench import slip
 
     for folder in folders:
         for found in examine(read(folder))[1]:

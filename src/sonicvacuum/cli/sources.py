@@ -18,7 +18,7 @@ from sonicvacuum.cli import cli
 
 PACKAGES = ("sonicvacuum", "sonicvacuum_blind", "sonicvacuum_paper")
 # Files beside modules that are no modules: templates, styles, tables, settings.
-DATA = (".j2", ".css", ".csv", ".json", ".yaml")
+DATA = (".j2", ".css", ".js", ".csv", ".json", ".yaml")
 
 
 def module_of(verb: str) -> str:

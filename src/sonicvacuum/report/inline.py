@@ -15,7 +15,8 @@ _COLUMN = 300.0
 
 
 def environment(*packages: str) -> jinja2.Environment:
-    """The templates of this package and of others; `number` shows a table's number legibly."""
+    """The templates of this package and of others; `number` shows a table's number legibly, `formula`
+    an equation."""
     found = jinja2.Environment(
         loader=jinja2.ChoiceLoader([jinja2.PackageLoader(p, ".") for p in ("sonicvacuum.report", *packages)]),
         autoescape=True,
@@ -24,6 +25,7 @@ def environment(*packages: str) -> jinja2.Environment:
         lstrip_blocks=True,
     )
     found.filters["number"] = tables.number
+    found.filters["formula"] = formula
     return found
 
 
@@ -56,6 +58,20 @@ def is_narrow(path) -> bool:
     """Whether a drawing is one journal column wide."""
     found = re.search(r'<svg[^>]*\swidth="([\d.]+)pt"', Path(path).read_text(encoding="utf-8"))
     return bool(found) and float(found[1]) < _COLUMN
+
+
+# What effects write in plain letters in their equations.
+_GREEK = {"delta": "δ", "tau": "τ", "alpha": "α", "gamma": "γ", "epsilon": "ε"}
+
+
+def formula(text: str) -> Markup:
+    """An equation as effects write it, with powers raised, indices lowered and Greek letters."""
+    plain = str(escape(text))
+    plain = re.sub(
+        "|".join(rf"(?<![A-Za-z]){name}(?![a-z])" for name in _GREEK), lambda m: _GREEK[m[0]], plain
+    )
+    plain = re.sub(r"\^\{([^}]*)\}|\^(\w+)", lambda m: f"<sup>{m[1] or m[2]}</sup>", plain)
+    return Markup(re.sub(r"_\{([^}]*)\}|(?<=\b\w)_(\w+)", lambda m: f"<sub>{m[1] or m[2]}</sub>", plain))
 
 
 def with_subscripts(text: str) -> Markup:

@@ -4,17 +4,17 @@ Made from the folder that `sonicvacuum discover` wrote; the same section stands 
 """
 
 import csv
-import math
 from pathlib import Path
 
 import msgspec
 
+from sonicvacuum.discover import given
 from sonicvacuum.discover.compare import check_source
 from sonicvacuum.discover.verdict import Model, Verdict
 from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.files import InputError, read_text, reading, replacing
-from sonicvacuum.report import inline, words
-from sonicvacuum.report.tables import number
+from sonicvacuum.report import bench, inline, origin, plots, rows, words
+from sonicvacuum.report.sketch import sketch
 
 # Drawing → what it shows.
 PICTURES = {
@@ -32,6 +32,8 @@ PICTURES = {
 }
 # What a page adds to the folder of discover.
 PAGE = ("index.html", "parameters.csv", *(f"{name}.{kind}" for name in PICTURES for kind in ("svg", "png")))
+# Those that stand on the page as drawn; the others' numbers do.
+_SHOWN = ("parameters", "traces")
 _PAIRS = 6
 # What the page needs of each table.
 _COLUMNS = {
@@ -44,9 +46,14 @@ _COLUMNS = {
 
 def write_page(folder, catalogue: Catalogue = CATALOGUE) -> Path:
     """Write `index.html` into a folder of discover; its path."""
-    found = section(folder, catalogue)
-    text = inline.environment().get_template("discovery.html.j2").render(one=found)
-    path = Path(folder) / "index.html"
+    folder = Path(folder)
+    found, traces = section(folder, catalogue), plots.plots(folder / "traces.csv")
+    text = (
+        inline.environment()
+        .get_template("discovery.html.j2")
+        .render(one=found, traces=traces, plot_style=plots.style(), plot_script=plots.script(traces))
+    )
+    path = folder / "index.html"
     with replacing(path) as stream:
         stream.write(text)
     return path
@@ -64,29 +71,49 @@ def section(folder, catalogue: Catalogue = CATALOGUE) -> dict:
     for name in verdict.parameters:
         check_source(folder / "verdict.json", name, verdict.sources, catalogue)
     tables = {name: _rows(folder / f"{name}.csv") for name in ("where", "candidates", "gap", "limits")}
+    inputs, records = given.read(folder) or (None, [])
     with reading(folder, "run sonicvacuum discover again"):
-        return _told(folder, verdict, model, tables, catalogue)
+        return _told(folder, verdict, model, tables, catalogue) | _origin(inputs, records, verdict, model)
+
+
+def _origin(inputs, records, verdict, model):
+    """What a verdict is on; little is known of one that was written before this was kept."""
+    if not records:
+        return {"title": verdict.record, "sketch": "", "origin": [], "strained": [], "notes": []}
+    return {
+        "title": records[0].title,
+        "sketch": sketch(records[0]),
+        "origin": origin.rows(inputs, records),
+        "strained": bench.strained(verdict, model, records[0]),
+        "notes": inputs.notes,
+    }
 
 
 def _told(folder, verdict, model, tables, catalogue):
     name = verdict.record
     return {
         "name": name,
-        "headline": words.headline(verdict, catalogue) + words.moved_modulus(verdict, model),
-        "slips": words.slips(verdict),
-        "corrected": words.corrected(verdict),
+        "headline": words.headline(verdict, catalogue) + bench.moved_modulus(verdict, model),
+        "slips": bench.slips(verdict),
+        "corrected": bench.corrected(verdict),
         "where": words.where(verdict, tables["where"]),
-        "parameters": _parameters(verdict, catalogue),
-        "nuisances": words.nuisances(model),
-        "alternatives": words.alternatives(verdict),
+        "grid": rows.grid(tables["where"]),
+        "scalars": rows.scalars(tables["where"]),
+        "effects": rows.effects(verdict, catalogue),
+        "odds": rows.odds(verdict, catalogue),
+        "nuisances": bench.nuisances(model),
+        "alternatives": words.alternatives(verdict, catalogue),
         "pairs": [r for r in tables["candidates"] if "+" in r["effects"]][:_PAIRS],
         "singles": [r for r in tables["candidates"] if "+" not in r["effects"]],
         "gap": " ".join(filter(None, (words.gap(verdict), words.goodness(verdict)))),
+        "rounds": rows.rounds(tables["gap"], catalogue),
         "runs": [r for r in tables["gap"] if not r["run"].startswith("round ")],
         "added": bool(words.effects_of(verdict)),
-        "limits": [_limit(r, catalogue) for r in tables["limits"] if r["testable"] == "1"],
-        "not_testable": [n for n in verdict.not_testable if n not in verdict.named],
-        "experiment": words.experiment(verdict.next_experiment, tables["where"]),
+        "limits": [rows.limit(r, catalogue) for r in tables["limits"] if r["testable"] == "1"],
+        "not_testable": [words.plain(n, catalogue) for n in verdict.not_testable if n not in verdict.named],
+        "experiment": ""
+        if words.settled(verdict)
+        else words.experiment(verdict.next_experiment, tables["where"], catalogue),
         "decided": words.decided(verdict),
         "simulations": verdict.simulations,
         "warnings": verdict.warnings or [],
@@ -118,65 +145,9 @@ def _rows(path):
 def _pictures(folder, name):
     """Drawing → SVG, caption and whether it is narrow; those that the folder holds."""
     found = {}
-    for picture, caption in PICTURES.items():
-        path = folder / f"{picture}.svg"
+    for picture in _SHOWN:
+        path, caption = folder / f"{picture}.svg", PICTURES[picture]
         if path.exists():
             svg = inline.svg(path, f"{name}-{picture}", caption)
             found[picture] = {"svg": svg, "caption": caption, "narrow": inline.is_narrow(path)}
     return found
-
-
-def _parameters(verdict, catalogue):
-    """Rows of the table: what, value with its error, 90 % interval, range searched, off value."""
-    rows = []
-    for name, given in verdict.parameters.items():
-        one = catalogue.effect(name)
-        for key, found in given.items():
-            if key == one.places:
-                at = {"parameter": f"sits at {key}", "value": f"{found.value:g}"}
-                rows.append({"effect": name, **at, "interval": "", "searched": "", "off": ""})
-                continue
-            p = one.parameter(key)
-            rows.append(
-                {
-                    "effect": name,
-                    "parameter": f"{p.help}, {key}",
-                    "value": _with_error(found.value, found.sigma),
-                    "interval": _interval(found.value, found.sigma),
-                    "searched": f"{p.low:g} to {p.high:g}",
-                    "off": _off(p),
-                }
-            )
-    return rows
-
-
-def _with_error(value, sigma):
-    """Value ± standard error with two digits of the error."""
-    if not sigma > 0.0:
-        return f"{value:.4g} (error not determined)"
-    digits = max(0, 1 - math.floor(math.log10(sigma)))
-    return f"{value:.{digits}f} ± {sigma:.{digits}f}" if digits < 7 else f"{value:.4g} ± {sigma:.2g}"
-
-
-def _interval(value, sigma):
-    return f"{value - 1.645 * sigma:.4g} to {value + 1.645 * sigma:.4g}" if sigma > 0.0 else ""
-
-
-def _off(parameter):
-    if parameter.off is None:
-        return "shapes only"
-    if callable(parameter.off):
-        return "as recorded"
-    return "∞" if math.isinf(parameter.off) else f"{parameter.off:g}"
-
-
-def _limit(row, catalogue):
-    known = row["effect"] in catalogue
-    p = catalogue.effect(row["effect"]).parameter(row["parameter"]) if known else None
-    return {
-        "effect": row["effect"],
-        "parameter": row["parameter"],
-        "off": _off(p) if p else "",
-        "limit": number(row["limit_95"], 3),
-        "weakest": row["place"],
-    }

@@ -6,10 +6,9 @@ Every sentence is made from `verdict.json`, `model.json` and the tables beside t
 import math
 from collections import Counter
 
-from sonicvacuum.discover.faults.table import FAULTS
 from sonicvacuum.discover.judge.explanations import key
 from sonicvacuum.discover.judge.locate import DISCOVERY_RATE
-from sonicvacuum.discover.verdict import PUT_RIGHT, Fault, Gap, Model, Next, Verdict
+from sonicvacuum.discover.verdict import Gap, Next, Verdict
 from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.report.tables import number
 
@@ -21,8 +20,6 @@ SURE = (
     (0.5, "more probable than not"),
     (0.0, "less probable than all its rivals together"),
 )
-# A modulus that moved by more than this, in its logarithm, is told first.
-FAR = 0.2
 # Feature → what a measured one is that lies above, and below, the prediction.
 SIDES = {
     "precursor": ("more force before the pulse", "less force before the pulse"),
@@ -60,30 +57,18 @@ def plural(count: int, word: str) -> str:
     return f"{count} {word}{'' if count == 1 else 's'}"
 
 
-def slips(verdict: Verdict) -> list[str]:
-    """What to check at the bench first, one line for each slip of the laboratory; most probable first."""
-    return [_slip(one) for one in verdict.faults]
+def plain(explanation: str, catalogue: Catalogue = CATALOGUE) -> str:
+    """An explanation as people say it: `tsuji + unknown` is `damping with constant restitution and something
+    unknown`.
+    """
+    said = {"none": "nothing missing", "unknown": "something unknown"}
+    names = [n.strip() for n in explanation.split("+")]
+    return joined([said.get(n) or _title(n, catalogue) for n in names])
 
 
-def _slip(one) -> str:
-    text = f"{slip(one)[0].upper()}{slip(one)[1:]}: {FAULTS[one.fault].check}"
-    return f"{text}. That it is so is {in_words(one.probability)}."
-
-
-def corrected(verdict: Verdict) -> str:
-    """That what follows is of the record put right, "" where nothing was."""
-    said = next((r for r in verdict.reasons if r.startswith(PUT_RIGHT)), "")
-    return f"{said[0].upper()}{said[1:]}." if said else ""
-
-
-def slip(one: Fault) -> str:
-    """One slip in a few words."""
-    header = FAULTS[one.fault]
-    sensors = [one.sensor] if isinstance(one.sensor, str) else (one.sensor or ["a gauge"])
-    value = "some" if one.value is None else f"{one.value:.4g}"
-    text = header.says.format(sensor=joined(list(sensors)), run=one.run or "all runs", value=value)
-    place = one.run and "{run}" not in header.says
-    return f"{text} in run {one.run}" if place else text
+def _title(name, catalogue):
+    title = catalogue.effect(name).title if name in catalogue else name
+    return f"{title[0].lower()}{title[1:]}"
 
 
 def effects_of(verdict: Verdict) -> list[str]:
@@ -96,7 +81,7 @@ def headline(verdict: Verdict, catalogue: Catalogue = CATALOGUE) -> str:
     found, odds = effects_of(verdict), verdict.probabilities
     unknown = "unknown" in verdict.named
     if not found and not unknown:
-        return _nothing(verdict)
+        return _nothing(verdict, catalogue)
     if not found:
         return (
             "Something is missing, and it is unknown: a real misfit is left that no effect of the catalogue, "
@@ -105,14 +90,16 @@ def headline(verdict: Verdict, catalogue: Catalogue = CATALOGUE) -> str:
         )
     told = [f"{e.title} ({e.id}): {e.missing}" for e in map(catalogue.effect, found)]
     if len(found) == 1 and verdict.confusable:
-        text = _one_of(verdict, told[0])
+        text = _one_of(verdict, told[0], catalogue)
     elif len(found) == 1:
         text = f"What is missing: {told[0]}. That is {in_words(verdict.probability or 0.0)}."
     else:
         text = f"{_COUNTS.get(len(found), str(len(found)))} effects are missing: {'; '.join(told)}."
         sure = verdict.probability
         text += (
-            f" No single effect does: {_singles(odds)}." if sure is None else f" That is {in_words(sure)}."
+            f" No single effect does: {_singles(odds, catalogue)}."
+            if sure is None
+            else f" That is {in_words(sure)}."
         )
     return text + (" Even so, a misfit is left that nothing of the catalogue explains." if unknown else "")
 
@@ -120,18 +107,18 @@ def headline(verdict: Verdict, catalogue: Catalogue = CATALOGUE) -> str:
 _COUNTS = {2: "Two", 3: "Three", 4: "Four", 5: "Five", 6: "Six"}
 
 
-def _one_of(verdict, told):
+def _one_of(verdict, told, catalogue):
     """A single effect with others that these data cannot tell from it."""
     members, odds = verdict.confusable[0], verdict.probabilities
     beside = ["unknown"] if "unknown" in verdict.named else []
     each = [odds.get(key([name, *beside]), 0.0) for name in members]
     return (
-        f"What is missing is one of {joined(members, 'or')}, which these data cannot tell apart: together "
-        f"{in_words(min(1.0, sum(each)))}. Most probable among them, {share(each[0])}: {told}."
+        f"What is missing is one of {_names(members, catalogue)}, which these data cannot tell apart: "
+        f"together {in_words(min(1.0, sum(each)))}. Most probable among them, {share(each[0])}: {told}."
     )
 
 
-def _nothing(verdict):
+def _nothing(verdict, catalogue):
     odds = verdict.probabilities
     best = max(odds, key=odds.get)
     text = "Nothing is named: the nominal model explains these data as far as they go."
@@ -146,14 +133,19 @@ def _nothing(verdict):
         chance = f"has the probability {share(odds['none'])}"
         return f"{text} {what} {chance}, more than any single rival, less than all together."
     against = f"{share(odds[best])} against {share(odds.get('none', 0.0))} for none"
-    return f"Nothing is named: the likeliest explanation, {best} ({against}), did not pass all tests."
+    likeliest = plain(best, catalogue)
+    return f"Nothing is named: the likeliest explanation, {likeliest} ({against}), did not pass all tests."
 
 
-def _singles(odds):
+def _singles(odds, catalogue):
     best = max(odds, key=odds.get)
     if best == "unknown":
         return f"that something else is needed is {in_words(odds[best])}"
-    return f"the likeliest is {best}, {share(odds[best])}"
+    return f"the likeliest is {plain(best, catalogue)}, {share(odds[best])}"
+
+
+def _names(ids, catalogue, last="or"):
+    return joined([plain(name, catalogue) for name in ids], last)
 
 
 def where(verdict: Verdict, cells: list[dict]) -> str:
@@ -188,18 +180,22 @@ def _side(cell):
     return f"a {'larger' if above else 'smaller'} {cell.feature.replace('_', ' ')}"
 
 
-def alternatives(verdict: Verdict) -> str:
+def alternatives(verdict: Verdict, catalogue: Catalogue = CATALOGUE) -> str:
     """What else it could be."""
     found = effects_of(verdict)
     alike = [(members[0], members[1:]) for members in verdict.confusable]
-    parts = [f"These data cannot tell {own} from {joined(others, 'or')}." for own, others in alike]
+    parts = [
+        f"These data cannot tell {plain(own, catalogue)} from {_names(others, catalogue)}."
+        for own, others in alike
+    ]
     if not parts and found:
-        parts = [f"No rival comes near: {joined(found)} can be told from every other effect that was fitted."]
+        named = _names(found, catalogue, "and")
+        parts = [f"No rival comes near: {named} can be told from every other effect that was fitted."]
     if not found:
         rivals = [n for n in sorted(verdict.probabilities, key=verdict.probabilities.get, reverse=True)]
         rivals = [n for n in rivals if n not in ("none", "unknown") and " + " not in n]
         rivals = [n for n in rivals if verdict.probabilities[n] >= 0.01][:3]
-        named = [f"{n} ({share(verdict.probabilities[n])})" for n in rivals]
+        named = [f"{plain(n, catalogue)} ({share(verdict.probabilities[n])})" for n in rivals]
         parts = [f"The nearest single effects: {joined(named)}." if named else "No single effect comes near."]
     return " ".join(parts)
 
@@ -209,8 +205,8 @@ def gap(verdict: Verdict) -> str:
     fitted, held_out = verdict.gap.fitted, verdict.gap.held_out
     if not effects_of(verdict):
         text = (
-            f"The nominal model leaves a mean squared residual of {fitted.before:.3g} times the noise, with "
-            "the nuisances fitted; 1 is expected."
+            f"The nominal model leaves a mean squared misfit of {fitted.before:.3g} times the noise; 1 is "
+            "expected."
         )
         if not verdict.named:
             return f"{text} As nothing was added, nothing changes."
@@ -218,8 +214,8 @@ def gap(verdict: Verdict) -> str:
             return f"{text} Nothing was added that would lower it."
         return f"{text} The nearest model that was found, which is not named, leaves {fitted.after:.3g}."
     text = (
-        "With the nuisances fitted, the nominal model leaves a mean squared residual of "
-        f"{fitted.before:.4g} times the noise, the extended model {fitted.after:.4g}{_closed(fitted)}."
+        f"The nominal model leaves a mean squared misfit of {fitted.before:.4g} times the noise, the "
+        f"extended model {fitted.after:.4g}{_closed(fitted)}; 1 is expected."
     )
     if held_out is None:
         return f"{text} There is one run only, so that none could be held out."
@@ -245,7 +241,7 @@ def goodness(verdict: Verdict) -> str:
         return ""
     worst = max(fit.extended, key=lambda c: c.chi2)
     text = (
-        f"The largest mean squared residual of a trace is {worst.chi2:.3g} times the noise (run {worst.run}, "
+        f"The largest mean squared misfit of a trace is {worst.chi2:.3g} times the noise (run {worst.run}, "
         f"gauge {worst.sensor}), which noise alone would give with probability {number(str(worst.p), 2)}."
     )
     if fit.smooth_rel:
@@ -258,48 +254,23 @@ def goodness(verdict: Verdict) -> str:
     return text
 
 
-def nuisances(model: Model) -> str:
-    """How far what the record states with an error has moved."""
-
-    def farthest(values):
-        return max((abs(v - 1.0) for v in values), default=0.0)
-
-    parts = []
-    if abs(model.modulus_ratio - 1.0) >= 5e-4:
-        parts.append(f"modulus of the beads' material times {model.modulus_ratio:.4g}")
-    if farthest(model.speed_ratio.values()) >= 5e-5:
-        parts.append(f"striker speeds by up to {100.0 * farthest(model.speed_ratio.values()):.2g} %")
-    if farthest(model.gain.values()) >= 5e-5:
-        parts.append(f"gauge gains by up to {100.0 * farthest(model.gain.values()):.2g} %")
-    shift = max((abs(v) for v in model.trigger_us.values()), default=0.0)
-    if shift >= 5e-3:
-        parts.append(f"time zeros by up to {shift:.2g} µs")
-    if not parts:
-        return "What the record states with an error (speeds, time zeros, gains, modulus) stays as recorded."
-    return f"What the record states with an error has followed the data: {joined(parts)}."
+def settled(verdict: Verdict) -> bool:
+    """Whether nothing is left that a further run would have to decide."""
+    sure = (verdict.probability or 0.0) >= SURE[0][0]
+    return sure and not verdict.confusable and "unknown" not in verdict.named
 
 
-def moved_modulus(verdict: Verdict, model: Model) -> str:
-    """A word on a modulus that had to move far for the nominal model to explain the data; else empty."""
-    if verdict.named or abs(math.log(model.modulus_ratio)) < FAR:
-        return ""
-    return (
-        " For that, the modulus of the beads' material, which the record states with an error, has to be "
-        f"{model.modulus_ratio:.3g} times as large as recorded."
-    )
-
-
-def experiment(proposal: Next | None, cells: list[dict]) -> str:
+def experiment(proposal: Next | None, cells: list[dict], catalogue: Catalogue = CATALOGUE) -> str:
     """The experiment that would settle it."""
     if proposal is None:
         if not any(c["sensor"] for c in cells):
             return "No proposal: the gain of a further run is predicted for traces, and this record has none."
         return "No proposal: no rivals are left to separate."
     steps = joined([_change(key, value) for key, value in proposal.change.items()])
-    one, other = (name.replace("+", " with ") for name in proposal.separates[:2])
+    one, other = (plain(name, catalogue) for name in proposal.separates[:2])
     text = (
-        f"One more run {steps} would tell {one} from {other} best: an expected Δχ² of "
-        f"{proposal.delta_chi2:.3g}, about {math.sqrt(max(proposal.delta_chi2, 0.0)):.2g} standard errors."
+        f"One more run {steps} would tell {one} from {other} best: they would differ by about "
+        f"{math.sqrt(max(proposal.delta_chi2, 0.0)):.2g} standard errors."
     )
     return text + (" That would hardly decide." if proposal.delta_chi2 < 9.0 else "")
 

@@ -1,0 +1,120 @@
+"""What a page says of the bench: slips of the laboratory, and what had to move for model and data to agree.
+
+What a record states with an error (speeds, time zeros, gains, modulus) follows the data; where it has to
+leave its stated error to do so, that is worth a look at the bench before any effect is believed.
+"""
+
+import math
+from collections.abc import Iterator
+
+from sonicvacuum.discover.faults.table import FAULTS
+from sonicvacuum.discover.model.nuisances import MODULUS_REL_SIGMA
+from sonicvacuum.discover.verdict import PUT_RIGHT, Fault, Model, Verdict
+from sonicvacuum.records import Record
+from sonicvacuum.report.words import in_words, joined
+
+# A modulus that moved by more than this, in its logarithm, is told first.
+FAR = 0.2
+# What has moved by more of its stated standard errors than this has left them.
+STRAINED = 2.5
+
+
+def slips(verdict: Verdict) -> list[str]:
+    """What to check at the bench first, one line for each slip of the laboratory; most probable first."""
+    return [_slip(one) for one in verdict.faults]
+
+
+def _slip(one) -> str:
+    said = slip(one)
+    # The name of a gauge keeps its spelling.
+    said = f"Gauge {said}" if FAULTS[one.fault].says.startswith("{sensor}") else said[0].upper() + said[1:]
+    text = f"{said}: {FAULTS[one.fault].check}"
+    return f"{text}. That it is so is {in_words(one.probability)}."
+
+
+def corrected(verdict: Verdict) -> str:
+    """That what follows is of the record put right, "" where nothing was."""
+    said = next((r for r in verdict.reasons if r.startswith(PUT_RIGHT)), "")
+    return f"{said[0].upper()}{said[1:]}." if said else ""
+
+
+def slip(one: Fault) -> str:
+    """One slip in a few words."""
+    header = FAULTS[one.fault]
+    sensors = [one.sensor] if isinstance(one.sensor, str) else (one.sensor or ["a gauge"])
+    value = "some" if one.value is None else f"{one.value:.4g}"
+    text = header.says.format(sensor=joined(list(sensors)), run=one.run or "all runs", value=value)
+    place = one.run and "{run}" not in header.says
+    return f"{text} in run {one.run}" if place else text
+
+
+def nuisances(model: Model) -> str:
+    """How far what the record states with an error has moved."""
+
+    def farthest(values):
+        return max((abs(v - 1.0) for v in values), default=0.0)
+
+    parts = []
+    if abs(model.modulus_ratio - 1.0) >= 5e-4:
+        parts.append(f"modulus of the beads' material times {model.modulus_ratio:.4g}")
+    if farthest(model.speed_ratio.values()) >= 5e-5:
+        parts.append(f"striker speeds by up to {100.0 * farthest(model.speed_ratio.values()):.2g} %")
+    if farthest(model.gain.values()) >= 5e-5:
+        parts.append(f"gauge gains by up to {100.0 * farthest(model.gain.values()):.2g} %")
+    shift = max((abs(v) for v in model.trigger_us.values()), default=0.0)
+    if shift >= 5e-3:
+        parts.append(f"time zeros by up to {shift:.2g} µs")
+    if not parts:
+        return "What the record states with an error (speeds, time zeros, gains, modulus) stays as recorded."
+    return f"What the record states with an error has followed the data: {joined(parts)}."
+
+
+def moved_modulus(verdict: Verdict, model: Model) -> str:
+    """A word on a modulus that had to move far for the nominal model to explain the data; else empty."""
+    if verdict.named or abs(math.log(model.modulus_ratio)) < FAR:
+        return ""
+    return (
+        " For that, the modulus of the beads' material, which the record states with an error, has to be "
+        f"{model.modulus_ratio:.3g} times as large as recorded."
+    )
+
+
+def strained(verdict: Verdict, model: Model, record: Record) -> list[str]:
+    """What has to leave its stated error for the model to follow the data, one line each; largest first."""
+    found = sorted(_moves(verdict, model, record), reverse=True)
+    return [f"{said}, {score:.2g} times the error that the record states." for score, said in found]
+
+
+def _moves(verdict, model, record) -> Iterator[tuple[float, str]]:
+    """(shift over its stated error, sentence without its end)."""
+    for run in record.runs:
+        ratio, shift = model.speed_ratio.get(run.id, 1.0), model.trigger_us.get(run.id, 0.0)
+        said = f"Check the striker's speed in run {run.id}: model and data agree best at {ratio:.3f} of it"
+        yield from _far(math.log(ratio), run.striker.speed_rel_sigma, said)
+        said = f"Check the time zero of run {run.id}: the data ask for a shift of {shift:.3g} µs"
+        yield from _far(shift / 1e6, record.trigger_sigma_s, said)
+    for gauge in record.gauges:
+        ratio = model.gain.get(gauge.id, 1.0)
+        said = f"Check the calibration of gauge {gauge.id}: it reads {ratio:.3f} of what the model expects"
+        yield from _far(math.log(ratio), gauge.gain_rel_sigma, said)
+    name = record.specimen.first.surface.name
+    stated = record.modulus_rel_sigma(name)
+    said = f"Check the modulus of {name}: the data ask for {model.modulus_ratio:.3f} of it"
+    error = MODULUS_REL_SIGMA if stated is None else stated
+    yield from _far(math.log(model.modulus_ratio), error, said)
+    yield from _others(verdict)
+
+
+def _others(verdict):
+    """What else the record leaves open."""
+    for name, known in (verdict.nuisances or {}).items():
+        if known.prior:
+            away = known.value if name.startswith(("delay", "clock")) else math.log(known.value)
+            yield from _far(
+                away, known.prior, f"Check {name.replace('_', ' ')}: the data ask for {known.value:.4g}"
+            )
+
+
+def _far(away, error, said):
+    if error and math.isfinite(error) and abs(away) > STRAINED * error:
+        yield abs(away) / error, said

@@ -1,0 +1,171 @@
+"""The tables of a record's page, made from the verdict and the tables beside it: numbers with plain names."""
+
+import math
+
+from sonicvacuum.report.tables import number
+from sonicvacuum.report.words import SIDES, plain, share
+
+# Scores from this on are written into their cell; those beyond the second have the full colour.
+TOLD, FULL = 3.0, 10.0
+# Explanations that are shown: the first ones, and all above this probability.
+FEWEST, LEAST, MOST = 3, 0.005, 8
+_UNITS = {"us": "µs", "um": "µm", "1": "", "m/s2": "m/s²"}
+
+
+def unit_of(unit: str) -> str:
+    """A unit as people write it, with a space before it."""
+    shown = _UNITS.get(unit, unit)
+    return f" {shown}" if shown else ""
+
+
+def grid(cells: list[dict]) -> dict | None:
+    """Scores of the nominal model: a line for each run and gauge, a column for each feature; None without.
+
+    Each cell has its number as shown, its shade from 0 to 1, the side, and the sentence under the cursor.
+    """
+    cells = [c for c in cells if c["sensor"]]
+    if not cells:
+        return None
+    features = list(dict.fromkeys(c["feature"] for c in cells))
+    places: dict[tuple[str, str], dict[str, dict]] = {}
+    for c in cells:
+        places.setdefault((c["run"], c["sensor"]), {})[c["feature"]] = _cell(c)
+    lines = [
+        {"run": run, "sensor": sensor, "cells": [found.get(f) for f in features]}
+        for (run, sensor), found in places.items()
+    ]
+    return {"features": features, "lines": lines}
+
+
+def _cell(c):
+    z = float(c["z_before"])
+    sides = SIDES.get(c["feature"], (f"a larger {c['feature']}", f"a smaller {c['feature']}"))
+    said = f"run {c['run']}, gauge {c['sensor']}: {sides[z <= 0.0]} by {abs(z):.3g} standard errors"
+    return {
+        "shown": f"{z:+.0f}".replace("-", "−") if abs(z) >= TOLD else "",
+        "shade": f"{min(abs(z) / FULL, 1.0):.2f}",
+        "side": "above" if z > 0.0 else "below",
+        "said": said,
+    }
+
+
+def scalars(cells: list[dict]) -> list[dict]:
+    """What was measured without traces: distance from the nominal and from the extended model."""
+    return [
+        {
+            "run": c["run"],
+            "quantity": c["feature"].replace("_", " "),
+            "before": number(c["z_before"], 3),
+            "after": number(c.get("z_after") or "", 3),
+        }
+        for c in cells
+        if not c["sensor"]
+    ]
+
+
+def odds(verdict, catalogue) -> list[dict]:
+    """The most probable explanations, with plain names, ids and shares."""
+    best = sorted(verdict.probabilities.items(), key=lambda item: -item[1])[:MOST]
+    return [
+        {"name": plain(k, catalogue), "id": k, "share": share(p), "percent": f"{100.0 * p:.1f}"}
+        for place, (k, p) in enumerate(best)
+        if place < FEWEST or p >= LEAST
+    ]
+
+
+def rounds(table: list[dict], catalogue) -> list[dict]:
+    """Misfit of the best model of each round, with a bar that is full at the first and empty at the noise."""
+    steps = [r for r in table if r["run"].startswith("round ")]
+    values = [float(r["after"]) for r in steps]
+    most = math.log(max([*values, 1.001]))
+    return [
+        {
+            "name": _round(r["run"].split(": ", 1)[1], catalogue),
+            "value": number(r["after"], 3),
+            "percent": f"{100.0 * min(max(math.log(max(v, 1.0)) / most, 0.0), 1.0):.1f}",
+        }
+        for r, v in zip(steps, values, strict=True)
+    ]
+
+
+def _round(name, catalogue):
+    return "nominal model" if name == "nominal" else f"with {plain(name, catalogue)}"
+
+
+def effects(verdict, catalogue) -> list[dict]:
+    """What was named: title, equation, source, and its parameters with errors."""
+    found = []
+    for name, given in verdict.parameters.items():
+        one = catalogue.effect(name)
+        parameters = [_parameter(one, key, value) for key, value in given.items()]
+        found.append(
+            {
+                "id": name,
+                "title": one.title,
+                "equation": one.equation,
+                "reference": one.reference,
+                "signature": one.signature,
+                "parameters": parameters,
+            }
+        )
+    return found
+
+
+def _parameter(one, key, found):
+    """Row of a parameter: what, value with its error, 90 % interval, range searched, value without effect."""
+    if key == one.places:
+        return {
+            "name": f"sits at {key}",
+            "value": f"{found.value:g}",
+            "interval": "",
+            "searched": "",
+            "off": "",
+        }
+    p = one.parameter(key)
+    return {
+        "name": p.help,
+        "value": _with_error(found.value, found.sigma) + unit_of(p.unit),
+        "interval": _interval(found.value, found.sigma),
+        "searched": f"{p.low:g} to {p.high:g}",
+        "off": off(p),
+    }
+
+
+def _with_error(value, sigma):
+    """Value ± standard error with two digits of the error."""
+    if not sigma > 0.0:
+        return f"{value:.4g} (error not determined)"
+    digits = max(0, 1 - math.floor(math.log10(sigma)))
+    return f"{value:.{digits}f} ± {sigma:.{digits}f}" if digits < 7 else f"{value:.4g} ± {sigma:.2g}"
+
+
+def _interval(value, sigma):
+    return f"{value - 1.645 * sigma:.4g} to {value + 1.645 * sigma:.4g}" if sigma > 0.0 else ""
+
+
+def off(parameter) -> str:
+    """Value at which a parameter leaves the nominal model as it is, in words."""
+    if parameter.off is None:
+        return "shapes only"
+    if callable(parameter.off):
+        return "as recorded"
+    return "∞" if math.isinf(parameter.off) else f"{parameter.off:g}"
+
+
+def limit(row: dict, catalogue) -> dict:
+    """One effect that was not named: how far from having none these data still let it be."""
+    if row["effect"] not in catalogue:
+        name, said = row["effect"], f"{row['parameter']}: {number(row['limit_95'], 3)}"
+        return {"effect": name, "title": name, "parameter": row["parameter"], "limit": said, "off": ""}
+    one = catalogue.effect(row["effect"])
+    p = one.parameter(row["parameter"])
+    value, none = float(row["limit_95"]), p.off
+    above = not callable(none) and none is not None and (math.isinf(none) or value < none)
+    side = "" if callable(none) or none is None else ("above " if above else "below ")
+    return {
+        "effect": one.id,
+        "title": one.title,
+        "parameter": p.help,
+        "limit": f"{side}{number(row['limit_95'], 3)}{unit_of(p.unit)}",
+        "off": off(p),
+    }

@@ -1,0 +1,196 @@
+"""What a page adds to a verdict: sketch and origin of the data, tables in plain words, traces to zoom."""
+
+import csv
+import datetime
+import json
+import re
+from itertools import pairwise
+
+import pytest
+from made_verdicts import model, verdict, write
+from msgspec.structs import replace
+
+from sonicvacuum.discover import given
+from sonicvacuum.discover.verdict import Known, write_json
+from sonicvacuum.files import InputError
+from sonicvacuum.records import Record
+from sonicvacuum.records.reader import parse
+from sonicvacuum.report import bench, inline, plots, rows, words
+from sonicvacuum.report.record import write_page
+from sonicvacuum.report.sketch import MOST, sketch
+
+STEEL = {"diameter_mm": 10, "mass_g": 4, "material": "bearing-steel"}
+STRIKER = {"shape": "sphere", "speed_m_s": 0.5, "speed_rel_sigma": 0.01, **STEEL}
+
+
+def record(beads=12, **changes) -> Record:
+    """A chain of steel balls with a gauge in a bead and one at the wall."""
+    content = {
+        "format": 1,
+        "title": "Steel balls <in> a row",
+        "chain": {"beads": beads, "orientation": "horizontal", "bead": STEEL, "wall": {"material": "brass"}},
+        "materials": {"bearing-steel": {"modulus_rel_sigma": 0.02}},
+        "sensors": [
+            {"id": "g1", "kind": "embedded", "bead": 5, "gain_rel_sigma": 0.02},
+            {"id": "wall", "kind": "wall", "gain_rel_sigma": 0.02},
+        ],
+        "trigger_sigma_us": 1.0,
+        "runs": [
+            {"id": run, "striker": STRIKER, "observables": [
+                {"quantity": "amplitude", "sensor": "g1", "value": 30.0, "sigma": 1.0, "unit": "N"}]}
+            for run in ("slow", "fast")
+        ],
+        **changes,
+    }  # fmt: skip
+    return Record(parse(content), name="made", digest="ab" * 32)
+
+
+@pytest.fixture
+def folder(tmp_path):
+    made = write(tmp_path / "made", "single")
+    source = {"date": datetime.date(2026, 5, 1), "licence": "CC0"}
+    write_json(given.inputs((record(source=source),), ("g1: 3 spikes left out",)), made / given.FILE)
+    return made
+
+
+def test_a_page_opens_with_verdict_bench_chain_and_origin(folder):
+    slow = {"slow": 1.04, "fast": 1.001}
+    write_json(replace(model(verdict()), speed_ratio=slow), folder / "model.json")
+    page = write_page(folder).read_text(encoding="utf-8")
+    order = [
+        "Steel balls &lt;in&gt; a row</h1>", "What is missing: Visco", "Check your set-up first", "<svg role",
+        "12 beads of bearing-steel, 10 mm, 4 g, horizontal", "2026-05-01", "SHA-256 abab", "sonicvacuum 0.",
+        "g1: 3 spikes left out.", "Where they disagree", "What it is", "How sure", "What else it could be",
+        "How the gap shrinks", "What the others could still be", "What experiment would settle it",
+    ]  # fmt: skip
+    places = [page.index(part) for part in order]
+    assert places == sorted(places)
+    assert "speed in run slow: model and data agree best at 1.040 of it, 3.9 times the error" in page
+    assert "run fast: model and data" not in page
+
+
+def test_words_of_statisticians_stay_folded(folder):
+    page = write_page(folder).read_text(encoding="utf-8")
+    open_part = re.sub(r"<(details|script|style|svg).*?</\1>", "", page, flags=re.DOTALL)
+    for jargon in ("χ", "Bayes", "posterior", "nuisance", "residual", "p-value", "likelihood"):
+        assert jargon not in open_part
+
+
+def test_what_stays_within_its_stated_error_is_no_slip():
+    calm = replace(model(verdict()), speed_ratio={"slow": 1.02}, trigger_us={"slow": 2.0}, gain={"g1": 0.96})
+    assert bench.strained(verdict(), calm, record()) == []
+    far = replace(calm, trigger_us={"slow": -9.0}, gain={"g1": 0.9}, modulus_ratio=1.2)
+    told = bench.strained(verdict(), far, record())
+    assert [re.search(r"(time zero|modulus|calibration)", line)[0] for line in told] == [
+        "modulus", "time zero", "calibration"
+    ]  # fmt: skip
+    off = {
+        "clock": Known(value=3e-3, sigma=1e-4, prior=1e-3),
+        "delay g1": Known(value=1.0, sigma=0.1, prior=1.0),
+    }
+    assert len(bench.strained(verdict(nuisances=off), calm, record())) == 1
+
+
+def test_nothing_is_proposed_where_nothing_is_open(folder):
+    sure = {"none": 0.0, "unknown": 0.001, "kuwabara-kono": 0.999}
+    write_json(verdict(probabilities=sure), folder / "verdict.json")
+    assert "What experiment" not in write_page(folder).read_text(encoding="utf-8")
+    assert words.settled(verdict(probabilities=sure))
+    assert not words.settled(verdict(probabilities=sure, confusable=[["kuwabara-kono", "tsuji"]]))
+    assert not words.settled(verdict())
+
+
+def test_a_sketch_has_a_disc_for_each_bead_and_a_name_for_each_gauge():
+    drawn = sketch(record())
+    assert drawn.count('class="bead') == 12
+    assert drawn.count('class="bead held"') == 1
+    assert "g1, bead 5" in drawn
+    long = sketch(record(beads=MOST + 200))
+    assert long.count('class="bead') < MOST
+    assert "g1, bead 5" in long
+
+
+def test_a_sketch_keeps_names_apart_and_inside():
+    sensors = [{"id": f"gauge{k}", "kind": "embedded", "bead": k} for k in (1, 2, 3, 11, 12)]
+    text = sketch(record(sensors=sensors, runs=[
+        {"id": "a", "striker": STRIKER, "observables": [
+            {"quantity": "amplitude", "sensor": "gauge1", "value": 30.0, "sigma": 1.0, "unit": "N"}]}
+    ]))  # fmt: skip
+    found = re.findall(r'class="gauge" x="([\d.]+)" y="([\d.]+)">([^<]+)<', text)
+    boxes = [(float(y), float(x), float(x) + 6.2 * len(name)) for x, y, name in found]
+    assert len(boxes) == 5
+    assert all(left >= 0.0 and right <= 360.5 for _, left, right in boxes)
+    for row in {y for y, _, _ in boxes}:
+        ends = sorted((left, right) for y, left, right in boxes if y == row)
+        assert all(a[1] < b[0] for a, b in pairwise(ends))
+
+
+def test_traces_hold_what_the_table_holds(folder):
+    found = plots.plots(folder / "traces.csv")
+    assert [(t["run"], t["sensor"]) for t in found] == [
+        (r, s) for r in ("slow", "fast") for s in ("g1", "wall")
+    ]
+    with open(folder / "traces.csv", newline="") as stream:
+        table = [r for r in csv.DictReader(stream) if r["run"] == "fast" and r["sensor"] == "wall"]
+    last = found[-1]
+    assert last["start"] + last["step"] * 10 == pytest.approx(float(table[10]["time_us"]))
+    for name in ("measured", "nominal", "extended"):
+        shown = [v * last["value"] for v in last[name]]
+        # Half a step of the readings, a 9999th of the largest.
+        assert shown == pytest.approx([float(r[f"{name}_N"]) for r in table], abs=0.51 * last["value"])
+    assert last["sigma"] * last["value"] == pytest.approx(0.02, rel=1e-5)
+
+
+def test_lost_samples_keep_their_times(tmp_path):
+    lines = [f"a,g,{t},1,2,2,0.1" for t in (0, 1, 2, 7, 8, 9)]
+    (tmp_path / "traces.csv").write_text("\n".join(["run,sensor,time_us,m,n,e,s", *lines]) + "\n")
+    (only,) = plots.plots(tmp_path / "traces.csv")
+    assert only["times"] == [0, 1, 2, 7, 8, 9]
+    assert "extended" not in only
+
+
+def test_a_page_stays_below_two_megabytes_whatever_the_record(folder):
+    head = (folder / "traces.csv").read_text().splitlines()[0]
+    with open(folder / "traces.csv", "w") as stream:
+        stream.write(head + "\n")
+        for run in range(30):
+            for gauge in range(6):
+                for k in range(1000):
+                    stream.write(f"r{run},g{gauge},{0.5 * k},{(k * 37 % 101) / 7},{k % 13},{k % 17},0.1\n")
+    page = write_page(folder)
+    assert page.stat().st_size < 2e6
+    assert len(plots.plots(folder / "traces.csv")) == 180
+
+
+def test_the_grid_tells_every_comparison():
+    cells = [
+        {"run": "a", "sensor": "g", "feature": "delay", "z_before": "-12.4"},
+        {"run": "a", "sensor": "h", "feature": "tail", "z_before": "1.5"},
+    ]
+    table = rows.grid(cells)
+    assert table["features"] == ["delay", "tail"]
+    first, second = table["lines"]
+    assert first["cells"][0]["said"] == "run a, gauge g: an earlier pulse by 12.4 standard errors"
+    assert (first["cells"][0]["shown"], first["cells"][1]) == ("−12", None)
+    assert second["cells"][1]["shown"] == ""
+    assert rows.grid([{"run": "a", "sensor": "", "feature": "speed", "z_before": "3"}]) is None
+
+
+def test_formulas_are_set():
+    assert inline.formula("F = K delta^{3/2} v, A < 1") == "F = K δ<sup>3/2</sup> v, A &lt; 1"
+    assert inline.formula("m u'^2/tau") == "m u&#39;<sup>2</sup>/τ"
+
+
+def test_a_folder_of_older_days_has_a_page_without_origin(tmp_path):
+    page = write_page(write(tmp_path / "made", "single")).read_text(encoding="utf-8")
+    assert "<h1>made</h1>" in page
+    assert 'class="sketch"' not in page
+
+
+@pytest.mark.parametrize(
+    "text", ["{", '{"format": 1}', json.dumps({"version": "1", "records": [{"name": 3}]})]
+)
+def test_a_damaged_origin_is_refused(folder, text):
+    (folder / given.FILE).write_text(text)
+    with pytest.raises(InputError, match=r"given\.json: not what sonicvacuum discover writes"):
+        write_page(folder)
