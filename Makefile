@@ -16,7 +16,7 @@ COMPILE := pip compile --quiet --universal --generate-hashes --no-emit-index-url
 	--custom-compile-command "make lock"
 
 .DELETE_ON_ERROR:
-.PHONY: all env test fuzz reproduce bench study lock clean help
+.PHONY: all env test browser fuzz reproduce bench study lock clean help
 
 all: env  ## build the environment, then run the whole pipeline
 	$(BIN)/snakemake --cores $(CORES)
@@ -36,6 +36,10 @@ env: .venv/installed  ## build the locked environment in .venv
 	@$(INSTALL) --no-deps --editable .
 	@touch $@
 
+.venv/browsed: .venv/installed requirements-browser.lock
+	@$(LOCKED) requirements-browser.lock
+	@touch $@
+
 .venv/benched: .venv/installed requirements-bench.lock
 	@$(LOCKED) requirements-bench.lock
 	@touch $@
@@ -51,6 +55,9 @@ test: env  ## check format, style, types, import contracts, and run the tests
 	$(BIN)/lint-imports --no-logo
 	$(BIN)/mypy
 	$(BIN)/pytest --numprocesses $(CORES) --dist loadfile
+
+browser: .venv/browsed  ## try the page of a verdict in a real browser: Chromium on the path, or CHROMIUM=PATH
+	$(BIN)/pytest tests/report/browser_pages.py
 
 fuzz: env  ## try 5500 damaged files of every kind that users hand over; table in results/fuzz.csv
 	$(BIN)/python tests/fuzz/mutants.py results/fuzz.csv 5500
@@ -72,6 +79,7 @@ lock:  ## resolve the requirements anew; versions already locked stay unless UPG
 	lock() { "$$tools/bin/uv" $(COMPILE) $(UPGRADE) "$$@"; } && \
 	lock pyproject.toml --extra workflow --group dev --output-file requirements.lock && \
 	lock --group build --constraints requirements.lock --output-file requirements-build.lock && \
+	lock --group browser --constraints requirements.lock --output-file requirements-browser.lock && \
 	lock --group bench --constraints requirements.lock --output-file requirements-bench.lock && \
 	lock pyproject.toml --extra study --constraints requirements.lock --output-file requirements-study.lock
 
