@@ -88,6 +88,14 @@ def test_fig5_numbers_three_waves_at_the_wall_each_lower_than_the_one_before(dra
         assert (np.diff(train.time_us) > 0).all()
 
 
+def test_fig5_names_the_hump_behind_each_loss_free_train(drawn):
+    small = drawn["fig5"][0].query("series == 'small' and sensor == 'wall'")
+    assert set(zip(small.panel, small.model, small["pulse"], strict=True)) == {
+        ("a", "matched", 4),
+        ("b", "nominal", 4),
+    }
+
+
 def test_fig6_shows_the_wall_alone_and_three_waves_of_the_heavy_ball_without_losses(drawn):
     table, _ = drawn["fig6"]
     assert set(table.sensor) == {"wall"}

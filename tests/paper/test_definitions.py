@@ -127,6 +127,12 @@ def test_a_train_of_three(train):
     assert trains.split_distance(train).value == 1
 
 
+def test_a_ripple_before_the_third_wave_is_not_taken_for_it(card):
+    # Without discharge the steel wall sends a ripple of 0.02 back between the second and the third wave.
+    rippled = run_of(card, signal(card, [(1.0, 0.0), (0.4, 130e-6), (0.02, 255e-6), (0.12, 380e-6)]))
+    assert trains.third_pulse_fraction(rippled, rippled.wall).value == pytest.approx(0.12, rel=FIT)
+
+
 def test_train_length_against_the_way_to_the_wall_and_back(train, card):
     g9 = train.embedded[0]
     half = 1.25 * gauges.duration(train, g9, 0.5).value * 1e-6

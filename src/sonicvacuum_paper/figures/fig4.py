@@ -224,6 +224,13 @@ def _paper_marks(axes, table):
         )
     if (table.panel == "a").all():
         axes.axvline(CRACKS, ymax=0.68, color=style.GREY, lw=0.8, ls=(0, (1, 1.5)), zorder=0)
+        axes.annotate(
+            f"{CRACKS:g} N: cracks",
+            (CRACKS, SPEEDS["a"][0]),
+            (3, 5),
+            textcoords="offset points",
+            color=style.GREY,
+        )
 
 
 def _legend(axes, table):

@@ -41,7 +41,7 @@ POINTS = 600  # per trace: two for each pixel of a column on a screen
 HEIGHT = 106.0  # mm
 # Lowest later peak that counts in a train, of the main one; as in the ledger.
 TRAIN = 0.05
-# Lowest that is named as what follows the train.
+# Lowest rise of what is named as following the train, of the main pulse.
 SMALL = 0.01
 
 
@@ -135,7 +135,8 @@ def _peaks(run: OneRun, sensor: Gauge, until_us: float):
             peak["speed_m_s"] = run.speed().value
         yield peak
     counted = pulses(trace, main, end, TRAIN, SMALL)
-    later = [p for p in pulses(trace, main, end, SMALL, SMALL) if counted and p.time > counted[-1].time]
+    # By its rise and not its height: the gauges' discharge has drawn the line below zero by then.
+    later = [p for p in pulses(trace, main, end, -np.inf, SMALL) if counted and p.time > counted[-1].time]
     if len(counted) > 2 and later:
         small = {"series": "small", "pulse": len(counted) + 1, "force_N": later[0].force}
         yield {**small, "time_us": 1e6 * later[0].time}
@@ -181,7 +182,7 @@ def legend(axes: Axes, table: pandas.DataFrame) -> None:
         label = f"printed in the paper: {mark.speed_m_s:.0f} m/s ± {100 * PRINTED.speed_error:.0f} %"
         handles.append(Line2D([], [], **_MARK, ms=7, label=label))
     axes.legend(
-        handles=handles, loc="upper left", bbox_to_anchor=(-0.01, 1.22), borderaxespad=0, handlelength=2.4
+        handles=handles, loc="upper left", bbox_to_anchor=(-0.01, 1.26), borderaxespad=0, handlelength=2.4
     )
 
 
