@@ -12,6 +12,8 @@ from sonicvacuum_paper.printed import PRINTED
 from sonicvacuum_paper.rows import Row, absent
 
 BETWEEN = "g9-g5"
+# So much less deep is a valley that counts as less split.
+SPLIT_MARGIN = 0.02
 # Striker over bead, of fig3a, ratio-2, fig5a and ratio-5.
 MASS_RATIOS = (PRINTED.light_striker / PRINTED.bead_mass, 2.0, PRINTED.heavy_striker / PRINTED.bead_mass, 5.0)
 
@@ -39,7 +41,7 @@ def modulus_row(metrics: Metrics, moduli: dict[str, float]) -> Row:
         return absent("compare", name, "", "GPa", "fewer than two runs of fig3a have a speed")
 
     def modulus(*speeds):
-        return _interpolated(PRINTED.speed_coated, speeds, sorted(moduli.values())) / 1e9
+        return interpolated(PRINTED.speed_coated, speeds, sorted(moduli.values())) / 1e9
 
     return _propagated("compare", name, "", "GPa", found, modulus)
 
@@ -59,7 +61,7 @@ def equivalent_row(metrics: Metrics, column: str, case: str, moduli: dict[str, f
         return absent(*key, "GPa", f"fewer than two runs of {case} have a speed, or this column has none")
 
     def modulus(speed, *speeds):
-        return _interpolated(speed, speeds, sorted(moduli.values())) / 1e9
+        return interpolated(speed, speeds, sorted(moduli.values())) / 1e9
 
     return _propagated(*key, "GPa", [own, *found], modulus)
 
@@ -77,8 +79,8 @@ def needs_of(row: Row) -> tuple[tuple[str, str, str], ...]:
     return next((needs for name, at, needs, _ in COMPARISONS if (name, at) == (row.quantity, row.sensor)), ())
 
 
-def _interpolated(speed, speeds, moduli):
-    """ln E linear in ln speed through the two runs nearest in ln speed to the one asked for."""
+def interpolated(speed, speeds, moduli) -> float:
+    """Modulus at a speed: ln E linear in ln speed through the two runs nearest in ln speed to it."""
     target = math.log(speed)
     points = sorted(
         (abs(math.log(v) - target), math.log(v), math.log(e)) for v, e in zip(speeds, moduli, strict=True)
@@ -158,7 +160,7 @@ COMPARISONS = (
             "coated_less_split",
             sensor,
             (("fig5a", "valley_depth", sensor), ("fig5b", "valley_depth", sensor)),
-            _flag(lambda coated, steel: coated < steel - 0.02),
+            _flag(lambda coated, steel: coated < steel - SPLIT_MARGIN),
         )
         for sensor in ("g9", "wall")
     ),
@@ -197,7 +199,7 @@ def _losses_delay_splitting(metrics, column):
     if not free or not _has_losses(metrics, lossy.case):
         return absent(*key, "1", "no loss effect has been named")
     needs = ((lossy.case, "valley_depth", "g9"), (free.case, "valley_depth", "g9"))
-    return _derived(*key, [lossy, free], needs, _flag(lambda one, other: one < other - 0.02))
+    return _derived(*key, [lossy, free], needs, _flag(lambda one, other: one < other - SPLIT_MARGIN))
 
 
 def _decay_with_losses(metrics, column):

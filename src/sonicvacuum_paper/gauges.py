@@ -95,14 +95,31 @@ def offset_amplitude(run: OneRun, gauge: Gauge) -> Measured:
     if not peak.found:
         return missing(peak.reason)
     e = PRINTED.gauge_offset / run.diameter
-    before, after = (run.contact(c).force for c in (gauge.bead - 1, gauge.bead))
-    shifted = [
-        main_pulse(Trace(0.0, run.simulation.interval, (0.5 + s) * before + (0.5 - s) * after))
-        for s in (e, -e)
-    ]
+    shifted = [_shifted(run, gauge, s) for s in (e, -e)]
     if not all(p.found for p in shifted):
         return missing(next(p.reason for p in shifted if not p.found))
     return Measured(max(abs(p.force / peak.force - 1.0) for p in shifted))
+
+
+def offset_speed(run: OneRun, upper: Gauge, lower: Gauge) -> Measured:
+    """Largest relative change of the speed when each gauge sits 1 mm off the middle of its bead.
+
+    As `offset_amplitude`: a gauge off the middle weighs its two contacts unequally. The sum of two pulses one
+    diameter apart is nearly flat on top, so that its peak moves further than the gauge.
+    """
+    e = PRINTED.gauge_offset / run.diameter
+    times = [[_shifted(run, gauge, s) for s in (-e, 0.0, e)] for gauge in (upper, lower)]
+    if not all(p.found for of_gauge in times for p in of_gauge):
+        return missing(next(p.reason for of_gauge in times for p in of_gauge if not p.found))
+    (first, middle, last), (early, centre, late) = ([p.time for p in of_gauge] for of_gauge in times)
+    apart = centre - middle
+    return Measured(max(abs(apart / (b - a) - 1.0) for a, b in ((first, late), (last, early))))
+
+
+def _shifted(run, gauge, e):
+    """Main pulse of a gauge e diameters from the middle of its bead towards the striker, no electronics."""
+    before, after = (run.contact(c).force for c in (gauge.bead - 1, gauge.bead))
+    return main_pulse(Trace(0.0, run.simulation.interval, (0.5 + e) * before + (0.5 - e) * after))
 
 
 def shape_deviation(run: OneRun, gauge: Gauge) -> Measured:

@@ -8,13 +8,15 @@ one another are inconsistent in the paper, not a disagreement of the simulation.
 
 import csv
 import math
-from dataclasses import dataclass, fields
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, replace
 
 from sonicvacuum.files import InputError, replacing
 from sonicvacuum_paper import wording
+from sonicvacuum_paper.claims import Claim, read_table
 from sonicvacuum_paper.columns import Metrics
-from sonicvacuum_paper.ladder import ARITHMETIC, COLUMNS, DECIDING, LOSS, SIMULATION, TEXT, THEORY
-from sonicvacuum_paper.rows import Row, cells_of, number
+from sonicvacuum_paper.ladder import ARITHMETIC, COLUMNS, DECIDING, LOSS, SIMULATION
+from sonicvacuum_paper.rows import Row, number
 from sonicvacuum_paper.verdict import (
     DISAGREES,
     INCONSISTENT,
@@ -27,37 +29,7 @@ from sonicvacuum_paper.verdict import (
     judge,
 )
 
-
-@dataclass(frozen=True)
-class Claim:
-    """One line of `claims.csv`; see `claims.md`.
-
-    `needs` is `loss` where no model without losses can show the statement; `fitted` names the columns whose
-    models were fitted to it.
-    """
-
-    claim: str
-    section: str
-    statement: str
-    quantity: str
-    unit: str
-    value: str
-    sigma: str
-    sigma_source: str
-    test: str
-    metric: str
-    note: str
-    needs: str = ""
-    fitted: str = ""
-
-    @property
-    def kind(self) -> str:
-        """What tests it: a simulation, the equations, arithmetic on printed numbers, or nothing."""
-        if self.test in UNTESTED:
-            return TEXT
-        return {"theory": THEORY, "paper": ARITHMETIC, "audit": ARITHMETIC}.get(
-            self.metric.split("/")[0], SIMULATION
-        )
+__all__ = ["Claim", "LedgerRow", "build", "disagreements", "read_table", "write"]
 
 
 @dataclass(frozen=True)
@@ -65,7 +37,8 @@ class LedgerRow:
     """One line of `results/ledger.csv`; NaN where there is no number.
 
     `agrees`, `fitted` and `excluded` name the models by column, the last with the difference in standard
-    errors where there is one; `ideal` is no model of its own.
+    errors where there is one; `ideal` is no model of its own. `probability` gives beside each model how
+    probable its agreement is once what the paper leaves open is drawn (`uncertainty.agreement`).
     """
 
     claim: str
@@ -89,30 +62,31 @@ class LedgerRow:
     agrees: str
     fitted: str
     excluded: str
+    probability: str
     reason: str
 
 
-def read_table(path, kind: type) -> list:
-    """The lines of a table of claims or assumptions; InputError names file, line and cure."""
-    rows = [kind(*cells) for cells in cells_of(path, tuple(f.name for f in fields(kind)))]
-    names = [getattr(r, fields(kind)[0].name) for r in rows]
-    for name in names:
-        if names.count(name) > 1:
-            raise InputError(
-                f"{path}: {name} stands here {names.count(name)} times; rename or remove all but one"
-            )
-    return rows
-
-
-def build(metrics: Metrics, claims: list[Claim], path="claims.csv") -> list[LedgerRow]:
+def build(
+    metrics: Metrics,
+    claims: list[Claim],
+    path="claims.csv",
+    probable: Mapping[str, Mapping[str, float]] | None = None,
+) -> list[LedgerRow]:
     """The ledger, one row per claim in their order.
 
     Args:
         metrics: all metrics, with the columns of the configuration.
         claims: what to test.
         path: where they come from, for messages.
+        probable: claim → model → probability of agreement; none where nothing was drawn.
     """
-    return [_row(metrics, claim, f"{path}: {claim.claim}") for claim in claims]
+    probable = probable or {}
+    rows = [_row(metrics, claim, f"{path}: {claim.claim}") for claim in claims]
+    return [replace(r, probability=_probabilities(probable.get(r.claim, {}))) for r in rows]
+
+
+def _probabilities(of_models):
+    return "; ".join(f"{model} {share:.2g}" for model, share in of_models.items())
 
 
 def found_in_columns(metrics: Metrics, metric: str, where: str) -> dict[str, Row]:
@@ -167,6 +141,7 @@ def _row(metrics, claim, where):
         difference_sigma=outcome.difference_sigma,
         verdict=_verdict(metrics, claim, column, outcome.verdict),
         **_models(metrics, claim, target, rows),
+        probability="",
         reason=_reason(metrics, claim, target, rows, column),
     )
 

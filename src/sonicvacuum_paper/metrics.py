@@ -44,7 +44,10 @@ AT_EMBEDDED = {
 }
 # Functions of (run, upper gauge, lower gauge).
 BETWEEN_GAUGES = {"speed": ("m/s", gauges.speed), "decay": ("1", gauges.decay)}
-BETWEEN_EMBEDDED = {"extra_pulses_upper_stronger": ("1", trains.extra_pulses_upper_stronger)}
+BETWEEN_EMBEDDED = {
+    "extra_pulses_upper_stronger": ("1", trains.extra_pulses_upper_stronger),
+    "offset_speed": ("1", gauges.offset_speed),
+}
 # Functions of the run.
 WHOLE = {"speed_change": ("1", gauges.speed_change), "split_distance": ("diameters", trains.split_distance)}
 # What is reported of each run of a sweep, whose contacts are kept between its gauges only.

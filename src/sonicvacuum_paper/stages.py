@@ -10,6 +10,7 @@ from sonicvacuum_paper import arithmetic, assumptions, audit, compare, ledger, t
 from sonicvacuum_paper.columns import Metrics, column_cards
 from sonicvacuum_paper.printed import PRINTED
 from sonicvacuum_paper.rows import Row, read_rows, write_absent, write_rows
+from sonicvacuum_paper.uncertainty import table
 
 
 def absent_path(metrics_path) -> Path:
@@ -53,10 +54,14 @@ def derived_rows(simulated: list[Row], config: Config) -> list[Row]:
     return [*rows, compare.modulus_row(metrics, _hertz_moduli(config, "fig3a"))]
 
 
-def write_ledger(metrics_path, claims_path, config: Config, out) -> None:
-    """Hold the metrics against the claims and write `results/ledger.csv`."""
+def write_ledger(metrics_path, claims_path, config: Config, out, probable_path=None) -> None:
+    """Hold the metrics against the claims and write `results/ledger.csv`.
+
+    `probable_path`: the table of probabilities, `results/uncertainty.csv`, if there is one.
+    """
     claims = ledger.read_table(claims_path, ledger.Claim)
-    ledger.write(ledger.build(_all(metrics_path, config), claims, claims_path), out)
+    probable = table.read(probable_path) if probable_path else None
+    ledger.write(ledger.build(_all(metrics_path, config), claims, claims_path, probable), out)
 
 
 def write_assumptions(metrics_path, assumptions_path, config: Config, out) -> None:

@@ -176,7 +176,7 @@ def test_written_ledger_has_the_promised_columns(tmp_path):
         header, row = csv.reader(stream)
     assert ",".join(header) == (
         "claim,section,kind,quantity,unit,measured,sigma,handbook,layer,layer_membrane,matched,layer_loss,matched_loss,"
-        "named,ideal,numerical_error,difference_sigma,verdict,agrees,fitted,excluded,reason"
+        "named,ideal,numerical_error,difference_sigma,verdict,agrees,fitted,excluded,probability,reason"
     )
     assert row[5:11] == ["197", "19.7", "113.1", "", "", "219.7"]
 
@@ -190,8 +190,10 @@ def test_malformed_metric_and_table_are_refused(tmp_path):
     path.write_text("claim,value\n")
     with pytest.raises(InputError, match="the first line must read claim,section,statement"):
         ledger.read_table(path, Claim)
-    names = "claim,section,statement,quantity,unit,value,sigma,sigma_source,test,metric,note,needs,fitted"
-    path.write_text(f"{names}\n" + "a,,,,,1,1,,equals,x/y/z,,,\n" * 2)
+    names = (
+        "claim,section,statement,quantity,unit,value,sigma,sigma_source,test,metric,note,needs,fitted,reading"
+    )
+    path.write_text(f"{names}\n" + "a,,,,,1,1,,equals,x/y/z,,,,\n" * 2)
     with pytest.raises(InputError, match="a stands here 2 times"):
         ledger.read_table(path, Claim)
 
@@ -229,3 +231,10 @@ def test_written_audit_has_the_promised_columns(tmp_path):
     assumptions.write(rows, tmp_path / "a.csv")
     header = (tmp_path / "a.csv").read_text().splitlines()[0]
     assert header == "assumption,section,statement,quantity,unit,limit,handbook,matched,verdict,reason"
+
+
+def test_probabilities_stand_beside_the_models():
+    found = Metrics(speeds(113.1, 219.7), COLUMNS)
+    (row,) = ledger.build(found, [claim()], probable={claim().claim: {"handbook": 0.0104, "matched": 0.5}})
+    assert row.probability == "handbook 0.01; matched 0.5"
+    assert ledger.build(found, [claim()])[0].probability == ""

@@ -53,7 +53,7 @@ def page(tmp_path, pytestconfig):
     ledger = pd.DataFrame(LEDGER, columns=tables.LEDGER)
     ledger.to_csv(tmp_path / "ledger.csv", index=False)
     claims = pd.DataFrame(
-        [(row[0], row[1], f"Statement {row[0]}.", *[""] * 10) for row in _ROWS], columns=CLAIMS
+        [(row[0], row[1], f"Statement {row[0]}.", *[""] * 11) for row in _ROWS], columns=CLAIMS
     )
     claims.to_csv(tmp_path / "claims.csv", index=False)
     pd.DataFrame(columns=tables.ASSUMPTIONS).to_csv(tmp_path / "assumptions.csv", index=False)

@@ -20,13 +20,23 @@ VERBS = {
     "page": (),
     "paper observe": (),
     "paper draw": (),
+    "paper uncertainty": (),
     "paper ledger": (),
     "paper report": (),
     "blind hide": CATALOGUE,
     "blind score": CATALOGUE,
     "blind draw": (),
 }
-ENGINE = {"card", "simulate", "discover", "page", "paper observe", "paper draw", "paper report"}
+ENGINE = {
+    "card",
+    "simulate",
+    "discover",
+    "page",
+    "paper observe",
+    "paper uncertainty",
+    "paper draw",
+    "paper report",
+}
 
 
 @pytest.mark.parametrize(
@@ -36,7 +46,7 @@ ENGINE = {"card", "simulate", "discover", "page", "paper observe", "paper draw",
         ("sonicvacuum.effects.tsuji", ENGINE),
         ("sonicvacuum.discover.rounds", {"discover", "page", "paper report"}),
         ("sonicvacuum.report.words", {"page", "paper report"}),
-        ("sonicvacuum_paper.gauges", {"paper observe"}),
+        ("sonicvacuum_paper.gauges", {"paper observe", "paper uncertainty"}),
         ("sonicvacuum_paper.figures.fig3", {"paper draw", "paper report"}),
         ("sonicvacuum_paper.wording", {"paper ledger", "paper report"}),
         ("sonicvacuum_blind.stepper", {"blind hide", "blind score", "paper report"}),

@@ -9,6 +9,7 @@ rule ledger:
         metrics="results/metrics.csv",
         absent="results/absent.csv",
         claims=CLAIMS,
+        uncertainty="results/uncertainty.csv",
     output:
         report("results/ledger.csv", category="Tables", caption="../report/ledger.rst"),
     log:
@@ -25,7 +26,7 @@ rule ledger:
         "Holding the claims against the metrics"
     shell:
         "sonicvacuum paper ledger {input.metrics:q} --claims {input.claims:q} --config {params.config:q}"
-        " --out {output:q} 2> {log:q}"
+        " --uncertainty {input.uncertainty:q} --out {output:q} 2> {log:q}"
 
 
 rule audit:

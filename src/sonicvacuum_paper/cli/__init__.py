@@ -8,6 +8,7 @@ paper = Verbs(
     verbs={
         "observe": "sonicvacuum_paper.cli.observe:observe",
         "metrics": "sonicvacuum_paper.cli.metrics:metrics",
+        "uncertainty": "sonicvacuum_paper.cli.uncertainty:uncertainty",
         "ledger": "sonicvacuum_paper.cli.ledger:ledger",
         "audit": "sonicvacuum_paper.cli.ledger:audit",
         "draw": "sonicvacuum_paper.cli.draw:draw",

@@ -14,13 +14,14 @@ _CONFIG = click.option("--config", "path", default="config.yaml", show_default=T
 @click.argument("metrics", type=_FILE)
 @click.option("--claims", required=True, type=_FILE, help="Table of the paper's claims.")
 @_CONFIG
+@click.option("--uncertainty", "probable", type=_FILE, help="Probabilities from `paper uncertainty`.")
 @click.option("--out", required=True, type=click.Path(dir_okay=False), help="Ledger (CSV) to write.")
-def ledger(metrics, claims, path, out):
+def ledger(metrics, claims, path, probable, out):
     """Hold the claims against METRICS."""
     from sonicvacuum_paper.stages import write_ledger
 
-    check_apart([out], [metrics, claims, path])
-    write_ledger(metrics, claims, configuration.read(path), out)
+    check_apart([out], [metrics, claims, path, *([probable] if probable else [])])
+    write_ledger(metrics, claims, configuration.read(path), out, probable)
 
 
 @click.command()

@@ -7,7 +7,7 @@ from sonicvacuum.effects import IDS
 from sonicvacuum.report import inline, record
 from sonicvacuum_blind import report as study
 from sonicvacuum_paper import ladder
-from sonicvacuum_paper.report import answer, provenance, tables
+from sonicvacuum_paper.report import answer, provenance, tables, uncertain
 
 
 def build(
@@ -43,6 +43,7 @@ def build(
     ledger["statement"] = [claims["statement"].get(c, "") for c in ledger["claim"]]
     ledger["note"] = [claims["note"].get(c, "") for c in ledger["claim"]]
     ledger["excluded_by"] = ledger["excluded"].map(tables.shown)
+    ledger["probable"] = ledger["probability"].map(uncertain.shown)
     metrics = tables.read(metrics_path, tables.METRICS)
     return (
         inline.environment("sonicvacuum_paper.report")
@@ -57,6 +58,7 @@ def build(
             answer=answer.sentences(ledger, metrics),
             models=[(c, m.title, m.free) for c, m in ladder.MODELS.items() if m.counted],
             first=tables.first(ledger),
+            **uncertain.context(ledger),
             totals={t.model: t for t in ladder.totals(ledger.to_dict("records"))},
             figures=[_figure(svg, caption) for svg, caption in figures],
             cards=[_card_row(card, metrics) for card in cards],
@@ -86,6 +88,7 @@ CLAIMS = [
     "note",
     "needs",
     "fitted",
+    "reading",
 ]
 
 

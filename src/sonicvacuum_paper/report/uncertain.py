@@ -1,0 +1,30 @@
+"""What the report shows of the draws: how probable the main statements are under each model."""
+
+import pandas as pd
+
+from sonicvacuum.report.tables import number
+from sonicvacuum_paper.ladder import MODELS, members, title
+from sonicvacuum_paper.report.tables import FIRST
+from sonicvacuum_paper.uncertainty.inputs import INPUTS
+
+# Below this a statement is shown beside the main ones.
+IMPROBABLE = 0.05
+
+
+def shown(probability: str) -> str:
+    """The probabilities of a row of the ledger, models called as people read them."""
+    return ", ".join(f"{title(c)} {number(p, 2)}" for c, p in members(probability).items())
+
+
+def context(ledger: pd.DataFrame) -> dict:
+    """What the section on the draws is made of; `ledger` as text, with the column `statement`."""
+    found = {r["claim"]: members(r["probability"]) for r in ledger.to_dict("records") if r["probability"]}
+    statement = ledger.set_index("claim")["statement"].to_dict()
+    told = [c for c, shares in found.items() if c in FIRST or min(map(float, shares.values())) < IMPROBABLE]
+    told.sort(key=lambda c: list(FIRST).index(c) if c in FIRST else len(FIRST))
+    present = {column for shares in found.values() for column in shares}
+    return {
+        "drawn_models": [(c, m.title) for c, m in MODELS.items() if c in present],
+        "probable": [{"statement": FIRST.get(c, statement[c]), "shares": found[c]} for c in told],
+        "inputs": INPUTS,
+    }
