@@ -1,10 +1,14 @@
 """A short name for what a function does, so that compiled code is never used for an edited formula."""
 
 import hashlib
+import re
 from functools import lru_cache
 from types import CodeType, FunctionType, ModuleType
 
 import numpy as np
+
+# Where an object lies in memory, as its `repr` may say (`numpy.where` does): another place in each process.
+_ADDRESS = re.compile(r" at 0x[0-9a-fA-F]+")
 
 
 @lru_cache(maxsize=4096)
@@ -12,7 +16,7 @@ def fingerprint(function: FunctionType) -> str:
     """Hexadecimal digest of a function's code, constants and everything of Python's that it calls.
 
     Constants count wherever they stand, arrays by all their bytes, containers by what they hold, other
-    objects by their `repr`; comments and places do not.
+    objects by their `repr`; comments and places, in the source or in memory, do not.
     """
     digest = hashlib.sha256()
     _feed(digest, function, set())
@@ -39,7 +43,7 @@ def _feed(digest, value, seen):
         for part in value.items() if isinstance(value, dict) else value:
             _feed(digest, part, seen)
     else:
-        digest.update(f"{type(value).__name__} {value!r}".encode())
+        digest.update(f"{type(value).__name__} {_ADDRESS.sub('', repr(value))}".encode())
 
 
 def _feed_function(digest, function, seen):
