@@ -10,7 +10,7 @@ from made_slips import altered
 from sonicvacuum.discover.faults import traces
 from sonicvacuum.discover.faults.competition import predicted
 from sonicvacuum.discover.faults.examine import examine
-from sonicvacuum.discover.model.masks import cut
+from sonicvacuum.discover.model.masks import cut, spikes
 from sonicvacuum.discover.model.problem import together
 
 TIME = np.arange(700.0)
@@ -75,6 +75,22 @@ def test_what_can_be_put_right_is(empty, model):
     assert not masked.runs[0].present[1, AT].any()
 
 
+def test_what_begins_within_a_quiet_stretch_is_neither_drift_nor_noise():
+    rng = np.random.default_rng(np.random.SeedSequence(13))
+    for _ in range(20):
+        stretch = rng.normal(size=60)
+        stretch[40:] += 6.0
+        assert traces.drift(stretch, 1.0) is None
+        assert traces.noise_ratio(stretch, 1.0) is None
+        assert traces.noise_ratio(2.5 * rng.normal(size=60), 1.0) == pytest.approx(2.5, rel=0.4)
+
+
+def test_a_line_through_a_short_stretch_leaves_the_drift_open(empty, model):
+    bench, _ = examine(altered(empty, *MADE["drift"][1:3]), model)
+    (wall,) = [s for s in bench.record.block.sensors if s.id == "wall"]
+    assert 0.0 < wall.drift_sigma_N < 0.25  # half of what was added
+
+
 def test_a_record_without_slips_is_left_as_it_is(empty, model):
     bench, found = examine(empty, model)
     assert found == []
@@ -90,7 +106,7 @@ def test_pure_noise_raises_no_alarm():
         assert traces.noise_ratio(noise, 1.0) is None
         assert traces.drift(noise, 1.0) is None
         assert traces.pickup(noise) is None
-        assert not traces.spikes(noise, 1.0).any()
+        assert not spikes(noise, 1.0).any()
         assert not cut(noise, 1.0).any()
 
 

@@ -9,8 +9,9 @@ import numpy as np
 from sonicvacuum.discover.faults import expected, policy, traces
 from sonicvacuum.discover.faults.found import Bench, Finding
 from sonicvacuum.discover.faults.table import FAULTS
-from sonicvacuum.discover.model.masks import cut
+from sonicvacuum.discover.model.masks import cut, spikes
 from sonicvacuum.discover.model.problem import flicker
+from sonicvacuum.gauges import KINDS
 from sonicvacuum.records import Record, Signals
 
 
@@ -39,7 +40,7 @@ class _Look:
         self.record, self.predicted = record, predicted
         self.readings = {k: dict(s.readings) for k, s in record.signals.items()}
         self.lost, self.seen, self.rests = {}, defaultdict(dict), defaultdict(dict)
-        self.silent, self.blank = set(), []
+        self.silent, self.blank, self.unsure = set(), [], {}
 
     def run(self, run):
         """All traces of one run."""
@@ -54,8 +55,9 @@ class _Look:
     def _sample_slips(self, run, gauge):
         """Spikes and clipping: samples that are masked."""
         trace = self.readings[run][gauge.id]
-        held = cut(trace, gauge.sigma or flicker(trace))
-        at = traces.spikes(trace, gauge.sigma) & ~held
+        noise = max(gauge.sigma, flicker(trace))
+        held = cut(trace, noise)
+        at = spikes(trace, noise) & ~held
         if at.any():
             self.readings[run][gauge.id] = traces.without_spikes(trace, at)
             self.seen["spikes", gauge.id][run] = float(at.sum())
@@ -93,9 +95,11 @@ class _Look:
             trace = trace - cosine * np.cos(angle) - sine * np.sin(angle)
             self.seen["pickup", gauge.id][run.id] = 1e-3 * cycles / run.signals.interval_s
             stretch = trace[: len(stretch)]
-        slope = traces.drift(stretch, gauge.sigma)
-        if slope is not None:
+        drifting = traces.drift(stretch, gauge.sigma)
+        if drifting is not None:
+            slope, error = drifting
             self.seen["drift", gauge.id][run.id] = slope * len(trace)
+            self.unsure[gauge.id] = max(self.unsure.get(gauge.id, 0.0), error * len(trace))
             trace = trace - traces.line(stretch, np.arange(len(trace)))
             stretch = trace[: len(stretch)]
         ratio = traces.noise_ratio(stretch, gauge.sigma)
@@ -120,7 +124,9 @@ class _Look:
         gone = [k for k in self.record.signals if k not in signals]
         lost = {at: rows for at, rows in self.lost.items() if at not in self.silent}
         changed = bool(self.seen) or bool(gone)
-        return Bench(_without_runs(self.record, signals, gone) if changed else self.record, lost)
+        if not changed:
+            return Bench(self.record, lost)
+        return Bench(_drifting(_without_runs(self.record, signals, gone), self.unsure), lost)
 
     def _baselines(self):
         """Levels that differ from run to run; one level in all runs is no slip of a run."""
@@ -155,6 +161,18 @@ def _shared(fault, runs):
     if not values:
         return None
     return float(sum(values)) if fault == "spikes" else float(np.median(values))
+
+
+def _drifting(record, unsure):
+    """The record whose gauges may still drift by what a line through a short stretch leaves open."""
+    sensors = [_looser(s, unsure[s.id]) if s.id in unsure else s for s in record.block.sensors]
+    return replace(record, block=msgspec.structs.replace(record.block, sensors=sensors))
+
+
+def _looser(sensor, error):
+    """A sensor's block with at least this standard error of its drift, in the gauge's unit."""
+    key = f"drift_sigma_{KINDS[sensor.kind].suffix}"
+    return msgspec.structs.replace(sensor, **{key: max(getattr(sensor, key) or 0.0, error)})
 
 
 def _without_runs(record, signals, gone):

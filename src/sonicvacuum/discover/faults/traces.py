@@ -1,4 +1,7 @@
-"""Slips that single traces show by themselves, without any model: spikes, drift, pick-up, noise."""
+"""Slips that single traces show by themselves, without any model: drift, pick-up, noise.
+
+Spikes and cut samples are found by `model.masks`, for every record alike.
+"""
 
 import math
 
@@ -6,9 +9,6 @@ import numpy as np
 
 from sonicvacuum.discover.model.problem import flicker
 
-# A spike stands this many robust standard deviations off the median of its neighbours, and off both of them;
-# of a hundred thousand Gaussian samples the largest is below 5.
-SPIKE = 8.0
 # Samples of a quiet stretch that can be judged.
 FEWEST = 40
 # Sure deviations of a quiet stretch, in standard errors.
@@ -30,22 +30,6 @@ def quiet(trace: np.ndarray, sigma: float) -> np.ndarray:
     return trace[: int(_QUIET_SHARE * first)]
 
 
-def spikes(trace: np.ndarray, sigma: float) -> np.ndarray:
-    """(T,) samples that stand alone: far off the median of two neighbours on either side, and back at once.
-
-    Off by more than the steepest change that two neighbouring samples of the rest show, so that a sharp front
-    that is sampled coarsely is none.
-    """
-    if len(trace) < 8:
-        return np.zeros(len(trace), dtype=bool)
-    padded = np.pad(trace, 2, mode="reflect")
-    near = np.stack([padded[k : k + len(trace)] for k in (0, 1, 3, 4)])
-    middle = np.median(near, axis=0)
-    spread = near.max(axis=0) - near.min(axis=0)
-    scale = max(sigma, flicker(trace))
-    return (np.abs(trace - middle) > SPIKE * scale) & (np.abs(trace - middle) > 3.0 * spread)
-
-
 def without_spikes(trace: np.ndarray, at: np.ndarray) -> np.ndarray:
     """The trace with its spikes drawn over straight."""
     place = np.arange(len(trace))
@@ -53,13 +37,22 @@ def without_spikes(trace: np.ndarray, at: np.ndarray) -> np.ndarray:
 
 
 def noise_ratio(stretch: np.ndarray, sigma: float) -> float | None:
-    """Noise of a quiet stretch, its straight line removed, over the stated one; None where they may agree."""
+    """Noise of a quiet stretch, its straight line removed, over the stated one; None where they may agree.
+
+    Noise is there from the first sample to the last: what one half shows less than half of (in logarithms)
+    began within the stretch, and is none.
+    """
     n = len(stretch)
     if n < FEWEST or not sigma:
         return None
-    ratio = float((stretch - line(stretch)).std(ddof=2)) / sigma
-    far = abs(math.log(max(ratio, 1e-12))) / (1.0 / math.sqrt(2.0 * n))
-    return ratio if far > SURE and not 1.0 / NOISE_FACTOR < ratio < NOISE_FACTOR else None
+    whole, *halves = (_log_ratio(part, sigma) for part in (stretch, *np.array_split(stretch, 2)))
+    sure = abs(whole) > max(SURE / math.sqrt(2.0 * n), math.log(NOISE_FACTOR))
+    return math.exp(whole) if sure and min(h / whole for h in halves) > 0.5 else None
+
+
+def _log_ratio(part, sigma):
+    """Natural logarithm of the standard deviation about a line over the stated one."""
+    return math.log(max(float((part - line(part)).std(ddof=2)) / sigma, 1e-12))
 
 
 def line(stretch: np.ndarray, at: np.ndarray | None = None) -> np.ndarray:
@@ -74,14 +67,20 @@ def _straight(stretch):
     return slope, float(stretch.mean()) + slope * float(place[0])
 
 
-def drift(stretch: np.ndarray, sigma: float) -> float | None:
-    """Slope per sample of a quiet stretch, None where it may be flat."""
+def drift(stretch: np.ndarray, sigma: float) -> tuple[float, float] | None:
+    """Slope per sample of a quiet stretch and its standard error, None where it may be flat or is no line.
+
+    Of a line only the noise is left once it is taken off; of a pulse that began early, or of a bend, more.
+    """
     n = len(stretch)
     if n < FEWEST:
         return None
     slope, _ = _straight(stretch)
-    noise = max(sigma, float((stretch - line(stretch)).std(ddof=2)))
-    return slope if abs(slope) > SURE * noise * math.sqrt(12.0 / n**3) else None
+    left = float((stretch - line(stretch)).std(ddof=2))
+    if left > NOISE_FACTOR * max(sigma, flicker(stretch)):
+        return None
+    error = max(sigma, left) * math.sqrt(12.0 / n**3)
+    return (slope, error) if abs(slope) > SURE * error else None
 
 
 def rest(stretch: np.ndarray, sigma: float) -> tuple[float, float]:

@@ -35,6 +35,9 @@ _QUIET_SIGMAS, _QUIET_PEAK, _QUIET_SHARE = 6.0, 0.03, 0.7
 _FEWEST, _LEAST = 40, 12
 # Deviations from the stated white noise count from so many standard errors on.
 _SURE = 4.0
+# So many third differences of white noise are worth one independent sample: 1 + 2 (15² + 6² + 1)/20², from
+# their correlations −15/20, 6/20, −1/20. They and the quiet stretch agree within so many standard errors.
+_RIPPLE, _AGREE = 1.0 + 2.0 * (15.0**2 + 6.0**2 + 1.0) / 20.0**2, 3.0
 
 
 def experiment(record: Record, catalogue: Catalogue = CATALOGUE) -> Experiment:
@@ -231,10 +234,22 @@ def _sigma(records, gauge, quiet):
 
 
 def _estimated(traces, quiet):
-    """Noise that nobody stated: of the quiet stretches, or, without any, what makes the samples flicker."""
+    """Noise that nobody stated: of the quiet stretches, and of what makes the other samples flicker.
+
+    Where noise is white and signals are smooth, third differences of all samples show the same noise as the
+    few before the pulse, and by far more of them; both are averaged by their numbers. Where they disagree, or
+    neighbours are correlated, only the quiet stretches count.
+    """
     if not quiet:
         return max(map(flicker, traces), default=0.0)
-    level = math.sqrt(sum(float(q @ q) for q in quiet) / sum(len(q) for q in quiet))
+    count = sum(map(len, quiet))
+    level = math.sqrt(sum(float(q @ q) for q in quiet) / count)
+    steps = np.concatenate([np.diff(t, 3) for t in traces])
+    ripple, worth = math.sqrt(float(steps @ steps) / len(steps) / 20.0), len(steps) / _RIPPLE
+    error = math.hypot(1.0 / math.sqrt(2.0 * count), 1.0 / math.sqrt(2.0 * worth))
+    white = abs(_correlation(quiet)) < _SURE / math.sqrt(count)
+    if white and abs(ripple - level) < _AGREE * error * level:
+        level = math.sqrt((count * level**2 + worth * ripple**2) / (count + worth))
     return max(level, max(map(rounding, traces)))
 
 
