@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scipy import stats
+from scipy import signal, stats
 
 from sonicvacuum.discover.fit import goodness
 
@@ -28,6 +28,15 @@ def test_noise_fails_as_often_as_it_should(noise, test):
     failed = sum(test(r) < 0.05 for r in noise)
     # At most 5 % of 200: beyond 20 by chance once in a thousand.
     assert failed <= stats.binom.isf(1e-3, TRACES, 0.05)
+
+
+def test_the_tail_of_whiteness_is_true_far_out():
+    noise = np.random.default_rng(np.random.SeedSequence(8)).normal(size=(3000, 120))
+    neighbours = signal.lfilter([1.0], [1.0, -0.5], noise, axis=1)
+    for draws in (noise, neighbours):
+        failed = sum(goodness._whiteness(r) < 1e-3 for r in draws)
+        # One in a thousand of 3000: beyond 9 by chance once in a thousand.
+        assert failed <= stats.binom.isf(1e-3, len(draws), 1e-3)
 
 
 def test_every_member_of_the_bank_is_a_chi_square_of_two(noise):

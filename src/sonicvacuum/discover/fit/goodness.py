@@ -1,10 +1,10 @@
 """Goodness of fit: does what a model leaves look like noise, whatever its shape may be?
 
 The test of shapes (`unknown`) looks along chosen directions. Here nothing is chosen: for each run and gauge
-the whitened residual is asked for its total χ², its whiteness (Ljung & Box, Biometrika 65, 297, 1978),
-outliers, and for oscillations of any frequency that set in anywhere and die away at any rate, or not at all
-(a bank of damped sinusoids; the same summed over the runs of a gauge, setting in with the pulse). The
-smallest p counts, times the number of independent tests.
+the whitened residual is asked for its total χ², its whiteness, outliers, and for oscillations of any
+frequency that set in anywhere and die away at any rate, or not at all (a bank of damped sinusoids; the same
+summed over the runs of a gauge, setting in with the pulse). The smallest p counts, times the number of
+independent tests.
 """
 
 from dataclasses import dataclass
@@ -130,17 +130,27 @@ def _chi2_of(value, size):
 
 
 def _whiteness(r):
-    """p of the portmanteau test, correlation of neighbours taken out: noise may have some."""
+    """p of white noise, or noise whose neighbours alone are correlated, against an autoregression of higher
+    order.
+
+    The likelihood ratio by Burg's recursion (J. P. Burg, Maximum Entropy Spectral Analysis, Stanford 1975).
+    Reflection coefficients of white noise are independent, so that the tail of the ratio is that of χ² down
+    to 60 samples, where the sum of squared autocorrelations of Ljung and Box has six times too many p below
+    1e-4.
+    """
     count, lags = len(r), min(LAGS, len(r) // 4)
     if lags < 3:
         return 1.0
-    r = r - r.mean()
-    first = (r[1:] @ r[:-1]) / (r @ r)
-    r = r[1:] - first * r[:-1]
-    shifts = np.arange(1, lags + 1)
-    rho = np.array([r[k:] @ r[:-k] for k in shifts]) / (r @ r)
-    q = count * (count + 2.0) * np.sum(np.square(rho) / (count - shifts))
-    return float(stats.chi2.sf(q, lags - 1))
+    forward = backward = r - r.mean()
+    ratio = 0.0
+    for lag in range(1, lags + 1):
+        ahead, behind = forward[1:], backward[:-1]
+        power = ahead @ ahead + behind @ behind
+        reflection = 2.0 * (ahead @ behind) / power if power > 0.0 else 0.0
+        forward, backward = ahead - reflection * behind, behind - reflection * ahead
+        if lag > 1:
+            ratio -= (count - lag - 1) * np.log1p(-(reflection**2))
+    return float(stats.chi2.sf(ratio, lags - 1))
 
 
 def _outliers(r):
