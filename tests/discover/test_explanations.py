@@ -69,6 +69,14 @@ def test_odds_of_the_record_multiply_those_of_the_catalogue():
     assert set(excluded) == {"none", "tsuji"}
 
 
+def test_what_is_named_is_likelier_than_all_that_was_refused_together():
+    many = {f"effect {k}": 0.05 for k in range(19)}
+    found, likelier = explanations.consistent({**many, "unknown": 0.049, "none": 0.001}, ["unknown"])
+    assert likelier in many
+    assert found["unknown"] > 0.5
+    assert math.isclose(sum(found.values()), 1.0)
+
+
 def test_what_failed_a_test_is_not_left_the_likeliest():
     found, likelier = explanations.consistent({"none": 0.2, "tsuji": 0.7, "unknown": 0.1}, [])
     assert likelier == "tsuji"

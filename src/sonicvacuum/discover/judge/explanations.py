@@ -117,18 +117,17 @@ def probabilities(
 def consistent(found: Mapping[str, float], named: Iterable[str]) -> tuple[dict[str, float], str]:
     """Probabilities in which what is named is the likeliest, and what was likelier ("" where nothing was).
 
-    What failed a test is no longer worth its evidence.
+    What failed a test is no longer worth its evidence: all else together is held to a share of what is named.
     """
     own = key(named)
     best = max(found, key=found.get)
     mine = found.get(own, 0.0)
     if best == own or mine >= found[best]:
         return dict(found), ""
-    most = policy.REFUSED * max(mine, 1e-12)
-    held = {name: value if name == own else min(value, most) for name, value in found.items()}
-    held[own] = max(mine, 1e-12)
-    total = sum(held.values())
-    return {name: value / total for name, value in held.items()}, best
+    rest = sum(value for name, value in found.items() if name != own)
+    share = policy.REFUSED / (1.0 + policy.REFUSED)
+    held = {name: share * value / rest for name, value in found.items() if name != own}
+    return {own: 1.0 - share} | held, best
 
 
 def doubted(found: Mapping[str, float], named: Iterable[str], most: float) -> dict[str, float]:
