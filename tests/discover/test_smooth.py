@@ -65,6 +65,17 @@ def test_a_smooth_misfit_is_found_with_its_size(empty, size):
     assert size / 2.0 < seen.size < size * 2.0  # some sixty directions, part of which nuisances take up
 
 
+def test_a_rough_misfit_is_no_larger_smooth_one(empty):
+    forward = Forward(experiment(roughened(with_systematics(empty, 0.02), 5.0)))
+    null = nominal(forward)
+    seen = smooth.infer(forward, null, smooth.blocks(forward.experiment))
+    assert 0.01 < seen.size < 0.04  # within twice what is there
+    assert 3.0 < seen.excess < 6.0  # noise of √(1 + 5²) in two thirds of the samples, tried in steps of 1.3
+    counted = smooth.with_size(forward.experiment, seen.size, None, seen.excess)
+    left = nominal(Forward(counted)).objective / sum(counted.size(k) for k in range(2))
+    assert 0.5 < left < 2.0  # a step of 1.3 in the noise is 1.7 in its square
+
+
 def test_an_effect_is_kept_beside_a_smooth_misfit():
     hidden = made([("viscous-drag", {"rate_per_s": 300.0})], seed=2)[0]
     v = session.discover(with_systematics(hidden, 0.01)).verdict
@@ -97,6 +108,23 @@ def with_systematics(record: Record, size: float, seed=5) -> Record:
             later = np.arange(len(trace)) > trace.argmax() - 1.5 * wide
             readings[gauge] = trace + size * trace.max() * later * drawn
         signals[run] = replace(one, readings=readings)
+    return replace(record, signals=signals)
+
+
+def roughened(record: Record, sigmas: float) -> Record:
+    """A record with white noise of so many standard errors more from a third of every trace on."""
+    rng = np.random.default_rng(np.random.SeedSequence(6))
+    sigma = {g.id: g.sigma for g in record.gauges}
+    signals = {
+        run: replace(
+            one,
+            readings={
+                g: y + sigmas * sigma[g] * (np.arange(len(y)) > len(y) / 3) * rng.normal(size=len(y))
+                for g, y in one.readings.items()
+            },
+        )
+        for run, one in record.signals.items()
+    }
     return replace(record, signals=signals)
 
 

@@ -31,6 +31,12 @@ SMOOTH_LENGTH = 0.5
 SMOOTH_KNOTS = 48
 # Sizes tried, as shares of the peak: from what the simulation itself errs by to where no model is left.
 SMOOTH_LEAST, SMOOTH_MOST, SMOOTH_SIZES = 2e-4, 0.5, 34
+# It is at most so many times the root mean square of what a model leaves in a trace: of sixty directions
+# nuisances and parameters take up a few.
+SMOOTH_TAKEN_UP = 1.5
+# What is rougher than its kernel is counted as white: tried are noises so many times, and powers of it, as
+# large as they are.
+EXCESS_STEP = 1.3
 # A systematic error tends to be the same in every run, so that runs do not average it away: of its variance
 # this share is taken as common to all.
 SMOOTH_SHARED = 0.5
@@ -48,7 +54,7 @@ ALIAS_GAIN = 4.0
 # A fit that ends at a bound could fit better: where the named effect or a rival within this Δχ² has, what is
 # named is not held surer than that.
 RIVAL, AT_BOUND = 9.0, 0.6
-# What failed a test may be at most this share as probable as what is named.
+# All that failed a test may together be at most this share as probable as what is named.
 REFUSED = 0.5
 
 # A free-form law is kept where it is so much likelier than none (natural log), ...

@@ -9,6 +9,7 @@ its inverse root 1 − U (1 − (1 + Λ)^−½) Uᵀ. Applied to data, predictio
 (`Experiment.whiten`), it is seen by every step: screen, fit, evidence, held-out runs and limits.
 """
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -23,8 +24,9 @@ from sonicvacuum.discover.model.forward import Forward
 _BEFORE = 1.5
 
 
-def with_size(experiment: Experiment, size: float, known=None) -> Experiment:
-    """The experiment with a smooth discrepancy of `size` (share of the peak) in its noise.
+def with_size(experiment: Experiment, size: float, known=None, excess: float = 1.0) -> Experiment:
+    """The experiment with a smooth discrepancy of `size` (share of the peak) in its noise, and the noise of
+    single samples `excess` times as large.
 
     The part that is common to all runs does not average away over them; as runs are whitened one by one, the
     variance of each is enlarged by as much. `known` are its `blocks`, where at hand.
@@ -34,7 +36,8 @@ def with_size(experiment: Experiment, size: float, known=None) -> Experiment:
         return white
     runs = sum(r.has_signals for r in experiment.runs)
     factor = 1.0 + policy.SMOOTH_SHARED * max(0, runs - 1)
-    return replace(white, smooth=Smooth(size, factor * size**2, known or blocks(white)))
+    smooth = Smooth(size, factor * size**2 / excess**2, known or blocks(white))
+    return replace(white, sigma=excess * white.sigma, smooth=smooth)
 
 
 def blocks(experiment: Experiment):
@@ -92,15 +95,24 @@ class Size:
     Attributes:
         size: share of the peak; 0 where none is likelier.
         drop: by how much −2 log evidence is lower than without any, 0 or more.
+        excess: noise of single samples over what it is, 1 or more: what is rougher than the discrepancy.
+        rough: by how much −2 log evidence is lower for that alone, 0 or more.
     """
 
     size: float
     drop: float
+    excess: float = 1.0
+    rough: float = 0.0
 
     @property
     def log_bayes(self) -> float:
         """Log of the posterior odds that there is a smooth misfit, prior odds and Occam factor included."""
         return 0.5 * self.drop + policy.SMOOTH_LOG_PRIOR
+
+    @property
+    def log_odds(self) -> float:
+        """Log of the posterior odds of smooth misfit and rough one together, 0 where there is none."""
+        return max(0.0, self.log_bayes) + 0.5 * self.rough
 
     @property
     def found(self) -> bool:
@@ -112,7 +124,8 @@ def infer(forward: Forward, fit: Fit, known) -> Size:
     """The size of the smooth discrepancy at a model, whose parameters and nuisances follow linearly.
 
     `forward` has no discrepancy of its own, `known` are its `blocks`. The evidence is marginal over
-    parameters and nuisances.
+    parameters and nuisances. The discrepancy is part of the residual, so that it can hardly be larger
+    (`_largest`): what is rougher than its kernel would ask for any size.
     """
     if not sum(len(v) for part in known for _, v in part):
         return Size(0.0, 0.0)
@@ -121,13 +134,31 @@ def infer(forward: Forward, fit: Fit, known) -> Size:
     free = np.concatenate([~fit.at_bound(), np.ones(len(fit.nu), dtype=bool)])
     parts, variances = _projected(forward, fit, columns, known)
     parts = parts[:, np.concatenate([[True], free])]
-    gradient, hessian = normal.total()
-    gradient, hessian = gradient[0][free], hessian[0][np.ix_(free, free)]
     sizes = np.geomspace(policy.SMOOTH_LEAST, policy.SMOOTH_MOST, policy.SMOOTH_SIZES)
-    values = [_evidence(parts, size**2 * variances, gradient, hessian) for size in (0.0, *sizes)]
-    drop = values[0] - np.array(values[1:])
+    sizes = sizes[sizes <= max(sizes[0], _largest(forward, columns))]
+    marginal = _Marginal(forward, normal, free, parts, variances)
+    excess = marginal.excess(sizes)
+    values = np.array([marginal(size, excess) for size in (0.0, *sizes)])
+    rough = marginal(0.0, 1.0) - values[0]
+    drop = values[0] - values[1:]
     best = int(drop.argmax())
-    return Size(float(sizes[best]), float(drop[best])) if drop[best] > 0.0 else Size(0.0, 0.0)
+    if not drop[best] > 0.0:
+        return Size(0.0, 0.0)
+    return Size(float(sizes[best]), float(drop[best]), excess, max(0.0, float(rough)))
+
+
+def _largest(forward, columns):
+    """Root mean square of the residual as a share of the peak, the largest over traces, and what nuisances
+    may have taken up of it.
+    """
+    e, largest = forward.experiment, 0.0
+    for run, part in enumerate(columns):
+        left, samples = forward.data(run) - part[0, 0], len(e.runs[run].time)
+        for s in range(len(e.gauges) if samples else 0):
+            peak = float(np.abs(np.nan_to_num(e.runs[run].readings[s])).max()) / e.sigma[s]
+            own = left[s * samples : (s + 1) * samples]
+            largest = max(largest, math.sqrt(float(own @ own) / samples) / peak if peak > 0.0 else 0.0)
+    return policy.SMOOTH_TAKEN_UP * largest
 
 
 def _projected(forward, fit, columns, known):
@@ -145,6 +176,36 @@ def _projected(forward, fit, columns, known):
             rows.append(row)
             variances.append(variance)
     return np.concatenate(rows), np.concatenate(variances)
+
+
+class _Marginal:
+    """−2 log evidence, up to a constant of the data, of a discrepancy of some size and of noise some times as
+    large, beside a linearised model.
+    """
+
+    def __init__(self, forward, normal, free, parts, variances):
+        self.parts, self.variances = parts, variances
+        self.data = sum(forward.experiment.size(run) for run in range(len(normal.chi2)))
+        self.chi2, self.nu = float(normal.chi2.sum()), np.zeros(int(free.sum()))
+        self.gradient = normal.gradient.sum(axis=0)[0][free]
+        self.hessian = normal.hessian.sum(axis=0)[0][np.ix_(free, free)]
+        unknowns = len(self.nu) - normal.nu.shape[1]
+        self.nu[unknowns:] = normal.nu[0]
+        self.prior = np.diag((np.arange(len(self.nu)) >= unknowns).astype(float))
+
+    def __call__(self, size: float, excess: float) -> float:
+        gradient = self.gradient / excess**2 - self.nu
+        hessian = self.hessian / excess**2 + self.prior
+        variances = self.variances * (size / excess) ** 2
+        own = self.chi2 / excess**2 + 2.0 * self.data * math.log(excess)
+        return own + _evidence(self.parts / excess, variances, gradient, hessian)
+
+    def excess(self, sizes) -> float:
+        """Noise over what it is that is likeliest with any of some sizes; 1 where it is not surely larger."""
+        most = max(1.0, math.sqrt(self.chi2 / self.data))
+        tried = policy.EXCESS_STEP ** np.arange(1 + int(math.log(most) / math.log(policy.EXCESS_STEP)))
+        best = [min(self(size, one) for size in (0.0, *sizes)) for one in tried]
+        return float(tried[int(np.argmin(best))])
 
 
 def _evidence(parts, variances, gradient, hessian):

@@ -71,11 +71,11 @@ class Case:
     def _unknown(self, alarms, reasons, seen: Left, tried=()) -> Decision:
         """Something is missing, and nothing can be said of it."""
         size = seen.size.size if seen.size.found else 0.0
-        view = self._view(size, self.null) if size else None
+        view = self._view(seen.size, self.null) if size else None
         return Decision([UNKNOWN], self.null, alarms, reasons, seen.p, list(tried), size, view)
 
-    def _view(self, size, final: Fit) -> View:
-        counted = smooth.with_size(self.forward.experiment, size, self.known)
+    def _view(self, one: smooth.Size, final: Fit) -> View:
+        counted = smooth.with_size(self.forward.experiment, one.size, self.known, one.excess)
         forward = Forward(counted, self.forward.threads)
         null = several.moved(forward, self.null)
         return View(forward, null, null if final is self.null else several.moved(forward, final))
@@ -106,8 +106,7 @@ class Case:
         if self.known is None:
             return None
         alone = smooth.infer(self.forward, self.null, self.known)
-        with_effect = best.log_bayes + max(0.0, seen.size.log_bayes)
-        if alone.log_bayes <= with_effect:
+        if alone.log_odds <= best.log_bayes + seen.size.log_odds:
             return None
         reason = (
             f"a smooth misfit of {100.0 * alone.size:.2g} % of the peak explains the data better than "
@@ -121,14 +120,14 @@ class Case:
         tried = pairs.search(self.forward, self.null, self.scores, self.found)
         best = self.found[0]
         single = max(c.gain for c in self.found)
-        rival = best.log_bayes + max(0.0, seen.size.log_bayes)
+        rival = best.log_bayes + seen.size.log_odds
         start, lowest = best.fit, seen
         for pair in tried[:ASKED]:
             if pair.gain - single <= needed:
                 continue
             after = left(self.forward, pair.fit, self.known, behind=_behind(pair.gain, most))
             alarms.setdefault("pair", after.p)
-            if pair.log_bayes + max(0.0, after.size.log_bayes) <= rival:
+            if pair.log_bayes + after.size.log_odds <= rival:
                 continue
             if not after.failed:
                 alarms["pair"] = after.p

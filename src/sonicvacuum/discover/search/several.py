@@ -93,10 +93,10 @@ class Turns:
         """The fit with the discrepancy at it counted as noise; what was tried under another is forgotten."""
         size = smooth.infer(self.plain, fit, self.known) if self.infer else smooth.Size(0.0, 0.0)
         size = size if size.found else smooth.Size(0.0, size.drop)
-        if self.null is None or size.size != self.size.size:
+        if self.null is None or (size.size, size.excess) != (self.size.size, self.size.excess):
             self.forward = self.plain
             if size.size:
-                counted = smooth.with_size(self.plain.experiment, size.size, self.known)
+                counted = smooth.with_size(self.plain.experiment, size.size, self.known, size.excess)
                 self.forward = Forward(counted, self.plain.threads)
             self.null = moved(self.forward, plain_null) if size.size else plain_null
             self.tried = {}
