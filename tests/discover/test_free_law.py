@@ -15,6 +15,9 @@ from sonicvacuum.discover.model.problem import experiment
 from sonicvacuum.discover.rounds import nominal
 from sonicvacuum.discover.search.free_law import free_law
 from sonicvacuum.effects import CATALOGUE, Setup
+from sonicvacuum.figures import force_law
+from sonicvacuum.figures.discovery import rows
+from sonicvacuum.figures.style import context
 
 DAMPING = 2e5  # kg/(s m): the law outside the catalogue is F = K δ^1.5 + b δ v
 
@@ -103,3 +106,15 @@ def test_what_is_told_of_it(found):
     header, rows = telling.rows(surface(found))
     assert len(list(rows)) == 21 * 21
     assert header[0] == "depth_um"
+
+
+def test_it_is_drawn_where_contacts_have_been(found, tmp_path):
+    verdict.write_table(tmp_path / "law.csv", *telling.rows(surface(found)))
+    with context():
+        left, right = force_law.law(rows(tmp_path / "law.csv")).axes
+    seen = surface(found)
+    for line in left.get_lines()[:3]:
+        shown = np.isfinite(line.get_ydata())
+        assert any(np.array_equal(shown, column) for column in seen.visited.T)
+    assert "m/s" in right.get_xlabel()
+    assert force_law.law([]) is None

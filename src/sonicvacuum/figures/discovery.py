@@ -3,7 +3,8 @@
 where: disagreement of the nominal model by run, gauge and feature. scalars: the same for quantities measured
 without traces, before and after. traces: measured and predicted, with running means of the residuals over
 their own standard error (band: two of them). candidates: how probable each explanation is. parameters: their
-posteriors. gap: misfit of each round, falling to the noise.
+posteriors. gap: misfit of each round, falling to the noise. law: the free-form contact law, where one was
+needed.
 """
 
 import csv
@@ -13,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from sonicvacuum.effects import CATALOGUE, Catalogue
-from sonicvacuum.figures import disagreement, posterior
+from sonicvacuum.figures import disagreement, force_law, posterior
 from sonicvacuum.figures.style import BAND, DOUBLE, GREY, SINGLE, canvas, context, panel, save
 
 BLUE, ORANGE, GREEN = "#0072B2", "#D55E00", "#009E73"
@@ -37,6 +38,7 @@ def draw(folder: Path, catalogue: Catalogue = CATALOGUE) -> list[Path]:
         "candidates": lambda: candidates(verdict["probabilities"]),
         "parameters": lambda: posterior.parameters(rows(folder / "parameters.csv")),
         "gap": lambda: gap(rows(folder / "gap.csv")),
+        "law": lambda: force_law.law(rows(folder / "law.csv") if (folder / "law.csv").exists() else []),
     }
     written = []
     with context():

@@ -29,11 +29,13 @@ PICTURES = {
     "gap": "Misfit of the best model of each round, adopted or not; 1 is the noise.",
     "traces": "First and last run: measured, nominal and extended traces; below them running means of the "
     "residuals over their own standard error (band: two of them).",
+    "law": "Free-form contact law: force between two beads besides the nominal one, with its standard error, "
+    "where contacts have been. Positive rates: approaching.",
 }
 # What a page adds to the folder of discover.
 PAGE = ("index.html", "parameters.csv", *(f"{name}.{kind}" for name in PICTURES for kind in ("svg", "png")))
 # Those that stand on the page as drawn; the others' numbers do.
-_SHOWN = ("parameters", "traces")
+_SHOWN = ("parameters", "traces", "law")
 _PAIRS = 6
 # What the page needs of each table.
 _COLUMNS = {
