@@ -16,7 +16,7 @@ COMPILE := pip compile --quiet --universal --generate-hashes --no-emit-index-url
 	--custom-compile-command "make lock"
 
 .DELETE_ON_ERROR:
-.PHONY: all env test browser fuzz reproduce bench study lock clean help
+.PHONY: all env test browser bare fuzz reproduce bench study lock clean help
 
 all: env  ## build the environment, then run the whole pipeline
 	$(BIN)/snakemake --cores $(CORES)
@@ -58,6 +58,9 @@ test: env  ## check format, style, types, import contracts, and run the tests
 
 browser: .venv/browsed  ## try the page of a verdict in a real browser: Chromium on the path, or CHROMIUM=PATH
 	$(BIN)/pytest tests/report/browser_pages.py
+
+bare: env  ## install the wheel without extras in a fresh environment and search a record with it
+	$(BIN)/python workflow/scripts/bare.py
 
 fuzz: env  ## try 5500 damaged files of every kind that users hand over; table in results/fuzz.csv
 	$(BIN)/python tests/fuzz/mutants.py results/fuzz.csv 5500
