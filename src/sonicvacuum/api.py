@@ -58,7 +58,7 @@ def simulate(card: Card) -> Simulation:
     >>> seen.readings()["velocity-15"].shape  # samples, runs; m/s
     (1601, 1)
     """
-    return simulation.run(card)
+    return simulation.simulate(card)
 
 
 def compare(model: Model | Path, record: Record, threads: int | None = None) -> Comparison:

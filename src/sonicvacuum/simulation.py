@@ -22,7 +22,8 @@ from sonicvacuum.physics import validity
 from sonicvacuum.physics.assemble import assemble
 from sonicvacuum.physics.chain import Chain
 from sonicvacuum.physics.extent import Extent, TooLargeError, estimate
-from sonicvacuum.physics.run import History, simulate
+from sonicvacuum.physics.run import History
+from sonicvacuum.physics.run import simulate as integrate
 
 # An aimed striker's speed is settled when the gauge's peak is this close to its aim.
 AIM_TOLERANCE = 1e-6
@@ -147,7 +148,7 @@ def check_extent(card: Card, catalogue: Catalogue = CATALOGUE) -> None:
 
 
 @one_thread
-def run(card: Card, catalogue: Catalogue = CATALOGUE, limits: bool = True) -> Simulation:
+def simulate(card: Card, catalogue: Catalogue = CATALOGUE, limits: bool = True) -> Simulation:
     """Simulate a card, at the chosen step and at half of it.
 
     Raises:
@@ -192,7 +193,7 @@ def _doubts(card, setup, history):
 def _simulate(card, speeds, contacts, catalogue=CATALOGUE, refine=1.0, audit=False) -> History:
     chain = set_up(card, speeds, catalogue).chain
     _, bodies = needed(sensors(card), card.beads)
-    history = simulate(
+    history = integrate(
         chain, contacts, card.duration_s, card.interval_s, bodies=bodies, refine=refine, audit=audit
     )
     kept = [history.contacts.index(c) for c in contacts]

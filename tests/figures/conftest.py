@@ -12,7 +12,7 @@ def simulations(pytestconfig):
     """Card name → simulation."""
     cases = config.read(pytestconfig.rootpath / "config.yaml")
     cards = [card for name in figures.names() for card in figures.cards_of(name)]
-    return {card: simulation.run(config.card(cases, *card.split("."))) for card in cards}
+    return {card: simulation.simulate(config.card(cases, *card.split("."))) for card in cards}
 
 
 @pytest.fixture(scope="session")

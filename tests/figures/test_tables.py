@@ -182,7 +182,7 @@ def test_fig4_leaves_the_printed_reading_out_where_no_simulated_wave_is_as_weak(
         strong.card,
         striker=msgspec.structs.replace(strong.card.striker, speeds_m_s=tuple(strong.speeds[fast])),
     )
-    kept = {"fig4a.matched": simulation.run(card), "fig4b.nominal": simulations["fig4b.nominal"]}
+    kept = {"fig4a.matched": simulation.simulate(card), "fig4b.nominal": simulations["fig4b.nominal"]}
     table = pandas.read_csv(figures.make("fig4", kept, tmp_path)[0])
     assert PRINTED.speed_low not in set(table.speed_m_s[table.series == "paper"])
     assert "paper-as-read" in set(table.series)

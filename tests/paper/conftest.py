@@ -22,7 +22,7 @@ def cases():
 def simulated(cases):
     """Card name → its rows."""
     cards = [config.card(cases, *name.split(".")) for name in config.card_names(cases)]
-    return {c.name: card_rows(simulation.run(c)) for c in cards}
+    return {c.name: card_rows(simulation.simulate(c)) for c in cards}
 
 
 @pytest.fixture(scope="session")

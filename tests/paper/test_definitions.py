@@ -258,7 +258,7 @@ def test_thin_layer_force_of_the_hand_estimate(cases):
 @pytest.mark.parametrize("beads", [1, 2, 9])
 def test_short_chains_and_absent_gauges_give_reasons_not_errors(card, beads):
     short = msgspec.structs.replace(card, beads=beads, sensors=(card.sensors[2],), duration_s=4e-4)
-    rows = card_rows(simulation.run(short))
+    rows = card_rows(simulation.simulate(short))
     assert all(r.known or r.reason for r in rows)
     wall = {r.quantity: r for r in rows if r.sensor == "wall"}
     assert wall["amplitude"].known
@@ -266,7 +266,7 @@ def test_short_chains_and_absent_gauges_give_reasons_not_errors(card, beads):
 
 def test_a_record_that_ends_too_early_gives_reasons(card):
     early = msgspec.structs.replace(card, duration_s=1e-4)
-    rows = {(r.quantity, r.sensor): r for r in card_rows(simulation.run(early))}
+    rows = {(r.quantity, r.sensor): r for r in card_rows(simulation.simulate(early))}
     assert not rows["amplitude", "wall"].known
     assert rows["speed", "g5-wall"].reason
     assert all(r.known or r.reason for r in rows.values())
@@ -274,14 +274,14 @@ def test_a_record_that_ends_too_early_gives_reasons(card):
 
 def test_a_speed_given_twice_is_refused(card):
     twice = msgspec.structs.replace(card.striker, speeds_m_s=(0.4, 0.44, 0.44))
-    made = simulation.run(msgspec.structs.replace(card, striker=twice, duration_s=1e-4))
+    made = simulation.simulate(msgspec.structs.replace(card, striker=twice, duration_s=1e-4))
     with pytest.raises(InputError, match=r"fig3a\.matched@0\.44: striker\.speed_m_s holds this speed twice"):
         card_rows(made)
 
 
 def test_runs_of_a_sweep_are_named_by_speed(card):
     sweep = msgspec.structs.replace(card.striker, speeds_m_s=(0.4, 0.44))
-    rows = card_rows(simulation.run(msgspec.structs.replace(card, striker=sweep, interval_s=0.5e-6)))
+    rows = card_rows(simulation.simulate(msgspec.structs.replace(card, striker=sweep, interval_s=0.5e-6)))
     assert {r.case for r in rows} == {"fig3a.matched@0.4", "fig3a.matched@0.44", "fig3a.matched"}
     peak = {r.case: r.value for r in rows if (r.quantity, r.sensor) == ("amplitude", "g9")}
     # Without gravity amplitude grows as speed^(6/5); 1 %: the small preload

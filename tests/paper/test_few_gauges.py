@@ -30,7 +30,7 @@ def made(*sensors, speeds=(0.4, 0.8), effects=None):
         interval_s=0.5e-6,
         effects=effects or {},
     )
-    return simulation.run(card)
+    return simulation.simulate(card)
 
 
 def gauge(name, bead):

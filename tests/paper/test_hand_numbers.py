@@ -102,7 +102,7 @@ HAND = {
 def test_speeds_and_peaks_of_the_hand_simulation(cases, card):
     speed, peak = HAND[card]
     ideal = config.card(cases, "fig3a", "ideal").sensors
-    found = simulation.run(replace(config.card(cases, *card.split(".")), sensors=ideal))
+    found = simulation.simulate(replace(config.card(cases, *card.split(".")), sensors=ideal))
     rows = {(r.quantity, r.sensor): r.value for r in card_rows(found)}
     assert rows["speed", "g9-g5"] == pytest.approx(speed, rel=0.005)  # asked for: 0.5 %
     assert rows["amplitude", "g9"] == pytest.approx(peak, abs=0.05)  # given with one decimal

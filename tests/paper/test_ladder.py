@@ -13,7 +13,7 @@ from sonicvacuum_paper.printed import PRINTED
 def run(card, time_us):
     """The card with another time of its loss."""
     effects = {**card.effects, "kuwabara-kono": {"time_us": time_us}}
-    return OneRun(simulation.run(replace(card, effects=effects)))
+    return OneRun(simulation.simulate(replace(card, effects=effects)))
 
 
 def duration(card, time_us):

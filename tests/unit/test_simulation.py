@@ -31,7 +31,7 @@ def card(**changes):
 
 
 def test_the_error_from_half_the_step_bounds_the_true_error():
-    done = simulation.run(card())
+    done = simulation.simulate(card())
     fine = simulation._simulate(card(), done.speeds, done.contacts, refine=8.0)
     estimate = np.abs(done.force - done.refined).max()
     truth = np.abs(done.refined - fine.force).max()
@@ -41,7 +41,7 @@ def test_the_error_from_half_the_step_bounds_the_true_error():
 
 
 def test_energy_and_momentum_stay_in_balance():
-    done = simulation.run(card(gravity_m_s2=9.81))
+    done = simulation.simulate(card(gravity_m_s2=9.81))
     assert np.ptp(done.energy[:, 0]) < 1e-4 * done.energy[0, 0]  # the splitting method's bounded error
     assert np.ptp(done.momentum[:, 0]) < 1e-11 * done.momentum[0, 0]  # exact but for rounding in 1e3 steps
 
@@ -53,14 +53,14 @@ def test_a_sweep_keeps_the_contacts_between_its_gauges_only():
     assert simulation.recorded_contacts(sweep) == (3, 4, 5, 8)
     assert simulation.recorded_contacts(card()) == tuple(range(9))
     assert simulation.recorded_contacts(card(striker=striker)) == tuple(range(9))
-    assert simulation.run(sweep).force.shape == (601, 4, 3)
+    assert simulation.simulate(sweep).force.shape == (601, 4, 3)
 
 
 def test_the_aimed_amplitude_is_met():
     striker = CardStriker(
         mass_kg=0.5e-3, surface=STEEL, speeds_m_s=(0.5,), aim=AimBlock(sensor="g", amplitude_N=2.0)
     )
-    done = simulation.run(card(striker=striker))
+    done = simulation.simulate(card(striker=striker))
     assert done.readings()["g"].max() == pytest.approx(
         2.0, rel=1e-5
     )  # tolerance of the aim, and the sampling
@@ -72,14 +72,14 @@ def test_an_aim_out_of_reach_is_said():
         mass_kg=0.5e-3, surface=STEEL, speeds_m_s=(0.5,), aim=AimBlock(sensor="wall", amplitude_N=1e-9)
     )
     with pytest.raises(InputError, match=r"c\.nominal: striker\.aim: no speed found"):
-        simulation.run(card(striker=striker, duration_s=20e-6))
+        simulation.simulate(card(striker=striker, duration_s=20e-6))
 
 
 def test_effects_of_a_card_are_simulated():
-    plain = simulation.run(card()).readings()["g"].max()
-    damped = simulation.run(card(effects={"kuwabara-kono": {"time_us": 0.5}})).readings()["g"].max()
+    plain = simulation.simulate(card()).readings()["g"].max()
+    damped = simulation.simulate(card(effects={"kuwabara-kono": {"time_us": 0.5}})).readings()["g"].max()
     louder = (
-        simulation.run(card(effects={"sensor-gain": {"gain_ratio": 1.5, "sensor": "g"}}))
+        simulation.simulate(card(effects={"sensor-gain": {"gain_ratio": 1.5, "sensor": "g"}}))
         .readings()["g"]
         .max()
     )
@@ -97,11 +97,11 @@ def test_effects_of_a_card_are_simulated():
 )
 def test_an_effect_that_cannot_be_is_refused(effects, hint):
     with pytest.raises(InputError, match=f"c.nominal: effects.*{hint}"):
-        simulation.run(card(effects=effects))
+        simulation.simulate(card(effects=effects))
 
 
 def test_a_study_survives_its_file(tmp_path):
-    done = simulation.run(card())
+    done = simulation.simulate(card())
     simulation.save(done, tmp_path / "h.npz")
     read = simulation.load(card(), tmp_path / "h.npz")
     for name in ("speeds", "time", "force", "refined", "energy", "momentum"):

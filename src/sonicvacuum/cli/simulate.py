@@ -31,7 +31,7 @@ def simulate(card, model, no_limits, out, own):
 
         resolved = with_model(resolved, model, known)
     with progress():
-        simulated = simulation.run(resolved, known, limits=not no_limits)
+        simulated = simulation.simulate(resolved, known, limits=not no_limits)
     for told in simulated.warnings:
         click.echo(f"Warning: {resolved.name}: {told}", err=True)
     simulation.save(simulated, out)

@@ -20,7 +20,7 @@ from sonicvacuum.observe.run import Geometry, Run
 from sonicvacuum.observe.trace import Trace
 from sonicvacuum.physics.scales import COUNTING, impact_scales, passage_of, sampling_of
 from sonicvacuum.prediction.setup import card_of
-from sonicvacuum.simulation import Simulation, check_extent, run, set_up
+from sonicvacuum.simulation import Simulation, check_extent, set_up, simulate
 
 # Samples across a pulse at half its height: with so many its arrival is read to 2e-5 of that width, its
 # duration to 7e-4 (module `observe.trace`).
@@ -139,7 +139,7 @@ def predict(
     check_extent(card)
     if card.striker.aim is not None:
         card = _settled(card)
-    return measured(run(_cut(card)))
+    return measured(simulate(_cut(card)))
 
 
 def _cut(card: Card) -> Card:
@@ -156,7 +156,7 @@ def _settled(card: Card) -> Card:
     speed *= (card.striker.aim.amplitude_N / force) ** (5.0 / 6.0)
     for name, found in (("started", speed), ("settled", None)):
         if found is None:
-            found = float(run(_cut(card)).speeds[0])
+            found = float(simulate(_cut(card)).speeds[0])
         try:
             ranges.SPEED.check("aim", found)
         except LaboratoryError:
