@@ -1,12 +1,12 @@
 """Verdicts against truths: one row for each case; tables made of the rows: `summary` and `breakdown`."""
 
-import csv
 import json
 import math
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 
-from sonicvacuum.files import InputError, replacing
+from sonicvacuum.files import InputError
+from sonicvacuum.tables import write_csv
 
 CONFIDENT = 0.9
 NINETY = 1.6448536269514722  # standard deviations on either side of a 90 % interval
@@ -220,8 +220,5 @@ class Line:
 
 def write_table(lines: list, kind: type, path) -> None:
     """Rows or lines as CSV, numbers to six digits."""
-    with replacing(path) as stream:
-        writer = csv.DictWriter(stream, [f.name for f in fields(kind)], lineterminator="\n")
-        writer.writeheader()
-        for line in lines:
-            writer.writerow({k: f"{v:.6g}" if isinstance(v, float) else v for k, v in asdict(line).items()})
+    cells = ([f"{v:.6g}" if isinstance(v, float) else v for v in asdict(line).values()] for line in lines)
+    write_csv(path, [f.name for f in fields(kind)], cells)

@@ -9,7 +9,8 @@ from dataclasses import asdict, fields
 
 import numpy as np
 
-from sonicvacuum.files import InputError, replacing
+from sonicvacuum.files import InputError
+from sonicvacuum.tables import write_csv
 from sonicvacuum_blind import catalogue, foreign
 from sonicvacuum_blind.hide import Spec
 
@@ -121,11 +122,8 @@ def _full(random):
 
 def write_cases(specs: Iterable[Spec], path) -> None:
     """The list of cases as CSV; effects joined by `+`."""
-    with replacing(path) as stream:
-        writer = csv.DictWriter(stream, [f.name for f in fields(Spec)], lineterminator="\n")
-        writer.writeheader()
-        for spec in specs:
-            writer.writerow(asdict(spec) | {"effects": "+".join(spec.effects)})
+    cells = ((asdict(spec) | {"effects": "+".join(spec.effects)}).values() for spec in specs)
+    write_csv(path, [f.name for f in fields(Spec)], cells)
 
 
 def read_cases(path) -> list[Spec]:

@@ -1,13 +1,11 @@
 """The audit: does what the paper, or a model made from it, takes for granted hold in the runs?"""
 
-import csv
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
-from sonicvacuum.files import replacing
 from sonicvacuum_paper.columns import Metrics
 from sonicvacuum_paper.ledger import found_in_columns
-from sonicvacuum_paper.rows import number
+from sonicvacuum_paper.rows import write_lines
 from sonicvacuum_paper.verdict import DISAGREES, NOT_TESTABLE, Target, judge
 
 HOLDS, FAILS = "holds", "fails"
@@ -51,13 +49,7 @@ def build(metrics: Metrics, assumptions: list[Assumption], path="assumptions.csv
 
 def write(rows: list[AssumptionRow], path) -> None:
     """Write the audit with exactly the columns of `AssumptionRow`."""
-    names = [f.name for f in fields(AssumptionRow)]
-    with replacing(path) as stream:
-        table = csv.writer(stream, lineterminator="\n")
-        table.writerow(names)
-        for row in rows:
-            cells = (getattr(row, n) for n in names)
-            table.writerow([number(c, 8) if isinstance(c, float) else c for c in cells])
+    write_lines(rows, AssumptionRow, path)
 
 
 def _row(metrics, a, where):

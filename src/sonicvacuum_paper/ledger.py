@@ -6,17 +6,16 @@ and by how much. What no model without losses can show is outside the model; pri
 one another are inconsistent in the paper, not a disagreement of the simulation.
 """
 
-import csv
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 
-from sonicvacuum.files import InputError, replacing
+from sonicvacuum.files import InputError
 from sonicvacuum_paper import wording
 from sonicvacuum_paper.claims import Claim, read_table
 from sonicvacuum_paper.columns import Metrics
 from sonicvacuum_paper.ladder import ARITHMETIC, COLUMNS, DECIDING, LOSS, SIMULATION
-from sonicvacuum_paper.rows import Row, number
+from sonicvacuum_paper.rows import Row, write_lines
 from sonicvacuum_paper.verdict import (
     DISAGREES,
     INCONSISTENT,
@@ -109,14 +108,7 @@ def disagreements(ledger: list[LedgerRow]) -> list[LedgerRow]:
 
 def write(ledger: list[LedgerRow], path) -> None:
     """Write the ledger with exactly the columns of `LedgerRow`."""
-    names = [f.name for f in fields(LedgerRow)]
-    digits = {"numerical_error": 2, "difference_sigma": 4}
-    with replacing(path) as stream:
-        table = csv.writer(stream, lineterminator="\n")
-        table.writerow(names)
-        for row in ledger:
-            cells = ((n, getattr(row, n)) for n in names)
-            table.writerow([number(c, digits.get(n, 8)) if isinstance(c, float) else c for n, c in cells])
+    write_lines(ledger, LedgerRow, path, numerical_error=2, difference_sigma=4)
 
 
 def _row(metrics, claim, where):

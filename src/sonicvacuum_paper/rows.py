@@ -7,10 +7,11 @@ merged, keeps its line with an empty value; the reason stands in `results/absent
 import csv
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from itertools import pairwise
 
-from sonicvacuum.files import InputError, read_text, replacing
+from sonicvacuum.files import InputError, read_text
+from sonicvacuum.tables import write_csv
 
 COLUMNS = ("case", "quantity", "sensor", "value", "unit", "numerical_error")
 REASONED = (*COLUMNS, "reason")
@@ -62,21 +63,35 @@ def write_rows(rows: Iterable[Row], path, reasons: bool = True) -> None:
     Raises:
         ValueError: when two rows have one key.
     """
-    ordered = _sorted(rows)
-    with replacing(path) as stream:
-        table = csv.writer(stream, lineterminator="\n")
-        table.writerow(REASONED if reasons else COLUMNS)
-        for r in ordered:
-            cells = [*r.key, number(r.value), r.unit, number(r.numerical_error, 3)]
-            table.writerow([*cells, r.reason] if reasons else cells)
+    columns = REASONED if reasons else COLUMNS
+    cells = (
+        [*r.key, number(r.value), r.unit, number(r.numerical_error, 3), r.reason][: len(columns)]
+        for r in _sorted(rows)
+    )
+    write_csv(path, columns, cells)
 
 
 def write_absent(rows: Iterable[Row], path) -> None:
     """Write the reasons of the rows that have no value."""
-    with replacing(path) as stream:
-        table = csv.writer(stream, lineterminator="\n")
-        table.writerow(ABSENT)
-        table.writerows([*r.key, r.reason] for r in _sorted(rows) if not r.known)
+    write_csv(path, ABSENT, ([*r.key, r.reason] for r in _sorted(rows) if not r.known))
+
+
+def write_lines(lines: Iterable, kind: type, path, digits: int = 8, **other_digits: int) -> None:
+    """Write dataclasses of one kind, its fields as columns.
+
+    Args:
+        lines: the rows.
+        kind: their class.
+        path: of the file.
+        digits: of numbers that are no integers.
+        **other_digits: those of single columns.
+    """
+    names = [f.name for f in fields(kind)]
+
+    def cell(name, value):
+        return number(value, other_digits.get(name, digits)) if isinstance(value, float) else value
+
+    write_csv(path, names, ([cell(name, getattr(line, name)) for name in names] for line in lines))
 
 
 def read_rows(path, absent_path=None) -> list[Row]:

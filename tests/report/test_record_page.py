@@ -12,6 +12,7 @@ from sonicvacuum.figures import disagreement, discovery, posterior, style
 from sonicvacuum.files import InputError
 from sonicvacuum.report import bench, record, words
 from sonicvacuum.report.record import write_page
+from sonicvacuum.tables import read_csv
 
 
 class Page(HTMLParser):
@@ -209,7 +210,7 @@ def beyond_the_page(figure):
 
 @pytest.mark.parametrize("kind", ["pair", "ball"])
 def test_no_text_of_the_pictures_leaves_the_page(folders, kind):
-    tables = {name: discovery.rows(folders[kind] / f"{name}.csv") for name in ("where", "parameters", "gap")}
+    tables = {name: read_csv(folders[kind] / f"{name}.csv") for name in ("where", "parameters", "gap")}
     with style.context():
         figures = [
             posterior.parameters(tables["parameters"]),
@@ -223,7 +224,7 @@ def test_no_text_of_the_pictures_leaves_the_page(folders, kind):
 
 
 def test_the_posterior_is_drawn_where_the_verdict_has_it(folders):
-    (row,) = discovery.rows(folders["single"] / "parameters.csv")
+    (row,) = read_csv(folders["single"] / "parameters.csv")
     assert (float(row["value"]), float(row["sigma"])) == (1.98, 0.06)
     density, searched = posterior.parameters([row]).axes
     x, y = density.lines[0].get_data()

@@ -4,7 +4,6 @@
 are null.
 """
 
-import csv
 import math
 from collections.abc import Iterable
 from pathlib import Path
@@ -28,6 +27,7 @@ from sonicvacuum.discover.rounds import Investigation
 from sonicvacuum.discover.search.free_law import FreeLaw
 from sonicvacuum.effects import Catalogue
 from sonicvacuum.files import replacing
+from sonicvacuum.tables import write_csv
 
 # How the line begins that says which slips were put right.
 PUT_RIGHT = "all else is of the record put right"
@@ -364,10 +364,7 @@ def write_json(content: Struct, path: Path) -> None:
 
 def write_table(path: Path, header: list[str], rows) -> None:
     """CSV of a header and rows; numbers to seven digits, empty where there is none."""
-    with replacing(path) as stream:
-        writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(header)
-        writer.writerows([_cell(v) for v in row] for row in rows)
+    write_csv(path, header, ([_cell(v) for v in row] for row in rows))
 
 
 def _cell(value):

@@ -7,7 +7,6 @@ posteriors. gap: misfit of each round, falling to the noise. law: the free-form 
 needed.
 """
 
-import csv
 import json
 from pathlib import Path
 
@@ -16,6 +15,7 @@ import numpy as np
 from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.figures import disagreement, force_law, posterior
 from sonicvacuum.figures.style import BAND, DOUBLE, GREY, SINGLE, canvas, context, panel, save
+from sonicvacuum.tables import read_csv
 
 BLUE, ORANGE, GREEN = "#0072B2", "#D55E00", "#009E73"
 _MOST = 8
@@ -32,13 +32,13 @@ def draw(folder: Path, catalogue: Catalogue = CATALOGUE) -> list[Path]:
     posterior.write_table(folder, catalogue)
     verdict = json.loads((folder / "verdict.json").read_text(encoding="utf-8"))
     pictures = {
-        "where": lambda: disagreement.where(rows(folder / "where.csv")),
-        "scalars": lambda: disagreement.scalars(rows(folder / "where.csv")),
-        "traces": lambda: traces(rows(folder / "traces.csv"), verdict["named"]),
+        "where": lambda: disagreement.where(read_csv(folder / "where.csv")),
+        "scalars": lambda: disagreement.scalars(read_csv(folder / "where.csv")),
+        "traces": lambda: traces(read_csv(folder / "traces.csv"), verdict["named"]),
         "candidates": lambda: candidates(verdict["probabilities"]),
-        "parameters": lambda: posterior.parameters(rows(folder / "parameters.csv")),
-        "gap": lambda: gap(rows(folder / "gap.csv")),
-        "law": lambda: force_law.law(rows(folder / "law.csv") if (folder / "law.csv").exists() else []),
+        "parameters": lambda: posterior.parameters(read_csv(folder / "parameters.csv")),
+        "gap": lambda: gap(read_csv(folder / "gap.csv")),
+        "law": lambda: force_law.law(read_csv(folder / "law.csv") if (folder / "law.csv").exists() else []),
     }
     written = []
     with context():
@@ -52,12 +52,6 @@ def draw(folder: Path, catalogue: Catalogue = CATALOGUE) -> list[Path]:
             for path in paths:
                 path.unlink(missing_ok=True)
     return written
-
-
-def rows(path: Path) -> list[dict[str, str]]:
-    """Rows of a table, by column."""
-    with open(path, encoding="utf-8", newline="") as stream:
-        return list(csv.DictReader(stream))
 
 
 def traces(table: list[dict[str, str]], named: list[str]):

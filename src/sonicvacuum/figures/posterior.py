@@ -3,7 +3,6 @@
 The numbers stand in `parameters.csv`, made from `verdict.json` and the catalogue before anything is drawn.
 """
 
-import csv
 import json
 import math
 from pathlib import Path
@@ -12,7 +11,7 @@ import numpy as np
 
 from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.figures.style import BAND, DOUBLE, GREY, canvas, panel
-from sonicvacuum.files import replacing
+from sonicvacuum.tables import write_csv
 
 COLUMNS = ("effect", "parameter", "unit", "value", "sigma", "low", "high", "off")
 BLUE, ORANGE = "#0072B2", "#D55E00"
@@ -25,14 +24,15 @@ def write_table(folder: Path, catalogue: Catalogue = CATALOGUE) -> Path:
     """Write `parameters.csv` beside a verdict: one row for each continuous parameter; `off` empty without."""
     verdict = json.loads((folder / "verdict.json").read_text(encoding="utf-8"))
     path = folder / "parameters.csv"
-    with replacing(path) as stream:
-        table = csv.writer(stream, lineterminator="\n")
-        table.writerow(COLUMNS)
-        for name, given in verdict["parameters"].items():
-            one = catalogue.effect(name)
-            for key, found in given.items():
-                if key != one.places:
-                    table.writerow([name, key, *_row(one.parameter(key), found)])
+    given = verdict["parameters"].items()
+    cells = (
+        [name, key, *_row(one.parameter(key), found)]
+        for name, values in given
+        for one in (catalogue.effect(name),)
+        for key, found in values.items()
+        if key != one.places
+    )
+    write_csv(path, COLUMNS, cells)
     return path
 
 

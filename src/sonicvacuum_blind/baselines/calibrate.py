@@ -4,7 +4,6 @@ The numbers of `discover.calibration` maximise the probability given to what was
 something outside the catalogue (unknown). Pairs are left out: the probabilities are those of single effects.
 """
 
-import csv
 import math
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,6 +16,7 @@ from sonicvacuum.blas import one_thread
 from sonicvacuum.discover.fit.calibration import Calibration
 from sonicvacuum.discover.fit.evidence import log_weights, unknown_odds
 from sonicvacuum.files import InputError, replacing
+from sonicvacuum.tables import read_csv
 from sonicvacuum_blind.score import NONE, UNKNOWN, found_in, load
 
 # No probability counts as smaller: one freak case must not decide.
@@ -56,11 +56,7 @@ def outcomes(truth_folder, verdict_folder) -> list[Outcome]:
 
 
 def _outcome(truth, verdict, table: Path):
-    try:
-        with open(table, newline="", encoding="utf-8") as stream:
-            rows = [r for r in csv.DictReader(stream) if "+" not in r["effects"]]
-    except OSError as error:
-        raise InputError(f"{table}: {error.strerror}; sonicvacuum discover writes it") from None
+    rows = [r for r in read_csv(table, "sonicvacuum discover writes it") if "+" not in r["effects"]]
     logs = log_weights({r["effects"]: float(r["log10_bayes"]) * math.log(10.0) for r in rows})
     p = verdict["alarms"].get("single", verdict["alarms"].get("none", 1.0))
     true = {"null": NONE, "foreign": UNKNOWN}.get(truth["kind"], "+".join(truth["effects"]))

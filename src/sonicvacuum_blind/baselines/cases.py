@@ -1,11 +1,11 @@
 """Cases as simpler rules see them: the tables that `discover` wrote of each, and the truth to score by."""
 
-import csv
 import math
 from dataclasses import dataclass
 from pathlib import Path
 
 from sonicvacuum.files import InputError
+from sonicvacuum.tables import read_csv
 from sonicvacuum_blind import score
 from sonicvacuum_blind.score import Row
 
@@ -94,8 +94,4 @@ def _cell(line):
 
 
 def _table(path):
-    try:
-        with open(path, encoding="utf-8", newline="") as stream:
-            return list(csv.DictReader(stream))
-    except OSError as error:
-        raise InputError(f"{path}: {error.strerror}; run sonicvacuum discover on the record again") from None
+    return read_csv(path, "run sonicvacuum discover on the record again")

@@ -1,8 +1,8 @@
 """`figures/README.md`: each figure with its caption, and what it is made from."""
 
-import csv
 from re import escape, search
 
+from sonicvacuum.tables import read_csv
 from sonicvacuum_blind import kept
 from sonicvacuum_paper.figures import CARDS, caption
 
@@ -52,7 +52,6 @@ def text(claims) -> str:
 
 
 def _claims(path) -> dict[str, list[str]]:
-    with open(path, encoding="utf-8", newline="") as stream:
-        rows = list(csv.DictReader(stream))
+    rows = read_csv(path)
     named = {name: rf"Fig\. {escape(name[3:])}(?!\d)" for name in CARDS}
     return {name: [r["claim"] for r in rows if search(mark, r["section"])] for name, mark in named.items()}

@@ -1,11 +1,9 @@
 """The table of probabilities: `results/uncertainty.csv`."""
 
-import csv
 from collections.abc import Iterable
 from dataclasses import dataclass, fields
 
-from sonicvacuum.files import replacing
-from sonicvacuum_paper.rows import cells_of, number
+from sonicvacuum_paper.rows import cells_of, write_lines
 
 
 @dataclass(frozen=True)
@@ -23,13 +21,7 @@ class Agreement:
 
 def write(rows: Iterable[Agreement], path) -> None:
     """Write the table with exactly the columns of `Agreement`."""
-    names = [f.name for f in fields(Agreement)]
-    with replacing(path) as stream:
-        table = csv.writer(stream, lineterminator="\n")
-        table.writerow(names)
-        for row in rows:
-            cells = (getattr(row, n) for n in names)
-            table.writerow([number(c, 4) if isinstance(c, float) else c for c in cells])
+    write_lines(rows, Agreement, path, digits=4)
 
 
 def read(path) -> dict[str, dict[str, float]]:

@@ -1,0 +1,29 @@
+"""Tables as CSV files: written whole or not at all, with the line ends and encoding of all other files."""
+
+import csv
+from collections.abc import Iterable, Sequence
+from os import PathLike
+from typing import Any
+
+from sonicvacuum.files import InputError, replacing
+
+
+def write_csv(path: str | PathLike, columns: Sequence[str], rows: Iterable[Iterable[Any]]) -> None:
+    """A first line that names the columns, then one line for each row."""
+    with replacing(path) as stream:
+        table = csv.writer(stream, lineterminator="\n")
+        table.writerow(columns)
+        table.writerows(rows)
+
+
+def read_csv(path: str | PathLike, cure: str = "give the path of a table") -> list[dict[str, str]]:
+    """Rows below the first line, by column, every cell as text.
+
+    Raises:
+        InputError: for a file that cannot be read; it names `cure`.
+    """
+    try:
+        with open(path, encoding="utf-8", newline="") as stream:
+            return list(csv.DictReader(stream))
+    except (OSError, ValueError, csv.Error) as error:
+        raise InputError(f"{path}: {getattr(error, 'strerror', None) or error}; {cure}") from None
