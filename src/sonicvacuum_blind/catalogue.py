@@ -83,7 +83,7 @@ def _gain_of(plan, place):
 
 
 def _velocity_power(s, plan, alpha):
-    # Of the size of a dashpot at the striker's speed.
+    # As large as a dashpot at the striker's speed.
     return {"gamma": s * _dashpot_unit(plan) * plan.speed ** (1.0 - alpha), "alpha": alpha}
 
 

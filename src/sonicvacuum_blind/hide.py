@@ -24,14 +24,14 @@ from sonicvacuum_blind.strength import Rival, ceiling, leftover, nearest, pair_c
 
 KINDS = ("null", "single", "pair", "foreign")
 NOISES = ("white", "ar1", "quantised")
-# Of the integrator, for the data themselves: 1e-7 of a peak.
+# Error of the integrator for the data themselves: 1e-7 of a peak.
 TOLERANCE = 1e-9
 # A design in which the effect cannot reach this share of the wanted d′ is drawn anew, so often at most.
 ENOUGH, TRIES = 0.9, 12
 # Designs drawn in search of one in which the effects can act at all.
 DRAWS = 200
 CORRELATIONS = (0.2, 0.5, 0.8)
-# Of random numbers, by name, in the order in which they are spawned; new ones go to the end.
+# Streams of random numbers by name, in the order in which they are spawned; new ones go to the end.
 STREAMS = ("case", "errors", "noise", "rule", "further run", "choice")
 
 
@@ -266,7 +266,7 @@ def _truth(spec, case, errors, noise, random):
     seen = sum((h.seen for h in case.hidden), np.zeros(len(frame.base) + frame.slopes.shape[1]))
     directions = list(case.directions)
     if spec.kind in ("single", "pair"):
-        # Of the size of what is hidden: strong rivals are not weak ones made larger.
+        # As large as what is hidden: strong rivals are not weak ones made larger.
         directions = rivals(frame, spec.d_prime)
         # Shapes and strengths of the catalogue's directions lie on a grid; what is hidden need not.
         directions += [Rival(h.id, h.place, h.seen / h.d_prime) for h in case.hidden]

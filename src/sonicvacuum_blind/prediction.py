@@ -11,7 +11,7 @@ from sonicvacuum_blind.design import Design
 from sonicvacuum_blind.gauges import bounce, read, scalar
 from sonicvacuum_blind.plan import Plan
 
-# Of the integrator, for signatures: 1e-5 of a peak, against changes of the order of 1e-2.
+# Error of the integrator for signatures: 1e-5 of a peak, against changes of the order of 1e-2.
 TOLERANCE = 1e-7
 
 Change = Callable[[Plan], Plan]

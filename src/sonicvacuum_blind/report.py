@@ -25,7 +25,7 @@ END = "<!-- end of study -->"
 # What is kept of a study: what must be there, and what may.
 KEPT = ("summary", "baselines", "confusion", "accuracy", "reliability", "coverage")
 ALSO_KEPT = ("resolved_summary",)
-# Of the lines on held-out gaps: χ² of N data scatters by √(2N).
+# Said beside the lines on held-out gaps: χ² of N data scatters by √(2N).
 HELD_OUT = (
     "A held-out gap of d′² in N data drowns in the scatter of χ², √(2N), while d′ is below (2N)^¼, about 10 "
     "here: the median of single records shows that scatter, the gaps added up show what is closed."

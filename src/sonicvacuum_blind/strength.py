@@ -18,7 +18,7 @@ LARGEST = 30.0
 NOTHING = 1e-3
 # Where the record's errors explain all but 1/ABSORBED of a change, what they leave is its curvature.
 ABSORBED = 8.0
-# Of the ideal rule, on noise alone: what the method itself is allowed.
+# Probability of a false alarm of the ideal rule on noise alone: what the method itself is allowed.
 FALSE_ALARM = 0.01
 # A direction that keeps less than this beside a known one is that one.
 APART = 0.05

@@ -67,7 +67,7 @@ class Loaded:
 
 
 def heaviest(run: OneRun) -> Loaded:
-    """Of the contacts between the first and the last embedded gauge the one with the largest force."""
+    """The contact with the largest force between the first and the last embedded gauge."""
     found = [Loaded.of(run, c) for c in run.contacts_between_gauges()]
     return max(found, key=lambda c: -math.inf if math.isnan(c.force) else c.force)
 

@@ -9,7 +9,6 @@ from sonicvacuum.observe.contacts import (
     contact_duration,
     contact_radius,
     max_compression,
-    max_compression_rate,
     mean_pressure,
     peak_pressure,
     restitution,
@@ -49,26 +48,6 @@ def test_open_contact_is_not_compressed():
 def test_strain_rate_shares_the_compression_among_the_coatings():
     assert strain_rate(-0.05, 50e-6) == pytest.approx(500.0, rel=1e-14)  # rounding
     assert strain_rate(0.05, 50e-6, coatings=1) == pytest.approx(1000.0, rel=1e-14)  # rounding
-
-
-@pytest.mark.parametrize(("interval", "bound"), [(4e-6, 5e-4), (2e-6, 4e-5), (1e-6, 3e-6)])
-def test_compression_rate_of_a_smooth_impact(interval, bound):
-    # δ = δ₀ sin²(π t/T): fastest, π δ₀/T, at a quarter of T = 130 µs; fourth order in the interval, plus the
-    # distance of the nearest sample from the fastest moment.
-    depth, period = 5e-6, 130e-6
-    time = np.arange(0.0, period, interval)
-    force = STIFFNESS * (depth * np.sin(math.pi * time / period) ** 2) ** 1.5
-    exact = math.pi * depth / period
-    nearest = np.abs(time - period / 4).min()
-    bound += (2 * math.pi * nearest / period) ** 2 / 2
-    assert max_compression_rate(time, force, STIFFNESS) == pytest.approx(exact, rel=bound)
-
-
-def test_compression_rate_is_not_overestimated_where_the_contact_closes():
-    # Constant approach from the third sample and a half: no difference of any order may exceed the speed.
-    time = np.arange(20.0)
-    force = np.maximum(time - 3.5, 0.0) ** 1.5
-    assert max_compression_rate(time, force, 1.0) == pytest.approx(1.0, rel=1e-13)  # rounding
 
 
 @pytest.mark.parametrize("start", [0.0, 3.3, 7.9])

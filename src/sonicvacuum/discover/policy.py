@@ -4,8 +4,8 @@ Fixed here, on other data than those it is tested on, and nowhere else; what onl
 starts, how many steps) stands beside the search.
 """
 
-# Of the largest score of the whole catalogue in pure noise: one null in a hundred would pass it, and an
-# effect has to pass other tests besides.
+# Probability that pure noise exceeds the threshold of the largest score of the whole catalogue: one null in a
+# hundred, and an effect has to pass other tests besides.
 FALSE_ALARM = 0.01
 # An effect is ten times likelier than none before it is named: at less, one null in six names a spurious
 # component; at this, 1.6 % (the comparison of evidences of Nelson et al., Astron. J. 159, 73, 2020).

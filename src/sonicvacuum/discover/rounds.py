@@ -159,7 +159,7 @@ def _with_less(found, decision: Decision, alike, prior) -> str:
 
 
 def _stuck(found: list[Candidate], named: list[str]) -> list[str]:
-    """Of a single effect that is named and its rivals, those whose fits ended at a bound."""
+    """The named effect and its rivals as far as their fits ended at a bound."""
     if len(named) != 1 or named[0] == explanations.UNKNOWN:
         return []
     own = next(c.gain for c in found if c.effect == named[0])

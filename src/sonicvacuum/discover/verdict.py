@@ -84,7 +84,7 @@ class CellFit(_Part, kw_only=True):
 
 
 class GoodnessOfFit(_Part, kw_only=True):
-    """Of the nominal and of the extended model, by run and gauge.
+    """The gap of the nominal and of the extended model, by run and gauge.
 
     Attributes:
         nominal, extended: cells.
@@ -200,7 +200,7 @@ class Verdict(_Part, kw_only=True):
 
     @property
     def probability(self) -> float | None:
-        """Of what is named; None in verdicts on sets written before those had probabilities."""
+        """Probability of what is named; None in verdicts on sets written before those had one."""
         return self.probabilities.get(key(self.named))
 
     @property
@@ -333,7 +333,7 @@ def named_effects(found: Investigation) -> list[str]:
 
 
 def goodness_of_fit(nominal: Goodness, extended: Goodness, smooth_rel: float, wider: float) -> GoodnessOfFit:
-    """Of both models."""
+    """Goodness of fit of both models, by run and gauge."""
     before, after = (
         [CellFit(run=c.run, sensor=c.sensor, chi2=c.chi2, p=c.p, whiteness=c.whiteness) for c in one.cells]
         for one in (nominal, extended)

@@ -26,7 +26,7 @@ EFFECT = Effect(
     id="gravity",
     title="Gravity along the chain",
     missing="the record says horizontal and the chain is not, or the reverse",
-    equation="g -> 9.81 m/s^2 x fraction along the chain, on beads and striker; the chain starts in "
+    equation=f"g -> {GRAVITY:g} m/s^2 x fraction along the chain, on beads and striker; the chain starts in "
     "equilibrium",
     energy="potential energy m g u towards the wall of every body",
     reference="Daraio & Nesterenko, Phys. Rev. E 73, 026612 (2006), Eq. (7)",

@@ -24,7 +24,7 @@ REACH = 2
 CLEAR = 2
 # Amplitudes grow about as striker speed to the power 6/5.
 _POWER = 5.0 / 6.0
-# Of the striker's force on a rigid surface, roughly what a gauge inside a bead reads of the wave.
+# Roughly the share of the striker's force on a rigid surface that a gauge inside a bead reads.
 _SHARE = 0.45
 
 

@@ -116,7 +116,7 @@ def check_bead(key: str, bead) -> None:
     """LaboratoryError for a bead (a block in mm, g and um) of a size, density or coating that none has."""
     DIAMETER.check(f"{key}.diameter_mm", bead.diameter_mm)
     if bead.faces == "flat":
-        # Of what lies between its faces nothing is known.
+        # Nothing is known of what lies between its faces.
         MASS.check(f"{key}.mass_g", bead.mass_g)
     else:
         check_mass(key, bead.mass_g, bead.diameter_mm)

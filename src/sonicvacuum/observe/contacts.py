@@ -43,24 +43,6 @@ def strain_rate(compression_rate: ArrayLike, coating: float, coatings: int = 2) 
     return np.abs(compression_rate) / (coatings * coating)
 
 
-def max_compression_rate(time: np.ndarray, force: np.ndarray, stiffness: float) -> float:
-    """Largest |dδ/dt| in m/s of a Hertz contact, δ = (F/K)^{2/3}, from its force in N at times in s, (S,).
-
-    Differences of fourth order while the contact is closed, of second order where it opens or closes within
-    the five samples used. Where the relative velocity of the bodies is at hand, use that.
-
-    Raises:
-        ValueError: as `Trace.of`.
-    """
-    trace = Trace.of(time, force)
-    depth = max_compression(trace.force, stiffness)
-    rate = np.gradient(depth, trace.interval)
-    fine = (8.0 * (depth[3:-1] - depth[1:-3]) - (depth[4:] - depth[:-4])) / (12.0 * trace.interval)
-    closed = np.lib.stride_tricks.sliding_window_view(depth > 0.0, 5).all(axis=1)
-    rate[2:-2] = np.where(closed, fine, rate[2:-2])
-    return float(np.abs(rate).max())
-
-
 def contact_duration(time: np.ndarray, force: np.ndarray) -> Measured:
     """Time in s for which a contact first bears force, from its force in N (S,) at equidistant times (S,).
 

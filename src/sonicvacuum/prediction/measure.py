@@ -27,7 +27,7 @@ from sonicvacuum.simulation import Simulation, check_extent, set_up, simulate
 SAMPLES_PER_PULSE = 10
 # At rest before the impact, in durations of the longest pulse: baseline and noise are read there.
 REST = 2.0
-# Of the impact's force on one contact, roughly what a gauge in a bead reads; the search corrects it.
+# Roughly the share of the impact's force that a gauge in a bead reads; the search corrects it.
 _SHARE = 0.45
 
 

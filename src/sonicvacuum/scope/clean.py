@@ -11,6 +11,7 @@ from sonicvacuum.scope.options import Options
 from sonicvacuum.scope.quiet import Trace, look, white
 from sonicvacuum.scope.runs import Shot, common_grid
 from sonicvacuum.scope.timebase import tidy
+from sonicvacuum.scope.units import STANDARD_GRAVITY
 
 # Lost samples in a row that are bridged by a straight line.
 BRIDGED = 5
@@ -110,7 +111,7 @@ def _scaled(channel, gauge, options, notes):
     scale = options.scales.get(gauge)
     if scale is None:
         if channel.unit == "g":
-            return 9.80665, "m/s^2"
+            return STANDARD_GRAVITY, "m/s^2"
         if channel.unit not in FORCE_UNITS:
             notes.append(
                 f"{gauge}: readings stay in {channel.unit or 'an unknown unit'}: no --scale is given."

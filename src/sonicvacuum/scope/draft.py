@@ -12,7 +12,7 @@ from sonicvacuum.records.reader import FILE
 from sonicvacuum.scope.clean import CleanRun
 from sonicvacuum.scope.options import Options
 
-# Of a sensitivity without a stated error, and stated in its comment.
+# Relative error of a sensitivity that states none; the comment beside it says so.
 GAIN_REL_SIGMA = 0.05
 # Written for `unknown` while the format knows numbers only: the largest that it takes.
 _LARGEST = {"gain_rel_sigma": 2.0, "trigger_sigma_us": 1e4}

@@ -10,7 +10,7 @@ from sonicvacuum_paper.report import tables
 
 BEGIN = "<!-- {}: made by `snakemake publish`, do not edit -->"
 END = "<!-- end of {} -->"
-# Of a blind study, what must come out again; times and estimates are left out.
+# What must come out again of a blind study; times and estimates are left out.
 NAMING = ("id", "kind", "effects", "named", "exact")
 
 

@@ -24,7 +24,7 @@ NONE, UNKNOWN = "none", "unknown"
 
 
 def key(effects: Iterable[str]) -> str:
-    """Of an explanation: its effects in alphabetical order, `unknown` last; `none` where there is nothing."""
+    """Name of an explanation: its effects in alphabetical order, `unknown` last; `none` without any."""
     names = list(effects)
     known = sorted(n for n in names if n != UNKNOWN)
     return " + ".join([*known, *([UNKNOWN] if UNKNOWN in names else [])]) or NONE

@@ -72,7 +72,7 @@ def _edges(knots):
 
 
 def _stiffness(forward):
-    """Of a contact between two beads of the first chain; of ball and wall where there is no bead."""
+    """A contact between two beads of the first chain; ball and wall where there is no bead."""
     chain = forward.experiment.batches[0].chain
     return float(np.ravel(chain.stiffness if chain.beads else chain.striker_stiffness)[0])
 

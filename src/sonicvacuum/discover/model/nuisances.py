@@ -17,7 +17,7 @@ from sonicvacuum.effects.free_form import TERM
 from sonicvacuum.physics.chain import Chain
 from sonicvacuum.records.record import Record, Tolerances
 
-# Of a modulus where a record does not say: a handbook value of a metal or polymer is seldom better.
+# Relative error of a modulus where a record states none: handbook values are seldom better.
 MODULUS_REL_SIGMA = 0.05
 # Where a record does not say. Bodies are weighed and measured, and their sizes are what the record is about:
 # a tolerance is the user's to state. A common error of the speeds or of the gains is part of the single ones,
