@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from sonicvacuum.forward.amplitude import speed_at_amplitude
 from sonicvacuum.forward.motion import Seen, readings
-from sonicvacuum.forward.solitary import speed_at_amplitude
 from sonicvacuum.gauges import Gauge
 from sonicvacuum.laboratory.bodies import Bodies
 from sonicvacuum.observe.contacts import contact_duration, restitution

@@ -57,8 +57,8 @@ def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
         for effect in chosen:
             far = effect.id in best and abs(scores.strength[best[effect.id]]) > FAR
             grid = nonlinear or (loose and far and not effect.places)
-            plan = Plan(grid, steps, COARSE if grid and traced else 0)
-            found.append(candidate(forward, null, scores, effect, plan))
+            effort = Effort(grid, steps, COARSE if grid and traced else 0)
+            found.append(candidate(forward, null, scores, effect, effort))
         left = [e for e in left if e not in chosen]
         achieved = max((c.gain for c in found if c is not None), default=0.0)
         if not chosen or achieved >= best_gain:
@@ -69,7 +69,7 @@ def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
 
 
 @dataclass(frozen=True)
-class Plan:
+class Effort:
     """How an effect is searched: `grid` adds starts over the whole range to those of the screen; all are
     followed for so many `steps`, on integrals of the traces for `coarse` steps before.
     """
@@ -79,23 +79,23 @@ class Plan:
     coarse: int
 
 
-def candidate(forward, null: Fit, scores: Screen, effect: Effect, plan: Plan):
+def candidate(forward, null: Fit, scores: Screen, effect: Effect, effort: Effort):
     """The best fit of one effect over its places, shapes and sets of strengths; None where nothing fits."""
     best = None
     logs = []
     options = variants(effect, setup_of(forward))
     for free in options:
-        u, places, nu = starts(forward, null, scores, effect, free, plan.grid)
+        u, places, nu = starts(forward, null, scores, effect, free, effort.grid)
         if not len(u):
             continue
         hypothesis = Hypothesis((Component(effect, free),))
-        keep = _kept(effect, free, plan)
-        one = fit(forward, hypothesis, u, nu, places, keep, plan.steps, plan.coarse)
+        keep = _kept(effect, free, effort)
+        one = fit(forward, hypothesis, u, nu, places, keep, effort.steps, effort.coarse)
         if not np.isfinite(one.objective):
             continue
         gain = null.objective - one.objective
         # Far away the screen is not asked about shapes, unless one is at a bound, where widths mean nothing.
-        trusted = not plan.grid or effect.places or one.at_bound().any()
+        trusted = not effort.grid or effect.places or one.at_bound().any()
         alike = by_direction(scores, effect, gain) if trusted else None
         logs.append(log_bayes(one, gain, alike))
         if best is None or logs[-1] > best[1]:
@@ -145,11 +145,11 @@ def starts(forward, null: Fit, scores: Screen, effect: Effect, free, grid: bool,
     return u, places, np.array([r[2] for r in rows]).reshape(len(rows), forward.layout.size)
 
 
-def _kept(effect, free, plan):
+def _kept(effect, free, effort):
     """How many starts are followed: all of the striker's mass, which nuisances hide at first."""
     if _tried(effect, free) and not effect.places:
         return 8
-    return 5 if plan.grid else 3
+    return 5 if effort.grid else 3
 
 
 def _tried(effect, free):
