@@ -17,9 +17,15 @@ def check_apart(outputs: Iterable, inputs: Iterable) -> None:
         inputs: files that are read, or folders, all files below which are read; None is passed over.
 
     Raises:
-        InputError: where an output is one of them, be it by another spelling, a symbolic or a hard link.
+        InputError: where an output is one of them, be it by another spelling, a symbolic or a hard link, or
+            where two outputs are one.
     """
     outputs = [Path(path) for path in outputs if path is not None]
+    places: dict[Path, Path] = {}
+    for path in outputs:
+        other = places.setdefault(path.resolve(), path)
+        if other is not path:
+            raise InputError(f"{path}: {other} is written there too; give each output a place of its own")
     standing = {_identity(path): path for path in outputs if path.is_file()}
     if not standing:
         return

@@ -135,7 +135,9 @@ def write(spec: Spec, verdict: dict, choice: str, folder) -> None:
     own = laboratory(spec)
     proposed = choice == "proposed"
     change = verdict["next_experiment"]["change"] if proposed else random_change(spec, own.design)
-    records.write(follow(spec, own, change), Path(folder) / spec.id)
+    made = follow(spec, own, change)
+    # First: a record that stands without this file was not made here.
     with replacing(Path(folder) / spec.id / FILE) as stream_out:
         json.dump({"choice": choice, "change": change}, stream_out, indent=1)
         stream_out.write("\n")
+    records.write(made, Path(folder) / spec.id)

@@ -23,6 +23,7 @@ from sonicvacuum_blind.signature import Frame
 from sonicvacuum_blind.strength import Rival, ceiling, leftover, nearest, pair_ceiling, rivals, scale
 
 KINDS = ("null", "single", "pair", "foreign")
+TRUTH = "truth.json"
 NOISES = ("white", "ar1", "quantised")
 # Error of the integrator for the data themselves: 1e-7 of a peak.
 TOLERANCE = 1e-9
@@ -169,12 +170,15 @@ def hide(spec: Spec) -> tuple[records.Record, dict]:
 
 @one_thread
 def write(spec: Spec, records_folder, truth_folder) -> None:
-    """Hide, then write `records_folder/<id>/` and `truth_folder/<id>/truth.json`."""
+    """Hide, then write `truth_folder/<id>/truth.json`, and after it `records_folder/<id>/`.
+
+    In this order: a record that stands without its truth was not made here.
+    """
     record, truth = hide(spec)
-    records.write(record, Path(records_folder) / spec.id)
-    with replacing(Path(truth_folder) / spec.id / "truth.json") as stream:
+    with replacing(Path(truth_folder) / spec.id / TRUTH) as stream:
         json.dump(truth, stream, indent=1, sort_keys=True)
         stream.write("\n")
+    records.write(record, Path(records_folder) / spec.id)
 
 
 def _case(spec, random):

@@ -1,6 +1,6 @@
 """No result is written into a record: measured data are irreplaceable."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
 from sonicvacuum.files import InputError
@@ -28,3 +28,23 @@ def check_out(folder, records: Iterable = ()) -> None:
     if place.is_dir():
         read = (path.parent if path.is_file() else path for path in map(Path, records))
         check_apart(place.iterdir(), read)
+
+
+def check_collection(folder, names: Iterable[str], mark: Callable[[str], Path]) -> None:
+    """Refuse a folder for records that are made, one below it for each name, where it would touch others.
+
+    Args:
+        folder: to be written.
+        names: of the records.
+        mark: name → a file that stands only where the verb at hand has made this record.
+
+    Raises:
+        InputError: for a folder that is a record or lies in one, or holds a record of such a name that was
+            not made here; or that cannot be written.
+    """
+    check_out(folder)
+    for name in names:
+        if (Path(folder) / name / FILE).exists() and not mark(name).exists():
+            raise InputError(
+                f"{Path(folder) / name}: holds a record that this command has not made; give another folder"
+            )

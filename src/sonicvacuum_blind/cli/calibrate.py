@@ -2,6 +2,7 @@
 
 import click
 
+from sonicvacuum.outputs import check_apart
 from sonicvacuum_blind.cli.options import present
 
 
@@ -13,6 +14,7 @@ def calibrate(truth, verdicts, out):
     """Find how the evidence that discover works out becomes probabilities that come true."""
     from sonicvacuum_blind.baselines import calibrate as calibration
 
+    check_apart([out], [truth, verdicts])
     cases = calibration.outcomes(truth, verdicts)
     found = calibration.calibrate(cases)
     calibration.write(found, out)

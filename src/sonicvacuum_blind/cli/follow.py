@@ -6,6 +6,7 @@ import click
 
 from sonicvacuum.cli import existing
 from sonicvacuum.files import InputError
+from sonicvacuum.records.guard import check_collection
 from sonicvacuum_blind.cli.options import STUDIES, batch_of, folder, present
 
 
@@ -33,6 +34,8 @@ def follow(study, path, verdicts, out, choice, batch):
     if (study is None) == (path is None):
         raise InputError("follow: give --study or --cases, one of them")
     specs = studies.batch(studies.cases(study) if study else studies.read_cases(path), *batch_of(batch))
+    check_apart_from_verdicts(out, verdicts)
+    check_collection(out, [spec.id for spec in specs], lambda name: Path(out) / name / followup.FILE)
     # The folder stands for the batch also where nothing in it is ambiguous.
     Path(out).mkdir(parents=True, exist_ok=True)
     for spec, verdict in _ambiguous(specs, verdicts):
@@ -41,6 +44,12 @@ def follow(study, path, verdicts, out, choice, batch):
         except ValueError as error:
             raise InputError(str(error)) from None
         click.echo(spec.id)
+
+
+def check_apart_from_verdicts(out, verdicts):
+    """InputError where records would be written among the verdicts that are read."""
+    if Path(out).resolve().is_relative_to(Path(verdicts).resolve()):
+        raise InputError(f"{out}: lies in {verdicts}, which is read here; give another folder for --records")
 
 
 def _ambiguous(specs, verdicts):

@@ -1,9 +1,13 @@
 """`sonicvacuum blind hide`: data with something hidden in them."""
 
+from pathlib import Path
+
 import click
 
 from sonicvacuum.cli import existing
 from sonicvacuum.files import InputError
+from sonicvacuum.outputs import check_apart
+from sonicvacuum.records.guard import check_collection, check_out
 from sonicvacuum_blind.cli.options import STUDIES, batch_of, folder
 
 
@@ -26,15 +30,27 @@ def hide(study, path, listing, batch, records_folder, truth_folder):
         raise InputError("hide: give --study or --cases, one of them")
     specs = studies.cases(study) if study else studies.read_cases(path)
     if listing:
+        check_apart([listing], [path])
         studies.write_cases(specs, listing)
         return
     if not (records_folder and truth_folder):
         raise InputError("hide: --records and --truth are both needed to make data (or --list to list cases)")
-    from sonicvacuum_blind.hide import write
+    from sonicvacuum_blind.hide import TRUTH, write
 
-    for spec in studies.batch(specs, *batch_of(batch)):
+    specs = studies.batch(specs, *batch_of(batch))
+    check_truth(truth_folder, records_folder)
+    check_collection(records_folder, [s.id for s in specs], lambda name: Path(truth_folder) / name / TRUTH)
+    for spec in specs:
         try:
             write(spec, records_folder, truth_folder)
         except ValueError as error:
             raise InputError(str(error)) from None
         click.echo(spec.id)
+
+
+def check_truth(truth_folder, records_folder):
+    """InputError where the truth would lie among the records that `discover` is given, or they in it."""
+    check_out(truth_folder)
+    truth, records = (Path(folder).resolve() for folder in (truth_folder, records_folder))
+    if truth.is_relative_to(records) or records.is_relative_to(truth):
+        raise InputError(f"{truth_folder}: one folder holds the other; keep the truth away from --records")

@@ -2,6 +2,7 @@
 
 import click
 
+from sonicvacuum.outputs import check_apart
 from sonicvacuum_blind.cli.options import present
 
 
@@ -28,6 +29,7 @@ def resolved(truth, verdicts, proposed, random, out, summary):
     from sonicvacuum_blind import resolved as counting
     from sonicvacuum_blind.score import Line, write_table
 
+    check_apart([out, summary], [truth, verdicts, *proposed, *random])
     rows = [
         row
         for choice, folders in (("proposed", proposed), ("random", random))

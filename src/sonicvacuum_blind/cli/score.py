@@ -4,6 +4,7 @@ from pathlib import Path
 
 import click
 
+from sonicvacuum.outputs import check_apart
 from sonicvacuum_blind.cli.options import folder, present
 
 
@@ -25,13 +26,15 @@ def score(truth, verdicts, out, summary, tables):
     from sonicvacuum_blind import score as scoring
     from sonicvacuum_blind.summary import summary as summarise
 
+    details = {name: Path(tables) / f"{name}.csv" for name in breakdown.TABLES} if tables else {}
+    check_apart([out, summary, *details.values()], [truth, verdicts])
     rows = scoring.score(truth, verdicts)
     lines = summarise(rows)
     scoring.write_table(rows, scoring.Row, out)
     scoring.write_table(lines, scoring.Line, summary)
-    if tables:
-        for name, (kind, table) in breakdown.TABLES.items():
-            scoring.write_table(table(rows), kind, Path(tables) / f"{name}.csv")
+    for name, path in details.items():
+        kind, table = breakdown.TABLES[name]
+        scoring.write_table(table(rows), kind, path)
     for line in lines:
         if line.count:
             interval = f"{line.value:.3f} [{line.low:.3f}, {line.high:.3f}]"

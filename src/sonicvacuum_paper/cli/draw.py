@@ -5,6 +5,7 @@ from pathlib import Path
 import click
 
 from sonicvacuum.cli.cards import read_card
+from sonicvacuum.outputs import check_apart
 
 _FOLDER = click.Path(exists=True, file_okay=False)
 
@@ -19,6 +20,7 @@ def draw(figure, cards, histories, out):
     from sonicvacuum import simulation
     from sonicvacuum_paper import figures
 
+    check_apart([Path(out) / f"{figure}.{kind}" for kind in ("csv", "svg", "png")], [cards, histories])
     # A variant that the configuration does not have leaves its panel without that line.
     names = [name for name in figures.cards_of(figure) if (Path(cards) / f"{name}.json").exists()]
     simulations = {

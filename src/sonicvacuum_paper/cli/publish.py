@@ -4,6 +4,7 @@ import click
 
 from sonicvacuum.cli import existing
 from sonicvacuum.files import InputError, replacing
+from sonicvacuum.outputs import check_apart
 
 _FILE = existing()
 
@@ -28,6 +29,8 @@ def publish(ledger, claims, readme, guide, reference, benchmark, study, naming):
 
     if (study is None) != (naming is None):
         raise InputError("publish: --study and --naming go together: give both, or neither")
+    # The README is renewed in its place: that it is read is no fault.
+    check_apart([guide, reference, naming, readme], [ledger, claims, benchmark, study])
     keep.publish(ledger, readme, reference, benchmark)
     if study:
         keep.publish_study(study, naming)

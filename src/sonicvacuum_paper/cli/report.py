@@ -7,6 +7,7 @@ import click
 from sonicvacuum.cli import existing
 from sonicvacuum.cli.cards import read_card
 from sonicvacuum.files import replacing
+from sonicvacuum.outputs import check_apart
 
 _FILE = existing()
 _FOLDER = click.Path(exists=True, file_okay=False)
@@ -50,6 +51,8 @@ def report(
     from sonicvacuum_paper.figures import caption
     from sonicvacuum_paper.report.page import build
 
+    read_here = (ledger, assumptions, metrics, claims, *figures, *cards, *locks, *discoveries, *pictures)
+    check_apart([out], [*read_here, blind_small, blind_full])
     captioned = [(figure, caption(Path(figure).stem)) for figure in figures]
     read = [read_card(card) for card in cards]
     tables = (ledger, assumptions, metrics, claims)
