@@ -18,7 +18,7 @@ COMPILE := pip compile --quiet --universal --generate-hashes --no-emit-index-url
 	--custom-compile-command "make lock"
 
 .DELETE_ON_ERROR:
-.PHONY: all env test browser bare fuzz crash reproduce bench study lock clean help
+.PHONY: all env test browser bare fuzz crash slurm crate generic reproduce bench study lock clean help
 
 all: env  ## build the environment, then run the whole pipeline
 	$(START) --cores $(CORES)
@@ -50,6 +50,10 @@ env: .venv/installed  ## build the locked environment in .venv
 	@$(LOCKED) requirements-study.lock
 	@touch $@
 
+.venv/clustered: .venv/installed requirements-cluster.lock
+	@$(LOCKED) requirements-cluster.lock
+	@touch $@
+
 test: env  ## check format, style, types, import contracts, and run the tests
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
@@ -70,6 +74,15 @@ fuzz: env  ## try 5500 damaged files of every kind that users hand over; table i
 crash: env  ## disturb 60 runs of a small pipeline and let `make` recover; table in results/crash.csv
 	$(BIN)/python workflow/scripts/crash.py --moments 60 --out results/crash.csv
 
+slurm: .venv/clustered  ## a small pipeline on a Slurm of one node, started here, against a local run; table in results/slurm.csv
+	$(BIN)/python workflow/scripts/cluster.py --out results/slurm.csv
+
+crate: .venv/clustered  ## the finished run as an RO-Crate in results/crate
+	$(BIN)/python workflow/scripts/crate.py --out results/crate
+
+generic: env  ## figure tables and ledger on a plain processor against those in git; table in results/generic.csv
+	$(BIN)/python workflow/scripts/generic.py --out results/generic.csv
+
 reproduce: env  ## regenerate figures' numbers and ledger in a clean folder and compare with those in git
 	$(START) --cores $(CORES) reproduce
 
@@ -89,7 +102,8 @@ lock:  ## resolve the requirements anew; versions already locked stay unless UPG
 	lock --group build --constraints requirements.lock --output-file requirements-build.lock && \
 	lock --group browser --constraints requirements.lock --output-file requirements-browser.lock && \
 	lock --group bench --constraints requirements.lock --output-file requirements-bench.lock && \
-	lock pyproject.toml --extra study --constraints requirements.lock --output-file requirements-study.lock
+	lock pyproject.toml --extra study --constraints requirements.lock --output-file requirements-study.lock && \
+	lock pyproject.toml --extra cluster --constraints requirements.lock --output-file requirements-cluster.lock
 
 clean:  ## remove the environment, the results and all caches
 	rm -rf .venv results .snakemake .pytest_cache .ruff_cache .import_linter_cache .mypy_cache .hypothesis .benchmarks

@@ -20,7 +20,7 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
-from reproduce import PARTS, equal, products
+from reproduce import PARTS, products, unequal
 from start import processes
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -87,12 +87,20 @@ def project(folder: Path) -> Path:
 class Run:
     """One start of the pipeline as `make` starts it, in a process group of its own."""
 
-    def __init__(self, folder: Path, target: str, largest: int | None = None, *options: str):
+    def __init__(
+        self,
+        folder: Path,
+        target: str,
+        *options: str,
+        largest: int | None = None,
+        environment: dict | None = None,
+    ):
         """
         Args:
             folder, target: where, and the file that is asked for.
-            largest: bytes beyond which no file may grow; none by default.
             options: further arguments of Snakemake.
+            largest: bytes beyond which no file may grow; none by default.
+            environment: of the run, this process's by default.
         """
         command = [
             sys.executable,
@@ -107,7 +115,7 @@ class Run:
             self.process = subprocess.Popen(
                 command,
                 cwd=folder,
-                env=os.environ | {"PYTHONPATH": str(folder / "src")},
+                env=(environment or os.environ) | {"PYTHONPATH": str(folder / "src")},
                 stdin=subprocess.DEVNULL,
                 stdout=said,
                 stderr=subprocess.STDOUT,
@@ -159,7 +167,7 @@ def attempt(folder: Path, target: str, kind: str, after_s: float, largest: int, 
         largest: bytes that a file may have where the kind is `disk`.
         whole: folder of an undisturbed run.
     """
-    disturbed = Run(project(folder), target, largest if kind == "disk" else None)
+    disturbed = Run(project(folder), target, largest=largest if kind == "disk" else None)
     until = time.monotonic() + after_s
     while kind != "disk" and disturbed.process.poll() is None and time.monotonic() < until:
         time.sleep(0.01)
@@ -167,8 +175,8 @@ def attempt(folder: Path, target: str, kind: str, after_s: float, largest: int, 
     disturbed.disturb(kind)
     ended = disturbed.end()
     recovered = Run(folder, target).end()
-    same = products(folder) == products(whole) and all(equal(folder / p, whole / p) for p in products(whole))
-    again = Run(folder, target, None, "--dry-run")
+    same = not unequal(folder, whole)
+    again = Run(folder, target, "--dry-run")
     idle = again.end() == 0 and "Nothing to be done" in again.log.read_text()
     values = (kind, round(after_s, 1), by_then, ended, recovered, same, idle)
     if recovered == 0 and same and idle:

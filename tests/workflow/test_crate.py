@@ -1,0 +1,77 @@
+"""The check of an RO-Crate finds what does not fit, and the table of a plain processor what differs."""
+
+import hashlib
+import json
+import os
+import sys
+
+import pandas as pd
+import pytest
+
+sys.path.insert(0, f"{os.path.dirname(__file__)}/../../workflow/scripts")
+
+import crate
+import generic
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """A crate of one product."""
+    (tmp_path / "ledger.csv").write_text("claim,verdict\n")
+    digest = hashlib.sha256((tmp_path / "ledger.csv").read_bytes()).hexdigest()
+    root = {key: "x" for key in ("name", "description", "license", "datePublished")}
+    graph = [
+        {"@id": "./", "@type": "Dataset", "mainEntity": {"@id": "Snakefile"}, **root},
+        {"@id": "Snakefile", "@type": ["File", "ComputationalWorkflow"]},
+        {"@id": "ledger.csv", "@type": "File", "sha256": digest},
+        {
+            "@id": "#run",
+            "@type": "CreateAction",
+            "instrument": {"@id": "Snakefile"},
+            "object": [{"@id": "Snakefile"}],
+            "result": [{"@id": "ledger.csv"}],
+        },
+    ]
+    (tmp_path / "ro-crate-metadata.json").write_text(json.dumps({"@graph": graph}))
+    return tmp_path
+
+
+def test_a_whole_crate_has_no_fault(folder):
+    assert crate.faults(folder) == []
+
+
+def test_a_product_that_was_changed_or_lost_is_named(folder):
+    (folder / "ledger.csv").write_text("claim,verdict\nx,agrees\n")
+    assert crate.faults(folder) == ["ledger.csv: not the file that is described"]
+    (folder / "ledger.csv").unlink()
+    assert crate.faults(folder) == ["ledger.csv: missing"]
+
+
+@pytest.mark.parametrize(
+    ("removed", "told"),
+    [
+        ("Snakefile", ["mainEntity: no ComputationalWorkflow", "Snakefile: not described"]),
+        ("ledger.csv", ["ledger.csv: not described"]),
+        ("#run", ["no CreateAction"]),
+    ],
+)
+def test_what_the_profile_asks_for_is_missed(folder, removed, told):
+    path = folder / "ro-crate-metadata.json"
+    graph = [entity for entity in json.loads(path.read_text())["@graph"] if entity["@id"] != removed]
+    path.write_text(json.dumps({"@graph": graph}))
+    assert crate.faults(folder) == told
+
+
+def test_the_table_of_a_plain_processor_counts_what_lies_beyond(tmp_path):
+    kept = pd.DataFrame({"name": ["a", "b"], "value": ["1.0", "-2.0"]})
+    rule = {"table": "t", "column": "value", "absolute": 0.0, "relative": 1e-3, "reason": "test"}
+    for fresh, beyond in ((["1.0001", "-2.0"], 0), (["1.0", "-2.01"], 1)):
+        found = generic.rows(kept, kept.assign(value=fresh), "t", pd.DataFrame([rule]))
+        assert [(row["column"], row["beyond_tolerance"]) for row in found] == [
+            ("value", beyond),
+            ("(words)", 0),
+        ]
+    assert float(found[0]["largest_difference"]) == pytest.approx(0.01)
+    assert float(found[0]["relative"]) == pytest.approx(0.005)
+    words = generic.rows(kept, kept.assign(name=["a", "c"]), "t", pd.DataFrame([rule]))
+    assert words[-1]["beyond_tolerance"] == 1
