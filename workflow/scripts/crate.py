@@ -1,8 +1,7 @@
 """A finished run as an RO-Crate: what was run, on what, with what result, each file with its SHA-256.
 
-Follows the profile Workflow Run RO-Crate 0.5 (https://w3id.org/ro/wfrun/workflow/0.5). Called by
-`make crate`, which installs the extra `cluster`. The crate is a folder that can be zipped, deposited, and read
-without this project.
+Follows the profile Workflow Run RO-Crate 0.5 (https://w3id.org/ro/wfrun/workflow/0.5). Called by `make crate`,
+which installs the extra `cluster`. The crate is a folder: to zip, to deposit, to read without this project.
 """
 
 import argparse
@@ -97,7 +96,7 @@ def build(root: Path):
 
 
 def faults(folder: Path) -> list[str]:
-    """What is wrong with a crate: files missing or changed, and what the profile asks for and is not there."""
+    """What is wrong with a crate: files missing or changed, and what is absent that the profile asks for."""
     graph = json.loads((folder / "ro-crate-metadata.json").read_text(encoding="utf-8"))["@graph"]
     entities = {entity["@id"]: entity for entity in graph}
     found = [
