@@ -1,7 +1,7 @@
 """A finished run as an RO-Crate: what was run, on what, with what result, each file with its SHA-256.
 
-Follows the profile Workflow Run RO-Crate 0.5 (https://w3id.org/ro/wfrun/workflow/0.5). Called by `make crate`,
-which installs the extra `cluster`. The crate is a folder: to zip, to deposit, to read without this project.
+Follows the profile Workflow Run RO-Crate 0.5 (https://w3id.org/ro/wfrun/workflow/0.5). `make crate` calls it,
+and installs the extra `cluster`. The crate is a folder: to zip, to deposit, to read without this project.
 """
 
 import argparse

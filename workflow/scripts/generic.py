@@ -1,8 +1,8 @@
 """Figure tables and ledger computed for a plain 64-bit processor, held against those in git.
 
-Numba is told to make code for the processor `generic`, without vector units beyond those that each has: other
-instructions, so other roundings. Writes, for each column of numbers, the largest difference and how many cells
-lie beyond their tolerance in workflow/resources/tolerances.csv; exit code 1 where any does.
+Numba makes code for the processor `generic`, without vector units beyond those that each has: other
+instructions, so other roundings. Writes, for each column of numbers, the largest difference and how many
+cells lie beyond their tolerance in workflow/resources/tolerances.csv; exit code 1 where any does.
 """
 
 import argparse
