@@ -10,6 +10,7 @@ from msgspec import Struct
 
 from sonicvacuum.blas import one_thread
 from sonicvacuum.discover.fit.refit import fit
+from sonicvacuum.discover.model import window
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis
 from sonicvacuum.discover.model.problem import experiment
@@ -113,7 +114,7 @@ def hypothesis(model: Model, catalogue: Catalogue = CATALOGUE) -> Hypothesis:
 @one_thread
 def compare(model: Model, record: Record, threads: int = 1, catalogue: Catalogue = CATALOGUE) -> Comparison:
     """The model's score on a record; the catalogue knows its effects."""
-    forward = Forward(experiment(record, catalogue), threads)
+    forward = Forward(experiment(window.fitted(record)[0], catalogue), threads)
     sizes = np.array([forward.experiment.size(k) for k in range(len(forward.experiment.runs))])
     nominal, extended = (_fit(forward, h) for h in (Hypothesis(), hypothesis(model, catalogue)))
     before, after = nominal.normal.chi2[:, 0], extended.normal.chi2[:, 0]

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from sonicvacuum import stages
 from sonicvacuum.discover import policy
 from sonicvacuum.discover.fit import bounds, evidence, places, smooth
 from sonicvacuum.discover.fit.evidence import Candidate, Combination
@@ -90,6 +91,7 @@ def investigate(experiment: Experiment, threads: int = 1) -> Investigation:
     if experiment.model_floor_rel is not None:
         known = None  # stated, so that nothing is to be inferred
     forward = Forward(experiment, threads)
+    stages.begin("nominal model")
     null = nominal(forward)
     setup = singles.setup_of(forward)
     scores = screen.screen(forward, null, directions.catalogue(setup, experiment.excluded))
@@ -100,6 +102,7 @@ def investigate(experiment: Experiment, threads: int = 1) -> Investigation:
     if passes:
         # Only now: other places are more tries, for which the threshold does not allow.
         found = _along(forward, null, found)
+    stages.begin("sets of effects" if passes else "verdict")
     case = Case(forward, null, scores, found, known, setup)
     decision = case.decide() if passes else case.nothing()
     alike = explanations.aliases(forward, null, found) if passes else []

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 from msgspec import UNSET
 
+from sonicvacuum import stages
 from sonicvacuum.blas import one_thread
 from sonicvacuum.discover import given, law, next_experiment, verdict
 from sonicvacuum.discover.faults import competition
@@ -15,6 +16,7 @@ from sonicvacuum.discover.fit import goodness, heldout
 from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.judge import degenerate, explanations, locate
 from sonicvacuum.discover.judge.law import surface
+from sonicvacuum.discover.model import window
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.rounds import Investigation
 from sonicvacuum.discover.search import directions, screen, singles
@@ -33,6 +35,7 @@ class Result:
     Attributes:
         record: the record put right; of several taken together the first.
         given: the records as they were given.
+        notes: what was done to their traces before anything else.
         found: the search.
         places, after: disagreements of the nominal and of the extended model.
         limits: of all effects that were not named.
@@ -41,6 +44,7 @@ class Result:
 
     record: Record
     given: tuple[Record, ...]
+    notes: tuple[str, ...]
     found: Investigation
     places: list[locate.Place]
     after: list[locate.Place]
@@ -71,10 +75,12 @@ def discover(*records: Record, threads: int | None = None, catalogue: Catalogue 
         InputError: for records that cannot be simulated or do not belong together.
     """
     clock = Clock()
-    outcome = competition.discover(records, catalogue, threads or available_threads())
+    ready, notes = zip(*map(window.fitted, records), strict=True)
+    outcome = competition.discover(ready, catalogue, threads or available_threads())
     found = outcome.found
     clock.mark("search")
     forward = found.forward
+    stages.begin("places and limits")
     places = locate.locate(forward, found.null)
     free = free_law(forward, found.final) if explanations.UNKNOWN in found.named else None
     clock.mark("free-form law")
@@ -90,6 +96,7 @@ def discover(*records: Record, threads: int | None = None, catalogue: Catalogue 
     )
     told = law.told(free, found) if free else UNSET
     clock.mark("limits")
+    stages.begin("next experiment")
     proposal = next_experiment.propose(found, alike)
     clock.mark("next experiment")
     named = verdict.named_effects(found)
@@ -123,7 +130,8 @@ def discover(*records: Record, threads: int | None = None, catalogue: Catalogue 
         warnings=_doubts(found, records[0]) or UNSET,
         nuisances=verdict.nuisances(counted.forward, counted.final),
     )
-    return Result(outcome.record, records, found, places, after, limits, result, free)
+    said = tuple(line for lines in notes for line in lines)
+    return Result(outcome.record, records, said, found, places, after, limits, result, free)
 
 
 def _doubts(found: Investigation, record: Record) -> list[str]:
@@ -212,7 +220,7 @@ def write(result: Result, folder: Path) -> None:
     verdict.write_table(folder / "traces.csv", *trace_rows(result))
     if result.law:
         verdict.write_table(folder / "law.csv", *law.rows(surface(result.law)))
-    notes = result.found.forward.experiment.notes
+    notes = (*result.notes, *result.found.forward.experiment.notes)
     verdict.write_json(given.inputs(result.given, notes), folder / given.FILE)
     verdict.write_json(verdict.model(result.found, result.law), folder / "model.json")
     verdict.write_json(result.verdict, folder / "verdict.json")

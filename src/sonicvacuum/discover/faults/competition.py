@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.stats import chi2 as chi_squared
 
+from sonicvacuum import stages
 from sonicvacuum.discover.faults import policy
 from sonicvacuum.discover.faults.examine import examine
 from sonicvacuum.discover.faults.found import Bench, Finding
@@ -145,6 +146,7 @@ class Search:
         slips = [s for s in with_starts(hypotheses(record), record, seen)]
         slips = [s for s in slips if (s.fault, s.run, s.sensor) not in done]
         shifted = [] if any(f.fault == "time-zero" for f in self.findings) else time_zero(record, seen)
+        stages.begin("slips of the laboratory")
         looked = sorted((judge.look(s) for s in slips), key=lambda j: -j.log_odds)
         worth = [j for j in looked if j.gain > policy.LEAST_GAIN][: policy.FOLLOWED]
         whole = [judge.look(s) for s in shifted]

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sonicvacuum import stages
 from sonicvacuum.discover.fit import places
 from sonicvacuum.discover.fit.evidence import Candidate, Combination, log_bayes
 from sonicvacuum.discover.fit.refit import Fit, fit, polish
@@ -199,7 +200,9 @@ def beside(
 
 def _refit(forward, null: Fit, setup: Setup, starts: list[Start], found: dict[frozenset, Combination]):
     """Fit pairs and add them to `found`."""
+    stages.begin("pairs of effects", len(starts))
     for s in starts:
+        stages.step()
         least = min((p.fit.objective for p in found.values()), default=np.inf)
         one = fitted(forward, s, setup, least + BEHIND)
         if np.isfinite(one.objective):

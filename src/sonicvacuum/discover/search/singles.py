@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sonicvacuum import stages
 from sonicvacuum.discover.fit.evidence import Candidate, log_bayes, ranked
 from sonicvacuum.discover.fit.refit import Fit, fit
 from sonicvacuum.discover.model.forward import Forward
@@ -54,11 +55,13 @@ def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
         enough = -np.inf if loose else max((1.0 - ERR) * best_gain - HOPELESS, 0.5)
         always = [e for e in left if secants.applies(e) and largest > CLEAR]
         chosen = [e for e in left if e in always or gains.get(e.id, 0.0 if loose else -np.inf) > enough]
+        stages.begin("single effects", len(chosen))
         for effect in chosen:
             far = effect.id in best and abs(scores.strength[best[effect.id]]) > FAR
             grid = nonlinear or (loose and far and not effect.places)
             effort = Effort(grid, steps, COARSE if grid and traced else 0)
             found.append(candidate(forward, null, scores, effect, effort))
+            stages.step()
         left = [e for e in left if e not in chosen]
         achieved = max((c.gain for c in found if c is not None), default=0.0)
         if not chosen or achieved >= best_gain:
