@@ -18,21 +18,24 @@ COMPILE := pip compile --quiet --universal --generate-hashes --no-emit-index-url
 	--custom-compile-command "make lock"
 
 .DELETE_ON_ERROR:
-.PHONY: all env test browser bare fuzz crash slurm crate generic reproduce bench study lock clean help
+.PHONY: always all env test browser bare fuzz crash slurm crate generic reproduce bench study lock clean help
 
 all: env  ## build the environment, then run the whole pipeline
 	$(START) --cores $(CORES)
 
 env: .venv/installed  ## build the locked environment in .venv
 
-# A new lock means a new environment: what it no longer names must not stay importable. The stamp is a copy of the locks,
-# so that a file which is only younger (a checkout, `make lock` without news) rebuilds nothing.
-.venv/locked: requirements-build.lock requirements.lock
-	@cat $^ | cmp -s - $@ || { $(CHECK_PYTHON) && \
+# A new lock means a new environment: what it no longer names must not stay importable. An environment holds its own place
+# in every script, so that a clone which was moved or copied needs a new one too. The stamp is that place and a copy of the
+# locks: a file which is only younger (a checkout, `make lock` without news) rebuilds nothing.
+STAMP = { echo "built in $(CURDIR)"; cat requirements-build.lock requirements.lock; }
+.venv/locked: requirements-build.lock requirements.lock always
+	@$(STAMP) | cmp -s - $@ || { $(CHECK_PYTHON) && \
+		if grep -q '^built in ' $@ 2>/dev/null && ! grep -qxF 'built in $(CURDIR)' $@; then \
+			echo "This clone was moved or copied: .venv was $$(head -1 $@)."; fi && \
 		echo "Building .venv from requirements.lock; this takes a minute or two." && \
 		$(PYTHON) -m venv --clear .venv && \
-		$(LOCKED) requirements-build.lock && $(LOCKED) requirements.lock; }
-	@cat $^ > $@
+		$(LOCKED) requirements-build.lock && $(LOCKED) requirements.lock && $(STAMP) > $@; }
 
 .venv/installed: .venv/locked pyproject.toml
 	@$(INSTALL) --no-deps --editable .

@@ -9,8 +9,9 @@ import textwrap
 import zipfile
 import zlib
 from contextlib import contextmanager
+from difflib import get_close_matches
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import msgspec
 
@@ -222,7 +223,9 @@ def explain(
     missing = re.search(r"missing required field `([^`]*)`", problem)
     place = ".".join(p for p in (prefix, inner, *(m.group(1) for m in (unknown, missing) if m)) if p)
     if unknown:
-        return f"{path}: {place}: unknown key; check its spelling and its place, or remove it"
+        near = get_close_matches(unknown.group(1), keys_of(kind, inner), n=1) if kind else []
+        meant = f"did you mean {near[0]}? Otherwise " if near else ""
+        return f"{path}: {place}: unknown key; {meant}check its spelling and its place, or remove it"
     if missing:
         return f"{path}: {place}: missing; this key is required"
     if found and found.group(1):
@@ -230,6 +233,23 @@ def explain(
     value = _value_at(content, inner)
     shown = "" if value is _ABSENT else f"is {textwrap.shorten(repr(value), 200)}: "
     return f"{path}: {place}: {shown}{problem[0].lower()}{problem[1:]}{number_cure(value)}"
+
+
+def keys_of(kind: Any, inner: str) -> list[str]:
+    """Keys that a block may have at a place such as `chain.bead` or `runs[0].striker` of a msgspec type."""
+    blocks = _blocks(kind)
+    for step in re.findall(r"\[[^\]]*\]|[^.\[\]]+", inner):
+        fields = [f for block in blocks for f in msgspec.structs.fields(block) if f.encode_name == step]
+        # A step into a list or a mapping stays with the blocks that it holds.
+        blocks = [b for f in fields for b in _blocks(f.type)] or blocks
+    return [f.encode_name for block in blocks for f in msgspec.structs.fields(block)]
+
+
+def _blocks(kind) -> list[type]:
+    """The msgspec structures that a type is made of, looked for through unions, lists and annotations."""
+    if isinstance(kind, type) and issubclass(kind, msgspec.Struct):
+        return [kind]
+    return [block for part in get_args(kind) for block in _blocks(part)]
 
 
 def _named(inner, content, kind, text):

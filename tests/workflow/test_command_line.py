@@ -1,9 +1,13 @@
 """The command: every verb explains itself, and bad input ends in one line and exit code 2."""
 
+import hashlib
 import json
 import os
+import shutil
+import subprocess
 import sys
 
+import click
 import numpy as np
 import pytest
 
@@ -182,3 +186,103 @@ def test_an_unknown_figure_is_refused(monkeypatch, capsys, tmp_path):
         tmp_path,
     )
     assert "'fig9': unknown; use one of fig3" in shown
+
+
+def leaves(group, path=()):
+    """(words, command) of every verb of the library, those in groups included."""
+    for name in group.list_commands(None):
+        if name not in cli.GROUPS:
+            command = group.get_command(None, name)
+            below = isinstance(command, click.Group)
+            yield from leaves(command, (*path, name)) if below else [((*path, name), command)]
+
+
+@pytest.mark.parametrize(("words", "command"), list(leaves(cli.cli)))
+def test_the_help_of_every_verb_ends_with_examples_that_parse(words, command):
+    examples = [line.strip() for line in command.epilog.splitlines() if "sonicvacuum" in line]
+    assert examples
+    for line in examples:
+        given = line.split()
+        assert given[: 1 + len(words)] == ["sonicvacuum", *words]
+        rest = given[1 + len(words) :]
+        # Files of an example need not be there; verbs and options must.
+        context = click.Context(command, resilient_parsing=True)
+        command.make_parser(context).parse_args(rest)
+
+
+def test_exit_codes_and_completion_are_told(monkeypatch, capsys):
+    assert call(monkeypatch, "--help") == 0
+    told = capsys.readouterr().out
+    for code in ("0    done", "1    the machine", "2    input refused", "130  interrupted"):
+        assert code in told
+    assert "_SONICVACUUM_COMPLETE" in told
+
+
+def test_the_version_names_the_lock(monkeypatch, capsys, pytestconfig):
+    assert call(monkeypatch, "--version") == 0
+    digest = hashlib.sha256((pytestconfig.rootpath / "requirements.lock").read_bytes()).hexdigest()
+    assert f"requirements.lock sha256 {digest[:12]}" in capsys.readouterr().out
+
+
+def test_a_bad_record_is_refused_before_the_good_ones_are_searched(monkeypatch, capsys, tmp_path):
+    good, bad = tmp_path / "good", tmp_path / "bad"
+    for folder in (good, bad):
+        assert call(monkeypatch, "record", "new", folder) == 0
+    text = (bad / "record.yaml").read_text()
+    (bad / "record.yaml").write_text(text.replace("chain:\n", "chian:\n", 1))
+    monkeypatch.setattr("sonicvacuum.discover.session.discover", lambda *a, **k: pytest.fail("searched"))
+    assert call(monkeypatch, "discover", good, bad, "--out", tmp_path / "out", "--no-figures") == 2
+    assert "bad/record.yaml: " in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("wrong", "right", "place"),
+    [
+        ("beeds: 21", "beads: 21", "chain"),
+        ("diametr_mm: 4.86", "diameter_mm: 4.86", "chain.bead"),
+        ("modulus_gpa: 2.76", "modulus_GPa: 2.76", "materials.parylene-c"),
+        ("speed_ms: 0.44", "speed_m_s: 0.44", "runs[0].striker"),
+    ],
+)
+def test_a_mistyped_key_gets_the_nearest_one(monkeypatch, capsys, tmp_path, wrong, right, place):
+    assert call(monkeypatch, "record", "new", tmp_path / "rec") == 0
+    file = tmp_path / "rec/record.yaml"
+    text = file.read_text()
+    file.write_text(text.replace(right, wrong, 1))
+    assert call(monkeypatch, "record", "check", tmp_path / "rec") == 2
+    told = capsys.readouterr().err
+    assert f"{place}.{wrong.split(':')[0]}: unknown key; did you mean {right.split(':')[0]}?" in told
+
+
+def test_a_number_written_as_text_is_named_with_its_material(monkeypatch, capsys, tmp_path):
+    assert call(monkeypatch, "record", "new", tmp_path / "rec") == 0
+    file = tmp_path / "rec/record.yaml"
+    file.write_text(file.read_text().replace("modulus_GPa: 2.76", "modulus_GPa: 2e1", 1))
+    assert call(monkeypatch, "record", "check", tmp_path / "rec") == 2
+    told = capsys.readouterr().err
+    assert "materials.parylene-c.modulus_GPa" in told
+    assert "YAML reads this as text: write 2.0e+1" in told
+
+
+def test_make_notices_a_clone_that_was_moved(tmp_path, pytestconfig):
+    names = ("Makefile", "requirements.lock", "requirements-build.lock")
+    for name in names:
+        shutil.copy(pytestconfig.rootpath / name, tmp_path)
+    (tmp_path / ".venv").mkdir()
+    stamp = tmp_path / ".venv/locked"
+    locks = "".join(
+        (tmp_path / name).read_text() for name in ("requirements-build.lock", "requirements.lock")
+    )
+
+    def make():
+        # A Python that is none: nothing is ever built here.
+        call = ["make", "PYTHON=false", ".venv/locked"]
+        return subprocess.run(call, cwd=tmp_path, capture_output=True, text=True)
+
+    stamp.write_text(f"built in {tmp_path.resolve()}\n{locks}")
+    assert make().returncode == 0
+    stamp.write_text(f"built in /elsewhere\n{locks}")
+    assert make().returncode != 0
+    stamp.write_text(f"built in {tmp_path.resolve()}\n{locks}changed\n")
+    assert make().returncode != 0

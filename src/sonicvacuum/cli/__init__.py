@@ -11,6 +11,7 @@ from importlib import import_module
 
 import click
 
+from sonicvacuum.cli.helped import COMPLETION, EXIT_CODES, locked
 from sonicvacuum.files import InputError, check_file
 
 # Verb → where it stands; the order is the order of the work. The two groups at the end belong to packages
@@ -72,8 +73,28 @@ class Verbs(click.Group):
         return inside or get_close_matches(name, list(self.verbs), n=2)
 
 
-@click.group(cls=Verbs, verbs=VERBS, context_settings={"help_option_names": ["-h", "--help"]})
-@click.version_option(package_name="sonicvacuum")
+def _show_version(ctx, param, asked):
+    if asked and not ctx.resilient_parsing:
+        from importlib.metadata import version
+
+        click.echo(f"sonicvacuum {version('sonicvacuum')} ({locked()})")
+        ctx.exit()
+
+
+@click.group(
+    cls=Verbs,
+    verbs=VERBS,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    epilog=f"{EXIT_CODES}\n\n{COMPLETION}",
+)
+@click.option(
+    "--version",
+    is_flag=True,
+    is_eager=True,
+    expose_value=False,
+    callback=_show_version,
+    help="Show the version and the lock of its requirements.",
+)
 def cli():
     """Strongly nonlinear waves in chains of beads: simulate, compare with the paper, report."""
 

@@ -7,13 +7,18 @@ import click
 from sonicvacuum import config as configuration
 from sonicvacuum.card import dump
 from sonicvacuum.cli import existing
+from sonicvacuum.cli.helped import examples
 from sonicvacuum.cli.own_effects import catalogue, own_effects
 from sonicvacuum.files import InputError, replacing
 from sonicvacuum.materials import MATERIALS
 from sonicvacuum.outputs import check_apart
 
 
-@click.command()
+@click.command(
+    epilog=examples(
+        "sonicvacuum card --case fig3a --variant matched --out card.json",
+    )
+)
 @click.option("--config", "path", default="config.yaml", show_default=True, type=existing())
 @click.option("--case", help="Name of the case; without it, all cards are listed.")
 @click.option("--variant", default="nominal", show_default=True)
@@ -53,7 +58,11 @@ def _cure(wanted):
     return f"takes the model of {wanted.record}; give --model with the model.json that discover wrote for it"
 
 
-@click.command()
+@click.command(
+    epilog=examples(
+        "sonicvacuum materials",
+    )
+)
 def materials():
     """Print the built-in table of materials with its sources."""
     click.echo(f"{'name':18} {'E/GPa':>7} {'nu':>6} {'kg/m3':>7} {'yield/MPa':>9}  source")
@@ -63,7 +72,13 @@ def materials():
         click.echo(row)
 
 
-@click.command()
+@click.command(
+    epilog=examples(
+        "sonicvacuum effects",
+        "sonicvacuum effects kuwabara-kono",
+        "sonicvacuum effects --effects my_law.py",
+    )
+)
 @click.argument("name", required=False)
 @own_effects
 def effects(name, own):
@@ -95,7 +110,11 @@ def effects(name, own):
         click.echo(f"{e.places:12} where it sits")
 
 
-@click.command()
+@click.command(
+    epilog=examples(
+        "sonicvacuum schema --out config.schema.json",
+    )
+)
 @click.option("--out", type=click.Path(dir_okay=False), help="File to write; default: standard output.")
 def schema(out):
     """JSON schema of the configuration, for editors that complete and check while typing."""

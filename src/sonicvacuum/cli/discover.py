@@ -1,14 +1,23 @@
 """`sonicvacuum discover`: what records of measured data say is missing from the model."""
 
+import sys
+from contextlib import contextmanager
 from importlib import import_module
 from pathlib import Path
 
 import click
 
+from sonicvacuum.cli.helped import examples
 from sonicvacuum.cli.own_effects import catalogue, own_effects
 
 
-@click.command()
+@click.command(
+    epilog=examples(
+        "sonicvacuum discover my-record --out found",
+        "sonicvacuum discover monday tuesday --together --out found",
+        "sonicvacuum discover records/* --out found --no-figures --quiet",
+    )
+)
 @click.argument("records", nargs=-1, required=True, type=click.Path())
 @click.option("--out", required=True, type=click.Path(file_okay=False), help="Folder to write.")
 @click.option("--together", is_flag=True, help="RECORDS are of one chain and its gauges: one verdict on all.")
@@ -23,11 +32,13 @@ from sonicvacuum.cli.own_effects import catalogue, own_effects
     type=click.IntRange(1),
     help="Threads; all processors by default. Results do not depend on it.",
 )
+@click.option("--quiet", is_flag=True, help="Say nothing but the verdicts.")
 @own_effects
-def discover(records, out, together, figures, threads, own):
+def discover(records, out, together, figures, threads, own, quiet):
     """Find what is missing from the nominal model of measured data in the folders RECORDS.
 
-    One record is written to OUT; of several each has its own folder OUT/<folder name>.
+    One record is written to OUT; of several each has its own folder OUT/<folder name>. All of them are read
+    before the first is searched. On a terminal, a line shows how far the search is.
     """
     from sonicvacuum.cli.page import illustrate, page_files
     from sonicvacuum.discover import session
@@ -43,15 +54,55 @@ def discover(records, out, together, figures, threads, own):
     groups = {Path(out): records} if together else {f: (p,) for p, f in _folders(records, Path(out)).items()}
     for folder in groups:
         check_out(folder, records)
+    for path in records:
+        read(path)  # all of them are sound before hours are spent on the first
     for folder, paths in groups.items():
-        result = session.discover(
-            *(read(p) for p in paths), threads=threads or available_threads(), catalogue=known
-        )
+        with stages_shown(", ".join(paths), quiet):
+            result = session.discover(
+                *(read(p) for p in paths), threads=threads or available_threads(), catalogue=known
+            )
         with renewed(folder, last="verdict.json", stale=page_files()) as fresh:
             session.write(result, fresh)
             if figures:
                 illustrate(fresh, known)
+        if not quiet:
+            for note in result.notes:
+                click.echo(f"{', '.join(paths)}: {note}")
         click.echo(f"{', '.join(paths)}: {_sentence(result.verdict)}")
+
+
+@contextmanager
+def stages_shown(name: str, quiet: bool):
+    """On a terminal, a line with the stage of a search, steps done, time gone and left; nothing in a log."""
+    if quiet or not sys.stderr.isatty():
+        yield
+        return
+    from rich.console import Console
+    from rich.progress import MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+    from sonicvacuum.stages import told_to
+
+    columns = (
+        TextColumn("{task.description}"),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+        TextColumn("left"),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=Console(stderr=True)) as shown:
+        tasks: list = []
+
+        def tell(stage, done, total):
+            if not done:
+                if tasks:
+                    # What a stage did not need is not left undone.
+                    shown.update(tasks[-1], total=shown.tasks[-1].completed)
+                    shown.stop_task(tasks[-1])
+                tasks.append(shown.add_task(f"{name}: {stage}", total=total))
+            shown.update(tasks[-1], completed=done)
+
+        with told_to(tell):
+            yield
 
 
 def _folders(records, out):

@@ -5,12 +5,19 @@ from pathlib import Path
 import click
 
 from sonicvacuum.cli import existing
+from sonicvacuum.cli.helped import examples
 from sonicvacuum.cli.own_effects import catalogue, own_effects
 
 NAMES = ("lammps", "liggghts", "yade", "mujoco", "drake", "all")
 
 
-@click.command(context_settings={"ignore_unknown_options": True})
+@click.command(
+    context_settings={"ignore_unknown_options": True},
+    epilog=examples(
+        "sonicvacuum export found/model.json --record my-record",
+        "sonicvacuum export --law tsuji --alpha 0.1 --mass_g 4 --diameter_mm 10 --material brass",
+    ),
+)
 @click.argument("words", nargs=-1, type=click.UNPROCESSED, metavar="[MODEL]")
 @click.option("--record", type=click.Path(), help="Record of one ball (beads: 0) that the model is of.")
 @click.option("--law", help="Instead of MODEL: id of an effect; its parameters follow as --NAME VALUE.")

@@ -4,10 +4,15 @@ from pathlib import Path
 
 import click
 
+from sonicvacuum.cli.helped import examples
 from sonicvacuum.cli.own_effects import catalogue, own_effects
 
 
-@click.command()
+@click.command(
+    epilog=examples(
+        "sonicvacuum page found",
+    )
+)
 @click.argument("folders", nargs=-1, required=True, type=click.Path(exists=True, file_okay=False))
 @own_effects
 def page(folders, own):

@@ -4,9 +4,14 @@ import json
 
 import click
 
+from sonicvacuum.cli.helped import examples
+
 
 @click.command(
-    epilog="Example: sonicvacuum predict --beads 10 --diameter 20mm --material bearing-steel --speed 0.5"
+    epilog=examples(
+        "sonicvacuum predict --beads 10 --diameter 20mm --material bearing-steel --speed 0.5",
+        "sonicvacuum predict --beads 10 --diameter 20mm --material bearing-steel --aim 5N --gauges 3,7,wall",
+    )
 )
 @click.option("--beads", type=click.IntRange(1), required=True, help="Number of beads; bead 1 is struck.")
 @click.option("--diameter", required=True, metavar="LENGTH", help="Outer diameter of a bead, as in 20mm.")

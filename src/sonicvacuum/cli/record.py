@@ -2,15 +2,16 @@
 
 import click
 
+from sonicvacuum.cli.helped import examples
 from sonicvacuum.cli.scope import import_
 
 
-@click.group()
+@click.group(epilog=examples("sonicvacuum record check my-record"))
 def record():
     """Start and check records of measured data."""
 
 
-@record.command()
+@record.command(epilog=examples("sonicvacuum record new my-record"))
 @click.argument("folder", type=click.Path(file_okay=False))
 def new(folder):
     """Write a commented record.yaml into FOLDER."""
@@ -19,7 +20,9 @@ def new(folder):
     click.echo(commands.new(folder))
 
 
-@record.command()
+@record.command(
+    epilog=examples("sonicvacuum record check my-record", "sonicvacuum record check records/* --json")
+)
 @click.argument("folders", nargs=-1, required=True, type=click.Path())
 @click.option("--json", "as_json", is_flag=True, help="Print JSON, in SI units.")
 def check(folders, as_json):

@@ -5,8 +5,16 @@ import sys
 
 import click
 
+from sonicvacuum.cli.helped import examples
 
-@click.command("import")
+
+@click.command(
+    "import",
+    epilog=examples(
+        "sonicvacuum record import *.csv --list",
+        "sonicvacuum record import *.csv --record chain.yaml --channel CH1=g5 --scale g5=25N/V --out rec",
+    ),
+)
 @click.argument("files", nargs=-1, type=click.Path())
 @click.option("--list", "listed", is_flag=True, help="Only say what is in FILES.")
 @click.option("--json", "as_json", is_flag=True, help="With --list: as JSON.")

@@ -4,11 +4,16 @@ import click
 
 from sonicvacuum.cli import existing, progress
 from sonicvacuum.cli.cards import read_card
+from sonicvacuum.cli.helped import examples
 from sonicvacuum.cli.own_effects import catalogue, own_effects
 from sonicvacuum.outputs import check_apart
 
 
-@click.command()
+@click.command(
+    epilog=examples(
+        "sonicvacuum simulate card.json --out history.npz",
+    )
+)
 @click.argument("card", type=existing())
 @click.option(
     "--model",
