@@ -22,10 +22,10 @@ def commands(pytestconfig):
 
 
 def test_the_command_is_put_on_the_path_before_it_is_called(commands):
-    """The pipeline has built the environment before, and whoever starts at the records is told too."""
+    """The environment has been built before, and whoever starts at the records is told too."""
     first = next(k for k, line in enumerate(commands) if line.startswith("sonicvacuum "))
     assert commands[first - 1] == ACTIVATION
-    assert commands.index("make") < commands.index(ACTIVATION)
+    assert commands.index("make env") < commands.index(ACTIVATION)
 
 
 def test_every_call_names_a_verb_and_options_that_exist(commands):
@@ -53,6 +53,7 @@ def test_no_word_stands_for_a_file_that_is_not_there(commands, pytestconfig):
     made = set()
     for line in (line for line in commands if line.startswith("sonicvacuum ")):
         words = shlex.split(line)[1:]
+        words = [w for w in words if "*" not in w and w != "--record"]
         names = [
             w for w in words if re.fullmatch(r"(?!\d)[\w.-]+(/[\w.-]+)*", w) and ("-record" in w or "." in w)
         ]
