@@ -11,7 +11,9 @@ from made_verdicts import model, verdict, write
 from msgspec.structs import replace
 
 from sonicvacuum.discover import given
+from sonicvacuum.discover.law import Law, Near
 from sonicvacuum.discover.verdict import Known, write_json
+from sonicvacuum.figures import discovery
 from sonicvacuum.files import InputError
 from sonicvacuum.records import Record
 from sonicvacuum.records.reader import parse
@@ -174,6 +176,28 @@ def test_the_grid_tells_every_comparison():
     assert (first["cells"][0]["shown"], first["cells"][1]) == ("−12", None)
     assert second["cells"][1]["shown"] == ""
     assert rows.grid([{"run": "a", "sensor": "", "feature": "speed", "z_before": "3"}]) is None
+
+
+def test_a_law_without_a_name_is_told_and_drawn(folder):
+    grid = [0.0, 1.0, 2.0], [-0.1, 0.0, 0.1]
+    force = [[0.5 * d**1.5 * (1.0 + v) for v in grid[1]] for d in grid[0]]
+    found = Law(
+        depth_um=grid[0], speed_m_s=grid[1], force_N=force, band_N=force, visited=[[True] * 3] * 3,
+        nearest=[Near(effect="tsuji", distance=0.25)], formula="2 N s/m delta^{1/4} v", log10_bayes=9.0, closed=0.8,
+    )  # fmt: skip
+    write_json(verdict(named=["unknown"], parameters={}, law=found), folder / "verdict.json")
+    table = [",".join(("depth_um", "speed_m_s", "hertz_N", "force_N", "band_N", "visited"))]
+    table += [f"{d},{v},{d},{d + v},0.1,1" for d in grid[0] for v in grid[1]]
+    (folder / "law.csv").write_text("\n".join(table) + "\n")
+    discovery.draw(folder)
+    page = write_page(folder).read_text(encoding="utf-8")
+    assert "a contact law without a name: 2 N s/m δ<sup>1/4</sup> v." in page
+    assert "damping with constant restitution (0.25)" in page
+    assert "closes 80 % of what was left" in page
+    assert "force between two beads besides the nominal one" in page
+    (folder / "law.csv").unlink()
+    discovery.draw(folder)
+    assert not (folder / "law.svg").exists()
 
 
 def test_formulas_are_set():

@@ -61,7 +61,7 @@ def discover(records, out, together, figures, threads, own, quiet):
             result = session.discover(
                 *(read(p) for p in paths), threads=threads or available_threads(), catalogue=known
             )
-        with renewed(folder, last="verdict.json", stale=page_files()) as fresh:
+        with renewed(folder, last="verdict.json", stale=(*page_files(), "law.csv")) as fresh:
             session.write(result, fresh)
             if figures:
                 illustrate(fresh, known)

@@ -35,7 +35,7 @@ PICTURES = {
 # What a page adds to the folder of discover.
 PAGE = ("index.html", "parameters.csv", *(f"{name}.{kind}" for name in PICTURES for kind in ("svg", "png")))
 # Those that stand on the page as drawn; the others' numbers do.
-_SHOWN = ("parameters", "traces", "law")
+_SHOWN = ("parameters", "law", "traces")
 _PAIRS = 6
 # What the page needs of each table.
 _COLUMNS = {
@@ -104,6 +104,7 @@ def _told(folder, verdict, model, tables, catalogue):
         "effects": rows.effects(verdict, catalogue),
         "odds": rows.odds(verdict, catalogue),
         "nuisances": bench.nuisances(model),
+        "law": words.law(verdict, catalogue),
         "alternatives": words.alternatives(verdict, catalogue),
         "pairs": [r for r in tables["candidates"] if "+" in r["effects"]][:_PAIRS],
         "singles": [r for r in tables["candidates"] if "+" not in r["effects"]],
