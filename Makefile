@@ -18,7 +18,7 @@ COMPILE := pip compile --quiet --universal --generate-hashes --no-emit-index-url
 	--custom-compile-command "make lock"
 
 .DELETE_ON_ERROR:
-.PHONY: always all env test browser bare fuzz crash slurm crate generic reproduce bench study lock clean help
+.PHONY: always all env test browser bare fuzz crash slurm crate generic reproduce bench study docs lock clean help
 
 all: env  ## build the environment, then run the whole pipeline
 	$(START) --cores $(CORES)
@@ -41,10 +41,6 @@ STAMP = { echo "built in $(CURDIR)"; cat requirements-build.lock requirements.lo
 	@$(INSTALL) --no-deps --editable .
 	@touch $@
 
-.venv/browsed: .venv/installed requirements-browser.lock
-	@$(LOCKED) requirements-browser.lock
-	@touch $@
-
 .venv/benched: .venv/installed requirements-bench.lock
 	@$(LOCKED) requirements-bench.lock
 	@touch $@
@@ -53,8 +49,16 @@ STAMP = { echo "built in $(CURDIR)"; cat requirements-build.lock requirements.lo
 	@$(LOCKED) requirements-study.lock
 	@touch $@
 
+.venv/browsed: .venv/installed requirements-browser.lock
+	@$(LOCKED) requirements-browser.lock
+	@touch $@
+
 .venv/clustered: .venv/installed requirements-cluster.lock
 	@$(LOCKED) requirements-cluster.lock
+	@touch $@
+
+.venv/documented: .venv/installed requirements-docs.lock
+	@$(LOCKED) requirements-docs.lock
 	@touch $@
 
 test: env  ## check format, style, types, import contracts, and run the tests
@@ -65,8 +69,9 @@ test: env  ## check format, style, types, import contracts, and run the tests
 	$(BIN)/mypy
 	$(BIN)/pytest --numprocesses $(CORES) --dist loadfile
 
-browser: .venv/browsed  ## try the page of a verdict in a real browser: Chromium on the path, or CHROMIUM=PATH
+browser: .venv/browsed  ## try the pages in a real browser, those of results/ among them: Chromium on the path, or CHROMIUM=PATH
 	$(BIN)/pytest tests/report/browser_pages.py
+	test ! -f results/report.html || $(BIN)/pytest workflow/browser
 
 bare: env  ## install the wheel without extras in a fresh environment and search a record with it
 	$(BIN)/python workflow/scripts/bare.py
@@ -97,6 +102,9 @@ study: .venv/studied  ## the full blind study with its baselines and further run
 	$(BIN)/pytest workflow/study
 	$(START) --cores $(CORES) blind_full blind_resolved
 
+docs: .venv/documented  ## build the documentation into results/docs
+	$(BIN)/mkdocs build --strict --quiet
+
 lock:  ## resolve the requirements anew; versions already locked stay unless UPGRADE=--upgrade
 	@tools=$$(mktemp -d) && trap 'rm -rf "$$tools"' EXIT && $(PYTHON) -m venv "$$tools" && \
 	"$$tools/bin/python" -m pip --quiet --quiet install uv==$(UV_VERSION) && \
@@ -106,7 +114,8 @@ lock:  ## resolve the requirements anew; versions already locked stay unless UPG
 	lock --group browser --constraints requirements.lock --output-file requirements-browser.lock && \
 	lock --group bench --constraints requirements.lock --output-file requirements-bench.lock && \
 	lock pyproject.toml --extra study --constraints requirements.lock --output-file requirements-study.lock && \
-	lock pyproject.toml --extra cluster --constraints requirements.lock --output-file requirements-cluster.lock
+	lock pyproject.toml --extra cluster --constraints requirements.lock --output-file requirements-cluster.lock && \
+	lock pyproject.toml --extra docs --constraints requirements.lock --output-file requirements-docs.lock
 
 clean:  ## remove the environment, the results and all caches
 	rm -rf .venv results .snakemake .pytest_cache .ruff_cache .import_linter_cache .mypy_cache .hypothesis .benchmarks

@@ -17,12 +17,13 @@ class Config(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     Attributes:
         cases: name → block, see `sonicvacuum.card.CaseBlock`.
-        ledger: column of the ledger → the variants that stand for it, the first that a case has being taken.
+        ledger: column of the ledger → the variants that stand for it, the first that a case has being taken;
+            optional, for cases that no statement of the paper is about.
         discover: folders of the records in which `discover` looks for what is missing.
     """
 
     cases: Annotated[dict[Name, dict[str, Any]], Meta(min_length=1)]
-    ledger: dict[Name, list[Name]]
+    ledger: dict[Name, list[Name]] = {}
     discover: list[str] = []
 
     @property

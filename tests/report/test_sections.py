@@ -4,11 +4,11 @@ import pandas as pd
 import pytest
 from made_verdicts import write
 
-from sonicvacuum.figures import discovery
 from sonicvacuum.files import InputError
 from sonicvacuum_blind import report as study
+from sonicvacuum_blind.page import build as blind_page
 from sonicvacuum_paper.report import publish, tables
-from sonicvacuum_paper.report.page import CLAIMS, build
+from sonicvacuum_paper.report.page import CLAIMS, Sources, build
 
 FIRST = ("measure", "group", "count", "value", "low", "high", "goal")
 SUMMARY = [
@@ -35,20 +35,19 @@ def empty(tmp_path):
     return [tmp_path / f"{name}.csv" for name in ("ledger", "assumptions", "metrics", "claims")]
 
 
-def test_the_report_holds_the_section_of_each_record_and_both_studies(empty, summary, tmp_path):
+def test_the_report_says_what_is_found_in_each_record_and_links_its_page(empty, tmp_path):
     folder = write(tmp_path / "found", "single")
-    discovery.draw(folder)
-    page = build(*empty, [], [], [], [folder], summary)
+    page = build(Sources(*empty, discoveries=[folder]))
     assert 'id="record-made"' in page
+    assert 'href="discover/made/index.html"' in page
     assert "What is missing: Viscoelastic Hertz contact (kuwabara-kono)" in page
-    assert "<td>named on null</td><td>white</td>" in page
-    assert page.count("No table of this study has been made.") == 1
 
 
-def test_a_report_without_discoveries_says_so(empty):
-    page = build(*empty, [], [], [])
+def test_a_report_without_discoveries_and_studies_says_so(empty):
+    page = build(Sources(*empty))
     assert "No record has been looked into." in page
-    assert page.count("No table of this study has been made.") == 2
+    assert "No table of the full study has been made." in page
+    assert blind_page().count("No table of this study has been made.") == 2
 
 
 def test_rows_without_cases_and_times_are_left_out(summary):
@@ -66,10 +65,12 @@ def test_a_summary_with_other_columns_is_refused(tmp_path):
 def test_the_full_study_stands_with_its_pictures_before_the_small_one(empty, summary, tmp_path):
     drawing = tmp_path / "blind_accuracy.svg"
     drawing.write_text('<svg width="500pt"><g id="a"/></svg>')
-    page = build(*empty, [], [], [], [], summary, tmp_path, [(drawing, "What the picture shows.")])
+    page = blind_page(summary, tmp_path, [(drawing, "What the picture shows.")])
     assert "36 records. Of 1 goals set beforehand 1 are met, 0 missed." in page
-    assert page.index("What the picture shows.") < page.index("The small study of this run")
+    assert page.index("What the picture shows.") < page.index("The small study of this run</h2>")
+    assert "<td>named on null</td><td>white</td>" in page
     assert "No table of this study has been made." not in page
+    assert "36 records; of 1 goals" in build(Sources(*empty, blind_full=tmp_path))
 
 
 def test_what_is_kept_of_a_study_is_its_naming(tmp_path):

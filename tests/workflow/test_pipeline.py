@@ -236,6 +236,19 @@ use rule * from sonicvacuum as sv_*
     assert planned(tmp_path) == {f"sv_{rule}": count for rule, count in ALL.items()}
 
 
+def test_another_configuration_may_be_named_and_needs_no_ledger(project, snakemake):
+    """Its cases are simulated and shown, and the statements of the paper are left without a number."""
+    head, cases = CONFIG.split("ledger:\n")
+    (project / "config.yaml").unlink()
+    (project / "own.yaml").write_text(head + cases[cases.index("cases:") :])
+    tables = ("results/ledger.csv", "results/assumptions.csv", "results/runs.html")
+    done = snakemake(project, *tables, "--configfile", "own.yaml")
+    assert done.returncode == 0, done.stderr
+    assert "coated.soft" in (project / "results/runs.html").read_text()
+    verdicts = {line.split(",")[-2] for line in (project / "results/ledger.csv").read_text().splitlines()[1:]}
+    assert "disagrees" not in verdicts
+
+
 def test_the_workflow_passes_its_lint(pytestconfig, snakemake):
     done = snakemake(pytestconfig.rootpath, "--lint")
     assert done.returncode == 0, done.said

@@ -1,5 +1,6 @@
 """The page and the README say what the tables say, and the page needs nothing but itself."""
 
+import json
 import re
 from html.parser import HTMLParser
 
@@ -8,8 +9,9 @@ import pytest
 
 from sonicvacuum import config
 from sonicvacuum.files import InputError
-from sonicvacuum_paper.report import publish, tables, timings
-from sonicvacuum_paper.report.page import CLAIMS, build
+from sonicvacuum.report.inline import with_subscripts
+from sonicvacuum_paper.report import cursor, publish, tables, timings
+from sonicvacuum_paper.report.page import CLAIMS, Sources, build
 from sonicvacuum_paper.verdict import VERDICTS
 
 _OLD = ("claim", "section", "quantity", "unit", "measured", "sigma", "layer", "matched", "difference_sigma")
@@ -30,17 +32,25 @@ LEDGER = [
 SVG = '<?xml version="1.0"?><svg><defs><clipPath id="c"/></defs><g clip-path="url(#c)"/></svg>'
 
 
+PAGES = ("runs.html", "blind.html")
+
+
 class Page(HTMLParser):
-    """What a browser would fetch, and the ids on the page."""
+    """What a browser would fetch, the ids on the page, where links lead, the scales of drawings."""
 
     def __init__(self, text):
         super().__init__()
-        self.fetched, self.ids = [], []
+        self.fetched, self.ids, self.links, self.scales, self.folds = [], [], [], {}, 0
         self.feed(text)
 
     def handle_starttag(self, tag, attributes):
         attributes = dict(attributes)
         self.ids += [attributes["id"]] if "id" in attributes else []
+        self.folds += tag == "details"
+        if tag == "a":
+            self.links.append(attributes["href"])
+        if tag == "figure" and "data-scales" in attributes:
+            self.scales[attributes["id"]] = json.loads(attributes["data-scales"])["panels"]
         if tag in ("script", "img", "link", "iframe") and (
             source := attributes.get("src", attributes.get("href"))
         ):
@@ -64,8 +74,10 @@ def page(tmp_path, pytestconfig):
     root = pytestconfig.rootpath
     card = config.card(config.read(root / "config.yaml"), "fig3a", "matched")
     paths = [tmp_path / f"{name}.csv" for name in ("ledger", "assumptions", "metrics", "claims")]
-    drawn = [(tmp_path / f"{name}.svg", f"Caption of {name} with F_m & more.") for name in ("fig3", "fig4")]
-    return build(*paths, drawn, [card], [root / "requirements.lock"])
+    drawn = [tmp_path / f"{name}.svg" for name in ("fig3", "fig4")]
+    return build(
+        Sources(*paths, figures=drawn, cards=[card], locks=[root / "requirements.lock"], linked=PAGES)
+    )
 
 
 def test_the_page_needs_nothing_but_itself(page):
@@ -86,7 +98,54 @@ def test_every_claim_stands_on_the_page(page):
         assert f"Statement {row[0]}." in page
     assert "it &lt;does&gt; not hold" in page
     assert "101.2" in page
-    assert "<i>F</i><sub>m</sub> &amp; more" in page
+    assert "<i>F</i><sub>m</sub> − <i>F</i><sub>0</sub>" in with_subscripts("F_m − F_0")
+
+
+def test_links_on_the_page_lead_to_its_parts_or_to_the_pages_beside_it(page):
+    found = Page(page)
+    inner = {link[1:] for link in found.links if link.startswith("#")}
+    assert inner <= set(found.ids)
+    assert {"runs.html", "blind.html", "runs.html#fig3a.matched"} <= set(found.links)
+    assert found.folds == 4  # ledger, what is uncertain, assumptions, cards
+
+
+def test_the_model_that_decides_stands_in_the_row_and_the_others_below_the_statement(page):
+    row = page[page.index('id="claim-a-speed"') :]
+    row = row[: row.index("</tr>")]
+    assert row.startswith('id="claim-a-speed"><td class="verdict reproduced">')
+    assert '<td class="n" data-name="model">90</td>' in row
+    assert "Hertz, 15 GPa: 101.2" in row
+
+
+def test_the_committed_figures_tell_their_values(pytestconfig):
+    """Every line that the script would read is in the drawing, and every panel has its frame."""
+    folder = pytestconfig.rootpath / "figures"
+    for name in ("fig3", "fig4", "fig5", "fig6"):
+        panels = json.loads(cursor.of_figure(name, folder / f"{name}.csv"))["panels"]
+        assert len(panels) == 2
+        ids = Page((folder / f"{name}.svg").read_text()).ids
+        for panel in panels:
+            left, top, right, bottom = panel["box"]
+            assert 0 < left < right < 496.1 and 0 < top < bottom  # the page is 175 mm wide
+            assert panel["lines"] and panel["x"][0] < panel["x"][1] and panel["y"][0] < panel["y"][1]
+            assert {line["id"].removeprefix(f"{name}-") for line in panel["lines"]} <= set(ids)
+
+
+def test_a_line_is_drawn_where_its_scale_says(pytestconfig):
+    """The first peak of Fig. 3(a), from its table, lies on the path of its line in the SVG."""
+    folder = pytestconfig.rootpath / "figures"
+    table = pd.read_csv(folder / "fig3.csv")
+    peak = table[(table.series == "peak") & (table.sensor == "g9") & (table.model == "layer")].iloc[0]
+    panel = json.loads(cursor.of_figure("fig3", folder / "fig3.csv"))["panels"][0]
+    base = next(line["base"] for line in panel["lines"] if line["id"] == "fig3-simulated-g9-layer")
+    left, top, right, bottom = panel["box"]
+    x = left + (peak.time_us - panel["x"][0]) / (panel["x"][1] - panel["x"][0]) * (right - left)
+    y = bottom - (peak.force_N + base - panel["y"][0]) / (panel["y"][1] - panel["y"][0]) * (bottom - top)
+    svg = (folder / "fig3.svg").read_text()
+    path = re.search(r'id="simulated-g9-layer">\s*<path d="([^"]*)"', svg)[1]
+    points = [tuple(map(float, pair)) for pair in re.findall(r"([\d.]+) ([\d.]+)", path)]
+    # Units of the drawing, 1/72 inch: the table is a sample of the trace, the peak is between two of them.
+    assert min(abs(px - x) + abs(py - y) for px, py in points) < 1.5
 
 
 def test_the_same_tables_give_the_same_page(page, request):

@@ -143,6 +143,30 @@ rule draw_kept:
         "sonicvacuum blind draw {params.folder:q} --picture {wildcards.picture:q} --out figures --prefix blind_ > {log:q} 2>&1"
 
 
+rule blind_page:
+    input:
+        small="results/blind/small/summary.csv",
+        full=sorted(Path(STUDY_TABLES).glob("*.csv")),
+        pictures=expand("figures/{picture}.svg", picture=STUDY),
+    output:
+        report("results/blind.html", category="Report", labels={"page": "blind studies"}),
+    log:
+        "results/logs/blind_page.log",
+    benchmark:
+        "results/benchmarks/blind_page.tsv"
+    conda:
+        ENVIRONMENT
+    params:
+        sources=sources("blind page"),
+        full=lambda wildcards, input: Path(input.full[0]).parent,
+        pictures=lambda wildcards, input: repeated("--picture", input.pictures),
+    message:
+        "Writing the page of the blind studies"
+    shell:
+        "sonicvacuum blind page --small {input.small:q} --full {params.full:q} {params.pictures:q}"
+        " --out {output:q} 2> {log:q}"
+
+
 # The small study with what the default environment can draw; its baselines: blind_small_baselines.
 rule blind_small:
     input:

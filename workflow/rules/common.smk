@@ -12,10 +12,12 @@ from snakemake.exceptions import WorkflowError
 from sonicvacuum import config as configuration
 from sonicvacuum.cli.sources import digest
 from sonicvacuum.files import InputError
-from sonicvacuum_paper.figures import caption, cards_of
+from sonicvacuum_paper.figures import caption, cards_of, drawable, names
+from sonicvacuum_paper.shown import ANIMATIONS, own
 
-# Another workflow that uses this one as a module may name its own: config: {"configuration": PATH}.
-CONFIG_FILE = config.get("configuration", "config.yaml")
+# `--configfile FILE` names another one, and so may a workflow that uses this one as a module: config: {"configuration": FILE}.
+GIVEN = [str(path) for path in workflow.overwrite_configfiles if "cases" in config]
+CONFIG_FILE = config.get("configuration", GIVEN[-1] if GIVEN else "config.yaml")
 # For runs with conda; `make` has put the same packages on the path already.
 ENVIRONMENT = "../envs/locked.yaml"
 # Where this workflow lies; the working folder is another one where it is used as a module.
@@ -24,7 +26,6 @@ HOME = Path(workflow.current_basedir.get_path_or_uri(secret_free=True)).resolve(
 # Braces are doubled for Snakemake, which formats the prefix.
 COMMANDS = shlex.quote(str(Path(sys.executable).parent)).replace("{", "{{").replace("}", "}}")
 shell.prefix(f'export PATH={COMMANDS}:"$PATH"; ')
-FIGURES = ["fig3", "fig4", "fig5", "fig6"]
 
 
 def home(path):
@@ -39,6 +40,10 @@ except InputError as error:
     raise WorkflowError(str(error))
 
 CARDS = configuration.card_names(CONFIG)
+# Those of which every panel has a case.
+FIGURES = [name for name in names() if drawable(name, CARDS)]
+# Those of cases that the paper does not have.
+OWN = list(filter(own, CARDS))
 # Record of measured data → its folder.
 RECORDS = CONFIG.records
 for folder in RECORDS.values():

@@ -60,12 +60,14 @@ rule page:
         metrics="results/metrics.csv",
         claims=CLAIMS,
         figures=expand("figures/{figure}.svg", figure=FIGURES),
+        tables=expand("figures/{figure}.csv", figure=FIGURES),
         cards=expand("results/cards/{card}.json", card=CARDS),
+        own=expand("results/histories/{card}.npz", card=OWN),
         locks=LOCKS,
         discoveries=expand("results/discover/{record}/index.html", record=RECORDS),
-        blind_small="results/blind/small/summary.csv",
         blind_full=sorted(Path(STUDY_TABLES).glob("*.csv")),
-        pictures=expand("figures/{picture}.svg", picture=STUDY),
+        animations=expand("results/animations/{name}.svg", name=ANIMATIONS),
+        linked=["results/runs.html", "results/blind.html"],
     output:
         report("results/report.html", category="Report", caption="../report/page.rst"),
     log:
@@ -83,14 +85,55 @@ rule page:
             "--discovery", [Path(path).parent for path in input.discoveries]
         ),
         blind_full=lambda wildcards, input: Path(input.blind_full[0]).parent,
-        pictures=lambda wildcards, input: repeated("--picture", input.pictures),
+        histories=repeated("--histories", ["results/histories"] if OWN else []),
+        animations=lambda wildcards, input: repeated("--animation", input.animations),
+        linked=lambda wildcards, input: repeated("--linked", [Path(path).name for path in input.linked]),
     message:
         "Writing the report"
     shell:
         "sonicvacuum paper report --ledger {input.ledger:q} --assumptions {input.assumptions:q}"
         " --metrics {input.metrics:q} --claims {input.claims:q} {params.figures:q}"
-        " {params.cards:q} {params.locks:q} {params.discoveries:q} --blind-small {input.blind_small:q}"
-        " --blind-full {params.blind_full:q} {params.pictures:q} --out {output:q} 2> {log:q}"
+        " {params.cards:q} {params.locks:q} {params.discoveries:q} --blind-full {params.blind_full:q}"
+        " {params.histories:q} {params.animations:q} {params.linked:q} --out {output:q} 2> {log:q}"
+
+
+rule runs:
+    input:
+        cards=expand("results/cards/{card}.json", card=CARDS),
+        histories=expand("results/histories/{card}.npz", card=CARDS),
+        metrics="results/metrics.csv",
+    output:
+        report("results/runs.html", category="Report", labels={"page": "every run"}),
+    log:
+        "results/logs/runs.log",
+    benchmark:
+        "results/benchmarks/runs.tsv"
+    conda:
+        ENVIRONMENT
+    params:
+        sources=sources("paper runs"),
+    message:
+        "Drawing every run over place and time"
+    shell:
+        "sonicvacuum paper runs {input.cards:q} --histories results/histories --metrics {input.metrics:q}"
+        " --out {output:q} 2> {log:q}"
+
+
+rule animate:
+    output:
+        "results/animations/{name}.svg",
+    log:
+        "results/logs/animate/{name}.log",
+    benchmark:
+        "results/benchmarks/animate/{name}.tsv"
+    conda:
+        ENVIRONMENT
+    params:
+        sources=sources("paper animate"),
+    message:
+        "Drawing the moving picture {wildcards.name}"
+    shell:
+        "sonicvacuum paper animate {wildcards.name:q} --out {output:q} 2> {log:q}"
 
 
 rule timings:

@@ -17,7 +17,7 @@ import grimp
 from sonicvacuum.cli import cli
 
 PACKAGES = ("sonicvacuum", "sonicvacuum_blind", "sonicvacuum_paper")
-# Files beside modules that are no modules: templates, styles, tables, settings.
+# Files beside modules that are no modules: templates, styles, scripts, tables, settings.
 DATA = (".j2", ".css", ".js", ".csv", ".json", ".yaml")
 
 

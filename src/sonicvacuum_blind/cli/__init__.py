@@ -13,6 +13,7 @@ blind = Verbs(
         "calibrate": "sonicvacuum_blind.cli.calibrate:calibrate",
         "baselines": "sonicvacuum_blind.cli.baselines:baselines",
         "draw": "sonicvacuum_blind.cli.draw:draw",
+        "page": "sonicvacuum_blind.cli.page:page",
         "publish": "sonicvacuum_blind.cli.publish:publish",
     },
 )

@@ -13,6 +13,8 @@ paper = Verbs(
         "audit": "sonicvacuum_paper.cli.ledger:audit",
         "draw": "sonicvacuum_paper.cli.draw:draw",
         "report": "sonicvacuum_paper.cli.report:report",
+        "runs": "sonicvacuum_paper.cli.runs:runs",
+        "animate": "sonicvacuum_paper.cli.animate:animate",
         "publish": "sonicvacuum_paper.cli.publish:publish",
         "timings": "sonicvacuum_paper.cli.timings:timings",
     },

@@ -8,9 +8,11 @@ from sonicvacuum.cli import existing
 from sonicvacuum.cli.cards import read_card
 from sonicvacuum.files import replacing
 from sonicvacuum.outputs import check_apart
+from sonicvacuum_paper.cli.studies import loaded
 
 _FILE = existing()
 _FOLDER = click.Path(exists=True, file_okay=False)
+_OUT = click.Path(dir_okay=False)
 
 
 @click.command()
@@ -18,45 +20,29 @@ _FOLDER = click.Path(exists=True, file_okay=False)
 @click.option("--assumptions", required=True, type=_FILE)
 @click.option("--metrics", required=True, type=_FILE)
 @click.option("--claims", required=True, type=_FILE)
-@click.option("--figure", "figures", multiple=True, type=_FILE, help="SVG of a figure; repeat.")
+@click.option(
+    "--figure", "figures", multiple=True, type=_FILE, help="SVG of a figure, its CSV beside it; repeat."
+)
 @click.option("--card", "cards", multiple=True, type=_FILE, help="Resolved card; repeat.")
 @click.option("--lock", "locks", multiple=True, type=_FILE, help="Lock file of the environment; repeat.")
 @click.option(
-    "--discovery",
-    "discoveries",
-    multiple=True,
-    type=_FOLDER,
-    help="Folder that discover wrote; repeat.",
+    "--discovery", "discoveries", multiple=True, type=_FOLDER, help="Folder that discover wrote; repeat."
 )
-@click.option("--blind-small", type=_FILE, help="Summary of the small blind study.")
-@click.option("--blind-full", type=_FOLDER, help="Folder of the full one's tables.")
-@click.option("--picture", "pictures", multiple=True, type=_FILE, help="SVG of the full study; repeat.")
-@click.option("--out", required=True, type=click.Path(dir_okay=False), help="Page (HTML) to write.")
-def report(
-    ledger,
-    assumptions,
-    metrics,
-    claims,
-    figures,
-    cards,
-    locks,
-    discoveries,
-    blind_small,
-    blind_full,
-    pictures,
-    out,
-):
+@click.option("--blind-full", type=_FOLDER, help="Folder of the full blind study's tables.")
+@click.option("--histories", type=_FOLDER, help="Simulated cards; those of your own cases are shown.")
+@click.option("--animation", "animations", multiple=True, type=_FILE, help="SVG that moves; repeat.")
+@click.option("--linked", multiple=True, help="Name of a page beside this one; repeat.")
+@click.option("--out", required=True, type=_OUT, help="Page (HTML) to write.")
+def report(cards, histories, out, **given):
     """Write the self-contained page with figures, ledger, audit, discoveries and provenance."""
-    from sonicvacuum_blind import kept
-    from sonicvacuum_paper.figures import caption
-    from sonicvacuum_paper.report.page import build
+    from sonicvacuum_paper.report import page
+    from sonicvacuum_paper.shown import own as added
 
-    read_here = (ledger, assumptions, metrics, claims, *figures, *cards, *locks, *discoveries, *pictures)
-    check_apart([out], [*read_here, blind_small, blind_full])
-    captioned = [(figure, caption(Path(figure).stem)) for figure in figures]
+    named = [value for key, value in given.items() if key != "linked"]
+    listed = [path for value in named for path in (value if isinstance(value, tuple) else (value,))]
+    check_apart([out], [*listed, *cards, histories])
+    own = [path for path in cards if added(Path(path).stem)] if histories else []
     read = [read_card(card) for card in cards]
-    tables = (ledger, assumptions, metrics, claims)
-    seen = [(picture, kept.caption(Path(picture).stem)) for picture in pictures]
-    text = build(*tables, captioned, read, locks, discoveries, blind_small, blind_full, seen)
+    text = page.build(page.Sources(cards=read, own=loaded(own, histories), **given))
     with replacing(out) as stream:
         stream.write(text)

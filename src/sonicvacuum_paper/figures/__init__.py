@@ -4,7 +4,7 @@ Each module `figN` has `table(simulations)`, which returns the numbers drawn, `d
 figure of them and of nothing else, and `CAPTION`. Importing this package loads neither matplotlib nor pandas.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from sonicvacuum.blas import one_thread
@@ -42,6 +42,20 @@ def cards_of(name: str) -> tuple[str, ...]:
     return CARDS[name]
 
 
+def panels(name: str) -> dict[str, list[str]]:
+    """Panel of a figure, the case that it shows → its cards, one of which must be there."""
+    found: dict[str, list[str]] = {}
+    for card in cards_of(name):
+        found.setdefault(card.split(".")[0], []).append(card)
+    return found
+
+
+def drawable(name: str, cards: Iterable[str]) -> bool:
+    """Whether every panel of a figure has one of these cards."""
+    known = set(cards)
+    return all(known.intersection(shown) for shown in panels(name).values())
+
+
 def caption(name: str) -> str:
     """Caption of a figure, one paragraph of plain text."""
     return _module(name).CAPTION
@@ -68,10 +82,11 @@ def make(name: str, simulations: Mapping, out_dir) -> tuple[Path, Path, Path]:
     from sonicvacuum.figures import style
 
     wanted = {card: simulations[card] for card in cards_of(name) if card in simulations}
-    for panel in dict.fromkeys(card.split(".")[0] for card in CARDS[name]):
-        if not any(card.startswith(f"{panel}.") for card in wanted):
-            known = ", ".join(c for c in CARDS[name] if c.startswith(f"{panel}."))
-            raise InputError(f"figure {name}: no simulated card of {panel}; simulate one of {known}")
+    for panel, shown in panels(name).items():
+        if not wanted.keys() & set(shown):
+            raise InputError(
+                f"figure {name}: no simulated card of {panel}; simulate one of {', '.join(shown)}"
+            )
     module, stem = _module(name), Path(out_dir) / name
     paths = tuple(stem.with_suffix(suffix) for suffix in (".csv", ".svg", ".png"))
     with replacing(paths[0]) as stream:

@@ -65,7 +65,7 @@ def _panel(axes, table):
             part.force_N,
             **(look.line if series == "simulated" else look.pale),
             zorder=3.0 - 0.1 * models.index(model),
-            gid=f"{series}-wall-{model}",
+            gid=f"{series}-wall-{model}-{part.panel.iloc[0]}",
         )
 
 

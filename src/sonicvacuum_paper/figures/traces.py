@@ -157,7 +157,7 @@ def draw(table: pandas.DataFrame, bars: dict[str, tuple[float, float]]) -> Figur
 
 def draw_panel(axes: Axes, table: pandas.DataFrame, force_bar: float, time_bar: float) -> dict[str, float]:
     """Draw the rows of one panel; returns the height of each gauge's base line in the axes' newtons."""
-    bases = _bases(table)
+    bases = base_lines(table)
     _lines(axes, table, bases)
     _paper(axes, table, bases)
     number(axes, table, bases)
@@ -192,8 +192,11 @@ GAP = 0.14
 _MARK = {"color": "black", "lw": 0.9, "marker": "|", "mew": 1.2}
 
 
-def _bases(table):
-    """Gauge → base line: the lowest gauge at 0, each other above the highest force of the one below it."""
+def base_lines(table: pandas.DataFrame) -> dict[str, float]:
+    """Gauge → base line in the axes' newtons.
+
+    The lowest gauge stands at 0, each other one above the highest force of the one below it.
+    """
     order = list(dict.fromkeys(table.sensor))
     heights = table.groupby("sensor").force_N.max()
     gap = GAP * heights.sum()

@@ -1,76 +1,85 @@
 """`results/report.html`: what was asked, the figures, the ledger, the audit, and how each number was made."""
 
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from sonicvacuum.card import Card
 from sonicvacuum.effects import IDS
-from sonicvacuum.report import inline, record
+from sonicvacuum.report import inline, interactive, record
+from sonicvacuum.simulation import Simulation
 from sonicvacuum_blind import report as study
 from sonicvacuum_paper import ladder
-from sonicvacuum_paper.report import answer, provenance, tables, uncertain
+from sonicvacuum_paper.figures import caption
+from sonicvacuum_paper.report import answer, cursor, provenance, runs, tables, uncertain
+from sonicvacuum_paper.shown import ANIMATIONS
 
 
-def build(
-    ledger_path,
-    assumptions_path,
-    metrics_path,
-    claims_path,
-    figures,
-    cards,
-    locks,
-    discoveries=(),
-    blind_small=None,
-    blind_full=None,
-    pictures=(),
-) -> str:
-    """The page as HTML text, figures inside.
+@dataclass(frozen=True)
+class Sources:
+    """What the page is made of; only the tables must be there.
 
-    Args:
-        ledger_path, assumptions_path, metrics_path, claims_path: CSV files that the pipeline wrote or reads.
-        figures: pairs of an SVG file, named figN.svg, and its caption in plain text.
+    Attributes:
+        ledger, assumptions, metrics, claims: CSV files that the pipeline wrote or reads.
+        figures: SVG files, named figN.svg, the CSV that each is drawn from beside it where values are told.
         cards: resolved `Card`s.
         locks: lock files of the environment.
         discoveries: folders that `sonicvacuum discover` wrote.
-        blind_small: summary of the small blind study, None where there is none.
-        blind_full: folder of the full study's tables, None where there is none.
-        pictures: of the full study: pairs of an SVG file and its caption.
+        blind_full: folder of the full blind study's tables, None where there is none.
+        own: simulated cards of cases that a user added.
+        animations: SVG files that move, named by `shown.ANIMATIONS`.
+        linked: names of the pages beside this one, of `runs.html` and `blind.html`.
+    """
+
+    ledger: Path
+    assumptions: Path
+    metrics: Path
+    claims: Path
+    figures: Sequence[Path] = ()
+    cards: Sequence[Card] = ()
+    locks: Sequence[Path] = ()
+    discoveries: Sequence[Path] = ()
+    blind_full: Path | None = None
+    own: Iterable[Simulation] = ()
+    animations: Sequence[Path] = ()
+    linked: Sequence[str] = ()
+
+
+def build(given: Sources) -> str:
+    """The page as HTML text, figures inside.
 
     Raises:
         InputError: when a table has other columns than it should.
     """
-    ledger = tables.read(ledger_path, tables.LEDGER)
-    claims = tables.read(claims_path, CLAIMS).set_index("claim")
-    ledger["statement"] = [claims["statement"].get(c, "") for c in ledger["claim"]]
-    ledger["note"] = [claims["note"].get(c, "") for c in ledger["claim"]]
-    ledger["excluded_by"] = ledger["excluded"].map(tables.shown)
-    ledger["probable"] = ledger["probability"].map(uncertain.shown)
-    metrics = tables.read(metrics_path, tables.METRICS)
-    return (
-        inline.environment("sonicvacuum_paper.report")
-        .get_template("page.html.j2")
-        .render(
-            ledger=ledger.to_dict("records"),
-            counts=tables.counts(ledger),
-            verdicts=tables.VERDICTS,
-            disagreements=tables.disagreements(ledger).to_dict("records"),
-            assumptions=tables.read(assumptions_path, tables.ASSUMPTIONS).to_dict("records"),
-            headline=tables.headline(ledger),
-            answer=answer.sentences(ledger, metrics),
-            models=[(c, m.title, m.free) for c, m in ladder.MODELS.items() if m.counted],
-            first=tables.first(ledger),
-            **uncertain.context(ledger),
-            totals={t.model: t for t in ladder.totals(ledger.to_dict("records"))},
-            figures=[_figure(svg, caption) for svg, caption in figures],
-            cards=[_card_row(card, metrics) for card in cards],
-            catalogue=len(IDS),
-            discoveries=[record.section(folder) for folder in discoveries],
-            full=blind_full and _full(study.read(blind_full)),
-            pictures=[_figure(svg, caption) for svg, caption in pictures],
-            small=blind_small and study.findings(tables.read(blind_small, study.SUMMARY)),
-            versions=provenance.versions(),
-            source=provenance.source_digest(),
-            lock=provenance.digest(locks),
-        )
+    ledger = _ledger(given)
+    metrics = tables.read(given.metrics, tables.METRICS)
+    template = inline.environment("sonicvacuum_paper.report").get_template("page.html.j2")
+    return template.render(
+        ledger=[_claim_row(row) for row in ledger.to_dict("records")],
+        counts=tables.counts(ledger),
+        verdicts=tables.VERDICTS,
+        disagreements=tables.disagreements(ledger).to_dict("records"),
+        assumptions=tables.read(given.assumptions, tables.ASSUMPTIONS).to_dict("records"),
+        headline=tables.headline(ledger),
+        answer=answer.sentences(ledger, metrics),
+        models=[(c, m.title, m.free) for c, m in ladder.MODELS.items() if m.counted],
+        first=tables.first(ledger),
+        **uncertain.context(ledger),
+        totals={t.model: t for t in ladder.totals(ledger.to_dict("records"))},
+        figures=[_figure(Path(svg)) for svg in given.figures],
+        cards=[_card_row(card, metrics) for card in given.cards],
+        own=[runs.told(study, metrics) for study in given.own],
+        columns=list(runs.AT_GAUGES.values()),
+        catalogue=len(IDS),
+        discoveries=[record.section(folder) for folder in given.discoveries],
+        full=given.blind_full and study.read(given.blind_full),
+        animations=[_animation(Path(svg)) for svg in given.animations],
+        runs_page="runs.html" in given.linked,
+        blind_page="blind.html" in given.linked,
+        versions=provenance.versions(),
+        source=provenance.source_digest(),
+        lock=provenance.digest(given.locks),
+        script=interactive.script(),
     )
 
 
@@ -92,28 +101,42 @@ CLAIMS = [
 ]
 
 
-def _figure(svg, caption):
-    """One figure, its SVG inlined."""
-    name = Path(svg).stem
+def _ledger(given: Sources):
+    """The ledger with statements, notes and the models that a row excludes."""
+    ledger = tables.read(given.ledger, tables.LEDGER)
+    claims = tables.read(given.claims, CLAIMS).set_index("claim")
+    ledger["statement"] = [claims["statement"].get(c, "") for c in ledger["claim"]]
+    ledger["note"] = [claims["note"].get(c, "") for c in ledger["claim"]]
+    ledger["excluded_by"] = ledger["excluded"].map(tables.shown)
+    ledger["probable"] = ledger["probability"].map(uncertain.shown)
+    return ledger
+
+
+def _claim_row(row: dict) -> dict:
+    """A row with `decides`, the number of the model that decides, and `others`, what all others give."""
+    first = next((c for c in ladder.DECIDING if row[c]), None)
+    differing = (
+        [c for c in ladder.COLUMNS if c != first and row[c]] if row["kind"] == ladder.SIMULATION else []
+    )
+    others = [f"{ladder.title(c)}: {tables.number(row[c])}" for c in differing]
+    return {**row, "decides": row[first] if first else "", "others": others}
+
+
+def _figure(svg: Path) -> dict:
+    """One figure, its SVG inlined, with the scales of its CSV."""
+    name, table = svg.stem, svg.with_suffix(".csv")
     return {
         "name": name,
         "number": name.removeprefix("fig"),
         "svg": inline.svg(svg, name),
-        "narrow": inline.is_narrow(svg),
-        "caption": inline.with_subscripts(caption),
+        "caption": inline.with_subscripts(caption(name)),
+        "scales": cursor.of_figure(name, table) if table.exists() else "",
     }
 
 
-def _full(found):
-    """What the page shows of the full study."""
-    return {
-        "cases": found.cases,
-        "goals": found.goals,
-        "results": study.results(found.summary),
-        "held_out": study.HELD_OUT,
-        "baselines": None if found.baselines is None else study.rivals(found.baselines),
-        "followed": None if found.resolved is None else study.followed(found.resolved),
-    }
+def _animation(svg: Path):
+    """Name, drawing and what is seen."""
+    return svg.stem, inline.svg(svg, f"moving-{svg.stem}"), ANIMATIONS[svg.stem][1]
 
 
 def _card_row(card: Card, metrics):

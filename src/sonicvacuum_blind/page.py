@@ -1,0 +1,52 @@
+"""`results/blind.html`: the full blind study as kept in git, and the small one of the run."""
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from sonicvacuum.report import inline, interactive
+from sonicvacuum.report.tables import read
+from sonicvacuum_blind import report
+
+
+def build(small_path=None, full_folder=None, pictures: Iterable = ()) -> str:
+    """The page as HTML text.
+
+    Args:
+        small_path: summary of the small study, None where there is none.
+        full_folder: folder of the full study's tables, None where there is none.
+        pictures: of the full study: pairs of an SVG file and its caption.
+
+    Raises:
+        InputError: when a table has other columns than it should.
+    """
+    template = inline.environment("sonicvacuum_blind").get_template("study.html.j2")
+    return template.render(
+        full=full_folder and _full(report.read(full_folder)),
+        small=small_path and report.findings(read(small_path, report.SUMMARY)),
+        pictures=[_picture(svg, caption) for svg, caption in pictures],
+        script=interactive.script(),
+    )
+
+
+def _full(found: report.Study) -> dict:
+    """What the page shows of the full study."""
+    return {
+        "cases": found.cases,
+        "goals": found.goals,
+        "results": report.results(found.summary),
+        "held_out": report.HELD_OUT,
+        "baselines": None if found.baselines is None else report.rivals(found.baselines),
+        "followed": None if found.resolved is None else report.followed(found.resolved),
+    }
+
+
+def _picture(svg, caption) -> dict:
+    """A drawing, its SVG inlined."""
+    name = Path(svg).stem
+    narrow = inline.is_narrow(svg)
+    return {
+        "name": name,
+        "svg": inline.svg(svg, name),
+        "narrow": narrow,
+        "caption": inline.with_subscripts(caption),
+    }

@@ -1,0 +1,17 @@
+"""`sonicvacuum paper animate`: a wave that moves."""
+
+import click
+
+from sonicvacuum.files import replacing
+
+
+@click.command()
+@click.argument("name")
+@click.option("--out", required=True, type=click.Path(dir_okay=False), help="Moving picture (SVG) to write.")
+def animate(name, out):
+    """Write the moving picture NAME (solitary or train)."""
+    from sonicvacuum_paper.report.animation import animation
+
+    text = animation(name)
+    with replacing(out) as stream:
+        stream.write(text)

@@ -1,0 +1,90 @@
+"""`results/runs.html`: every simulated run as a space-time map linked to its gauges, with its numbers.
+
+A case that a user adds to `config.yaml` stands here like those of the paper, and in the report as well.
+"""
+
+from collections.abc import Iterable
+
+import pandas as pd
+
+from sonicvacuum.report import inline, interactive
+from sonicvacuum.report.tables import number, read
+from sonicvacuum.simulation import Simulation
+from sonicvacuum_paper.report import space_time
+from sonicvacuum_paper.rows import COLUMNS
+from sonicvacuum_paper.shown import own
+
+# What is told of each gauge, and of each pair: quantity → its name.
+AT_GAUGES = {
+    "amplitude": "peak",
+    "arrival": "arrives",
+    "duration": "lasts",
+    "duration_half": "at half height",
+    "width": "width",
+    "pulse_count": "pulses",
+}
+BETWEEN = {"speed": "speed"}
+
+
+def build(studies: Iterable[Simulation], metrics_path) -> str:
+    """The page as HTML text.
+
+    Args:
+        studies: the simulated cards, each loaded when it is its turn.
+        metrics_path: `results/metrics.csv`.
+
+    Raises:
+        InputError: when the table has other columns than it should.
+    """
+    metrics = read(metrics_path, COLUMNS)
+    template = inline.environment("sonicvacuum_paper.report").get_template("runs.html.j2")
+    return template.render(
+        cards=[told(s, metrics) for s in studies],
+        columns=list(AT_GAUGES.values()),
+        script=interactive.script(),
+    )
+
+
+def told(study: Simulation, metrics: pd.DataFrame) -> dict:
+    """What the page says of one card: its runs, each with drawing and numbers."""
+    card = study.card
+    lanes = range(len(study.speeds))
+    single = len(lanes) == 1
+    runs = []
+    for lane in lanes:
+        speed = float(study.speeds[lane])
+        name = card.name if single else f"{card.name}@{speed:g}"
+        anchor = f"run-{name.replace('@', '-at-')}"
+        # Of a sweep a case's own name is that of the whole.
+        rows = metrics[metrics["case"] == name]
+        runs.append(
+            {
+                "speed": f"{speed:.4g}",
+                "anchor": anchor,
+                **space_time.drawing(study, lane, anchor),
+                **_numbers(rows, [g.id for g in study.sensors]),
+            }
+        )
+    return {
+        "name": card.name,
+        "title": card.title,
+        "own": own(card.name),
+        "runs": runs,
+        "warnings": study.warnings,
+    }
+
+
+def _numbers(rows, gauges):
+    """`gauges`: (gauge, cells in the order of AT_GAUGES); `between`: sentences on pairs of gauges."""
+    known = {(r["quantity"], r["sensor"]): r for r in rows.to_dict("records")}
+    cells = [(s, [_cell(known.get((q, s))) for q in AT_GAUGES]) for s in gauges]
+    # The metrics read virtual gauges as well, where the paper has its own.
+    pairs = [(q, s) for q, s in known if q in BETWEEN and set(s.split("-")) <= set(gauges)]
+    return {"gauges": cells, "between": [f"{BETWEEN[q]} {s}: {_cell(known[q, s])}" for q, s in sorted(pairs)]}
+
+
+def _cell(row):
+    if row is None or not row["value"]:
+        return "–"
+    unit = {"us": "µs", "1": "", "diameters": "diam."}.get(row["unit"], row["unit"])
+    return f"{number(row['value'])} {unit}".strip()
