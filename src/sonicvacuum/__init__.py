@@ -53,6 +53,7 @@ if TYPE_CHECKING:
     from sonicvacuum.physics import solitary, theory
     from sonicvacuum.physics.chain import Chain
     from sonicvacuum.prediction import predict
+    from sonicvacuum.prediction.design import design
     from sonicvacuum.records import Record
     from sonicvacuum.simulation import Simulation
 
@@ -67,6 +68,7 @@ _PUBLIC = {
     "case": "sonicvacuum.builders:case",
     "chain": "sonicvacuum.builders:chain",
     "compare": "sonicvacuum.api:compare",
+    "design": "sonicvacuum.prediction.design:design",
     "discover": "sonicvacuum.discover",
     "gauge": "sonicvacuum.builders:gauge",
     "predict": "sonicvacuum.prediction:predict",
@@ -88,6 +90,7 @@ __all__ = [
     "case",
     "chain",
     "compare",
+    "design",
     "discover",
     "gauge",
     "predict",

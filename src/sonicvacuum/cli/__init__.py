@@ -23,6 +23,7 @@ VERBS = {
     "schema": "sonicvacuum.cli.card:schema",
     "simulate": "sonicvacuum.cli.simulate:simulate",
     "predict": "sonicvacuum.cli.predict:predict",
+    "design": "sonicvacuum.cli.design:design",
     "record": "sonicvacuum.cli.record:record",
     "discover": "sonicvacuum.cli.discover:discover",
     "page": "sonicvacuum.cli.page:page",

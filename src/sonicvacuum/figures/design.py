@@ -1,0 +1,29 @@
+"""How well each gauge alone, and the best choices, tell effects apart."""
+
+from sonicvacuum.figures.style import BAND, DOUBLE, GREY, canvas, context, panel, save
+from sonicvacuum.prediction.design import TARGET, Design
+from sonicvacuum.prediction.design_text import place
+
+_HEIGHT, _BAR = 74.0, "#0072B2"
+
+
+def write(found: Design, path) -> None:
+    """Draw standard errors of the hardest pair and write them in the format that the path's ending names."""
+    with context():
+        figure = canvas(DOUBLE, _HEIGHT)
+        left = panel(figure, (24.0, 14.0, 48.0, _HEIGHT - 24.0))
+        _bars(left, [place(g) for g in found.single], list(found.single.values()), "one gauge, one run")
+        right = panel(figure, (112.0, 14.0, DOUBLE - 116.0, _HEIGHT - 24.0))
+        names = ["+".join(one.gauges) + f", {len(one.speeds_m_s)} run(s)" for one in found.best]
+        _bars(right, names, [one.least for one in found.best], "best choices")
+        save(figure, path)
+
+
+def _bars(axes, names, values, title):
+    axes.barh(range(len(names)), values, color=_BAR, height=0.7)
+    axes.axvline(TARGET, color=GREY, lw=0.8, ls=(0, (3, 2)))
+    axes.axvspan(0.0, TARGET, color=BAND, alpha=0.4, lw=0, zorder=0)
+    axes.set_yticks(range(len(names)), names)
+    axes.invert_yaxis()
+    axes.set_xlabel("standard errors apart, hardest pair")
+    axes.set_title(title, fontsize=8.0, loc="left")

@@ -1,0 +1,109 @@
+"""Where to put gauges: against what is known beforehand of a wall, a gain and a loss."""
+
+import json
+import math
+import sys
+
+import pytest
+
+import sonicvacuum as sv
+from sonicvacuum import cli
+from sonicvacuum.prediction.design import GAIN, STRENGTH, TARGET
+from sonicvacuum.prediction.design_text import content, text
+
+CHAIN = {"beads": 12, "diameter": "5mm", "material": "bearing-steel", "speed": 0.5}
+
+
+@pytest.fixture(scope="module")
+def droop_or_loss():
+    """A gauge that discharges against beads that lose energy."""
+    return sv.design(effects="sensor-droop,kuwabara-kono", **CHAIN)
+
+
+def test_before_the_echo_only_the_wall_gauge_feels_the_wall():
+    """What is above hears nothing of a contact that the wave has not reached."""
+    found = sv.design(effects="wall-compliance", **CHAIN, gauges="2,wall", echo=False)
+    # Ahead of the wave a contact is felt only as far as rounding carries: a ten-thousandth is none.
+    assert found.single["2"] < 1e-4
+    assert found.single["wall"] > 1.0
+    assert "wall" in found.advised.gauges
+
+
+def test_the_echo_brings_the_wall_to_the_beads():
+    found = sv.design(effects="wall-compliance", **CHAIN, gauges="2,wall")
+    assert found.single["2"] > 1.0
+
+
+def test_a_gain_is_told_from_none_no_better_than_it_is_known():
+    """The effect moves what the record states with an error: so many standard errors of the gain, no more."""
+    found = sv.design(effects="sensor-gain", **CHAIN, gauges="6")
+    (pair,) = (one.apart for one in found.best if len(one.speeds_m_s) == 1)
+    scale = next(p for p in sv_effect("sensor-gain").parameters if p.switches).scale
+    known = math.log1p(STRENGTH * scale) / GAIN
+    assert 0.9 * known < pair["sensor-gain", "none"] <= known * 1.02  # noise is added, slopes are linear
+    assert not found.enough
+    assert f"{TARGET:g} are wanted" in text(found)
+
+
+def sv_effect(name):
+    """An effect of the catalogue."""
+    from sonicvacuum.effects import CATALOGUE
+
+    return CATALOGUE.effect(name)
+
+
+def test_more_gauges_and_more_runs_tell_more(droop_or_loss):
+    """χ² adds up over gauges and runs, and no nuisance is free, so the best never gets worse."""
+    least = {(len(one.gauges), len(one.speeds_m_s)): one.least for one in droop_or_loss.best}
+    for gauges in (1, 2, 3):
+        assert least[gauges, 2] > least[gauges, 1]
+        assert gauges == 1 or least[gauges, 1] > least[gauges - 1, 1]
+
+
+def test_a_loss_shows_the_further_from_the_striker_the_better(droop_or_loss):
+    """A pulse decays along the chain, and a gauge that discharges reads as wrongly everywhere."""
+    single = {int(g): v for g, v in droop_or_loss.single.items() if g != "wall"}
+    order = sorted(single)
+    assert [single[b] for b in order] == sorted(single.values())
+    assert droop_or_loss.enough
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"effects": "sensor-drop"}, "effects: 'sensor-drop' is not in the catalogue"),
+        ({"effects": "coating-thickness"}, "effects: coating-thickness cannot be in this chain"),
+        ({"most": 0}, "most: is 0; from 1 to 4"),
+        ({"noise": -1.0}, "noise: is -1; it must be positive"),
+        ({"gauges": "13"}, "gauges: '13' is no bead from 1 to 12"),
+        ({"colour": "red"}, "colour: design takes no such argument"),
+        ({"speed": None}, "speed: missing"),
+    ],
+)
+def test_what_cannot_be_is_refused_in_one_line(changes, said):
+    with pytest.raises(sv.InputError) as refused:
+        sv.design(**{"effects": "sensor-droop"} | CHAIN | changes)
+    assert said in str(refused.value)
+
+
+def test_the_command_prints_text_json_and_a_picture(monkeypatch, capsys, tmp_path):
+    words = ["--effects", "wall-compliance", "--beads", "8", "--diameter", "5mm", "--material", "brass"]
+    words += ["--speed", "0.5", "--gauges", "3,wall", "--most", "1"]
+    expected = sv.design(
+        effects="wall-compliance",
+        beads=8,
+        diameter="5mm",
+        material="brass",
+        speed="0.5",
+        gauges="3,wall",
+        most=1,
+    )
+    for more, wanted in ((["--json"], content(expected)), ([], text(expected))):
+        picture = tmp_path / "design.svg"
+        monkeypatch.setattr(sys, "argv", ["sonicvacuum", "design", *words, *more, "--out", str(picture)])
+        cli.main()
+        told = capsys.readouterr().out
+        assert (json.loads(told) if more else told) == (
+            json.loads(json.dumps(wanted)) if more else wanted + "\n"
+        )
+        assert "<svg" in picture.read_text()
