@@ -1,7 +1,7 @@
-"""The blind studies as README and report show them, and what of the full one is kept in git.
+"""The blind studies as docs/study.md and the report show them, and what of the full one is kept in git.
 
 Tables come from `sonicvacuum blind score` (summary.csv and those of the pictures), `sonicvacuum blind
-baselines` (baselines.csv) and `sonicvacuum blind resolved` (resolved_summary.csv); README and report show the
+baselines` (baselines.csv) and `sonicvacuum blind resolved` (resolved_summary.csv); page and report show the
 same cells.
 """
 
@@ -30,8 +30,8 @@ HELD_OUT = (
     "A held-out gap of d′² in N data drowns in the scatter of χ², √(2N), while d′ is below (2N)^¼, about 10 "
     "here: the median of single records shows that scatter, the gaps added up show what is closed."
 )
-# Where the README finds the pictures drawn from these tables.
-PICTURE = "figures/blind_{}.png"
+# Where docs/study.md finds the pictures drawn from these tables.
+PICTURE = "../figures/blind_{}.png"
 
 
 @dataclass(frozen=True)
@@ -171,7 +171,7 @@ def _percent(row):
 
 
 def markdown(study: Study) -> str:
-    """The README's part: tables and pictures, with a sentence each."""
+    """The part of docs/study.md that is made: tables and pictures, with a sentence each."""
     met, missed = study.goals
     parts = [
         f"{study.cases} records. Of {met + missed} goals set beforehand {met} are met, {missed} "
@@ -181,7 +181,7 @@ def markdown(study: Study) -> str:
         HELD_OUT,
         f"![Share of right names against the strength of what is hidden]({PICTURE.format('accuracy')})",
         "What is taken for what, and whether stated probabilities come true: "
-        "[figures/README.md](figures/README.md).",
+        "[figures/README.md](../figures/README.md).",
     ]
     if study.baselines is not None:
         parts += [
@@ -197,17 +197,17 @@ def markdown(study: Study) -> str:
     return "\n\n".join(parts)
 
 
-def publish(folder, readme_path, kept_folder) -> None:
-    """Copy a study's tables to their place in git and renew the README's part.
+def publish(folder, page_path, kept_folder) -> None:
+    """Copy a study's tables to their place in git and renew their page.
 
     Raises:
-        InputError: where a table is missing or has other columns, or the README lacks the markers; nothing
+        InputError: where a table is missing or has other columns, or the page lacks the markers; nothing
             is written then.
     """
     folder, kept_folder = Path(folder), Path(kept_folder)
     texts = {name: read_text(folder / f"{name}.csv") for name in KEPT}
     texts |= {n: read_text(folder / f"{n}.csv") for n in ALSO_KEPT if (folder / f"{n}.csv").exists()}
-    renewed = with_study(read_text(readme_path), markdown(read(folder)))
+    renewed = with_study(read_text(page_path), markdown(read(folder)))
     for name in (*KEPT, *ALSO_KEPT):
         path = kept_folder / f"{name}.csv"
         if name in texts:
@@ -215,15 +215,15 @@ def publish(folder, readme_path, kept_folder) -> None:
                 stream.write(texts[name])
         else:
             path.unlink(missing_ok=True)
-    with replacing(readme_path) as stream:
+    with replacing(page_path) as stream:
         stream.write(renewed)
 
 
-def with_study(readme: str, text: str) -> str:
-    """The README with the text between the study's markers replaced; InputError without markers."""
-    if BEGIN not in readme or END not in readme:
+def with_study(page: str, text: str) -> str:
+    """The page with the text between the study's markers replaced; InputError without markers."""
+    if BEGIN not in page or END not in page:
         raise InputError(
-            f"README.md: the markers are missing; put {BEGIN} and {END} around the study's table"
+            f"docs/study.md: the markers are missing; put {BEGIN} and {END} around the study's table"
         )
-    before, rest = readme.split(BEGIN, 1)
+    before, rest = page.split(BEGIN, 1)
     return f"{before}{BEGIN}\n{text.strip()}\n{END}{rest.split(END, 1)[1]}"

@@ -215,10 +215,23 @@ def test_the_headlines_are_claims(pytestconfig):
     assert set(tables.FIRST) <= set(claims["claim"])
 
 
-def test_links_in_the_readme_lead_somewhere(pytestconfig):
+def test_links_in_the_readme_and_the_pages_lead_somewhere(pytestconfig):
     root = pytestconfig.rootpath
-    for target in re.findall(r"\]\(([^)#]+)\)", (root / "README.md").read_text()):
-        assert target.startswith("https://doi.org/") or (root / target).exists(), target
+    # Written when the documentation is built.
+    made = {root / "docs" / name for name in ("effects.md", "ledger.md")}
+    for page in (root / "README.md", *(root / "docs").glob("*.md")):
+        for target in re.findall(r"\]\(([^)#]+)\)", page.read_text()):
+            path = page.parent / target
+            assert target.startswith("https://") or path.exists() or path in made, f"{page.name}: {target}"
+
+
+def test_the_benchmark_has_a_page_of_its_own(tmp_path, pytestconfig):
+    page, table = tmp_path / "benchmark.md", tmp_path / "bench.md"
+    page.write_text((pytestconfig.rootpath / "docs/benchmark.md").read_text())
+    table.write_text("| code | P1 |\n")
+    publish.publish_benchmark(table, page)
+    begin = publish.BEGIN.format("benchmark")
+    assert f"{begin}\n| code | P1 |\n{publish.END.format('benchmark')}" in page.read_text()
 
 
 def test_timings_summarise_the_benchmark_files(tmp_path):

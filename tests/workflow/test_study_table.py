@@ -10,6 +10,7 @@ from sonicvacuum.files import InputError
 from sonicvacuum_blind import report as study
 from sonicvacuum_blind.baselines import names
 from sonicvacuum_blind.baselines.table import Line as Baseline
+from sonicvacuum_blind.kept import TABLES
 from sonicvacuum_blind.score import Line, write_table
 
 NAN = math.nan
@@ -85,14 +86,14 @@ def test_the_readme_holds_all_tables_and_counts_the_goals(folder):
     # Lines with cases, then rules, then further runs; each table with a header.
     assert text.startswith("520 records. Of 6 goals set beforehand 4 are met, 2 missed")
     assert text.count("\n| ") == (7 + 2) + (3 + 2) + (2 + 2)
-    assert "figures/blind_accuracy.png" in text
+    assert "](../figures/blind_accuracy.png)" in text
     assert "| resolved by one more run | proposed | 40 | 0.85 | 0.71 to 0.93 | ≥ 0.8 | met |" in text
 
 
 def test_publish_keeps_tables_and_renews_the_readme(folder, tmp_path):
     readme, kept = tmp_path / "README.md", tmp_path / "kept"
     readme.write_text(README)
-    call = ["blind", "publish", str(folder), f"--readme={readme}", f"--keep={kept}"]
+    call = ["blind", "publish", str(folder), f"--page={readme}", f"--keep={kept}"]
     done = CliRunner().invoke(cli, call)
     assert done.exit_code == 0, done.output
     names = sorted(path.name for path in folder.iterdir())
@@ -126,6 +127,8 @@ def test_what_is_missing_leaves_everything_as_it_was(folder, tmp_path, fault):
     assert not (tmp_path / "kept").exists()
 
 
-def test_committed_readme_has_the_markers(pytestconfig):
-    text = (pytestconfig.rootpath / "README.md").read_text(encoding="utf-8")
+def test_the_committed_page_shows_the_committed_tables(pytestconfig):
+    text = (pytestconfig.rootpath / "docs/study.md").read_text(encoding="utf-8")
     assert text.count(study.BEGIN) == text.count(study.END) == 1
+    made = study.markdown(study.read(pytestconfig.rootpath / TABLES))
+    assert study.with_study(text, made) == text

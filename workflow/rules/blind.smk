@@ -185,7 +185,7 @@ rule blind_full:
         expand("results/blind/full/{picture}.svg", picture=PICTURES),
 
 
-# Run on purpose: the tables of this run become those that README and report quote.
+# Run on purpose: the tables of this run become those that docs/study.md and report quote.
 rule publish_study:
     input:
         tables=expand("results/blind/full/{table}.csv", table=["summary", "baselines", *DETAILS]),
@@ -196,13 +196,13 @@ rule publish_study:
     conda:
         ENVIRONMENT
     params:
-        readme="README.md",
+        page="docs/study.md",
         folder=lambda wildcards, input: Path(input.resolved).parent,
         keep=STUDY_TABLES,
     message:
-        "Keeping the blind study in git and in the README"
+        "Keeping the blind study in git and in docs/study.md"
     shell:
-        "sonicvacuum blind publish {params.folder:q} --readme {params.readme:q} --keep {params.keep:q} > {log:q} 2>&1"
+        "sonicvacuum blind publish {params.folder:q} --page {params.page:q} --keep {params.keep:q} > {log:q} 2>&1"
 
 
 # One more run for each case left ambiguous: the one that its verdict proposes, or a random one.

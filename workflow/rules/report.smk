@@ -172,12 +172,13 @@ rule publish:
         naming="workflow/resources/reference/blind_small.csv",
         # Made by `make bench` only, on purpose.
         benchmark=repeated("--benchmark", filter(os.path.exists, ["results/bench.md"])),
+        speeds="docs/benchmark.md",
     message:
         "Keeping the ledger in git and in the README"
     shell:
         "sonicvacuum paper publish --ledger {input.ledger:q} --claims {input.claims:q} --readme {params.readme:q}"
         " --guide {params.guide:q} --reference {params.reference:q} --study {input.study:q} --naming {params.naming:q}"
-        " {params.benchmark:q} 2> {log:q}"
+        " {params.benchmark:q} --speeds {params.speeds:q} 2> {log:q}"
 
 
 # Figure tables and ledger made anew in clean folders, compared with those in git.

@@ -24,7 +24,7 @@ from sonicvacuum.files import InputError
 from sonicvacuum.laboratory.next_run import FASTEST, SLOWEST
 from sonicvacuum.physics.scales import COUNTING, passage_of, sampling_of
 from sonicvacuum.prediction.setup import card_of
-from sonicvacuum.study import check_extent, set_up
+from sonicvacuum.simulation import check_extent, set_up
 
 NONE = "none"
 # What is told apart with so many standard errors counts as told apart.

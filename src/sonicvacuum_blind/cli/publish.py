@@ -11,13 +11,12 @@ from sonicvacuum_blind.cli.options import present
 
 @click.command()
 @click.argument("folder", type=present)
-@click.option("--readme", required=True, type=existing(), help="README whose part on the study is renewed.")
+@click.option("--page", required=True, type=existing(), help="Page (Markdown) whose tables are renewed.")
 @click.option("--keep", required=True, type=click.Path(file_okay=False), help="Where the tables are kept.")
-def publish(folder, readme, keep):
-    """Keep the tables of the blind study in FOLDER in git, and in the README."""
+def publish(folder, page, keep):
+    """Keep the tables of the blind study in FOLDER in git, and on their page."""
     from sonicvacuum_blind import report
 
-    check_apart(
-        [readme, *(Path(keep) / f"{name}.csv" for name in (*report.KEPT, *report.ALSO_KEPT))], [folder]
-    )
-    report.publish(folder, readme, keep)
+    kept = [Path(keep) / f"{name}.csv" for name in (*report.KEPT, *report.ALSO_KEPT)]
+    check_apart([page, *kept], [folder])
+    report.publish(folder, page, keep)

@@ -20,18 +20,23 @@ _FILE = existing()
     "--reference", required=True, type=click.Path(dir_okay=False), help="Where the ledger is kept in git."
 )
 @click.option("--benchmark", type=_FILE, help="Table of the benchmark (Markdown), where one was made.")
+@click.option("--speeds", type=_FILE, help="Page (Markdown) whose benchmark is renewed.")
 @click.option("--study", type=_FILE, help="Scores of the small blind study.")
 @click.option("--naming", type=click.Path(dir_okay=False), help="Where its naming is kept in git.")
-def publish(ledger, claims, readme, guide, reference, benchmark, study, naming):
+def publish(ledger, claims, readme, guide, reference, benchmark, speeds, study, naming):
     """Keep the ledger as the reference of later checks; renew the README's table and the figures' guide."""
     from sonicvacuum_paper.report import guide as figure_guide
     from sonicvacuum_paper.report import publish as keep
 
     if (study is None) != (naming is None):
         raise InputError("publish: --study and --naming go together: give both, or neither")
-    # The README is renewed in its place: that it is read is no fault.
-    check_apart([guide, reference, naming, readme], [ledger, claims, benchmark, study])
-    keep.publish(ledger, readme, reference, benchmark)
+    if benchmark and not speeds:
+        raise InputError("publish: --benchmark needs --speeds, the page to renew: give both")
+    # The pages are renewed in their place: that they are read is no fault.
+    check_apart([guide, reference, naming, readme, speeds], [ledger, claims, benchmark, study])
+    keep.publish(ledger, readme, reference)
+    if benchmark:
+        keep.publish_benchmark(benchmark, speeds)
     if study:
         keep.publish_study(study, naming)
     with replacing(guide) as stream:

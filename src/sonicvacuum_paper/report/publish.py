@@ -34,15 +34,15 @@ def summary(ledger: pd.DataFrame) -> str:
     return "\n".join(lines)
 
 
-def with_part(readme: str, name: str, text: str) -> str:
-    """The README with the text between the two markers of a part replaced.
+def with_part(readme: str, name: str, text: str, path="README.md") -> str:
+    """A page, the README or one of docs/, with the text between the two markers of a part replaced.
 
     Raises:
         InputError: where the markers are missing.
     """
     begin, end = BEGIN.format(name), END.format(name)
     if begin not in readme or end not in readme:
-        raise InputError(f"README.md: the markers are missing; put {begin} and {end} around its {name}")
+        raise InputError(f"{path}: the markers are missing; put {begin} and {end} around its {name}")
     pattern = re.compile(re.escape(begin) + ".*?" + re.escape(end), re.DOTALL)
     return pattern.sub(lambda _: f"{begin}\n{text.strip()}\n{end}", readme)
 
@@ -66,12 +66,17 @@ def publish_study(score_path, reference_path) -> None:
         naming(score_path).to_csv(stream, index=False, lineterminator="\n")
 
 
-def publish(ledger_path, readme_path, reference_path, benchmark_path=None) -> None:
-    """Copy the ledger to its place in git; renew the README's summary, and its benchmark if one is given."""
+def publish_benchmark(benchmark_path, page_path) -> None:
+    """Renew the table of the page on speed; InputError where the page lacks the markers."""
+    renewed = with_part(read_text(page_path), "benchmark", read_text(benchmark_path), page_path)
+    with replacing(page_path) as stream:
+        stream.write(renewed)
+
+
+def publish(ledger_path, readme_path, reference_path) -> None:
+    """Copy the ledger to its place in git and renew the README's summary."""
     ledger = tables.read(ledger_path, tables.LEDGER)
     renewed = with_part(read_text(readme_path), "results", summary(ledger))
-    if benchmark_path is not None:
-        renewed = with_part(renewed, "benchmark", read_text(benchmark_path))
     with replacing(reference_path) as stream:
         stream.write(read_text(ledger_path))
     with replacing(readme_path) as stream:
