@@ -21,6 +21,7 @@ VERBS = {
     "paper observe": (),
     "paper draw": (),
     "paper uncertainty": (),
+    "paper rivals": (),
     "paper ledger": (),
     "paper report": (),
     "paper runs": (),
@@ -31,7 +32,7 @@ VERBS = {
 }
 ENGINE = {
     *("card", "simulate", "discover", "page"),
-    *("paper observe", "paper draw", "paper report", "paper runs", "paper uncertainty"),
+    *("paper observe", "paper draw", "paper report", "paper runs", "paper uncertainty", "paper rivals"),
     "blind page",  # its tables are named by the modules that make them
 }
 
@@ -43,7 +44,7 @@ ENGINE = {
         ("sonicvacuum.effects.tsuji", ENGINE),
         ("sonicvacuum.discover.rounds", {"discover", "page", "paper report"}),
         ("sonicvacuum.report.words", {"page", "paper report"}),
-        ("sonicvacuum_paper.gauges", {"paper observe", "paper uncertainty"}),
+        ("sonicvacuum_paper.gauges", {"paper observe", "paper uncertainty", "paper rivals"}),
         ("sonicvacuum_paper.figures.fig3", {"paper draw", "paper report"}),
         ("sonicvacuum_paper.wording", {"paper ledger", "paper report"}),
         ("sonicvacuum_blind.stepper", {"blind hide", "blind score", "blind page", "paper report"}),

@@ -65,6 +65,10 @@ rule page:
         own=expand("results/histories/{card}.npz", card=OWN),
         locks=LOCKS,
         discoveries=expand("results/discover/{record}/index.html", record=RECORDS),
+        contours="results/identifiability.csv",
+        contours_picture="results/identifiability.svg",
+        experiments="results/experiments.csv",
+        relaxation="results/relaxation.csv",
         blind_full=sorted(Path(STUDY_TABLES).glob("*.csv")),
         animations=expand("results/animations/{name}.svg", name=ANIMATIONS),
         linked=["results/runs.html", "results/blind.html"],
@@ -94,7 +98,9 @@ rule page:
         "sonicvacuum paper report --ledger {input.ledger:q} --assumptions {input.assumptions:q}"
         " --metrics {input.metrics:q} --claims {input.claims:q} {params.figures:q}"
         " {params.cards:q} {params.locks:q} {params.discoveries:q} --blind-full {params.blind_full:q}"
-        " {params.histories:q} {params.animations:q} {params.linked:q} --out {output:q} 2> {log:q}"
+        " {params.histories:q} {params.animations:q} {params.linked:q}"
+        " --map {input.contours:q} --map-picture {input.contours_picture:q} --experiments {input.experiments:q}"
+        " --relaxation {input.relaxation:q} --out {output:q} 2> {log:q}"
 
 
 rule runs:

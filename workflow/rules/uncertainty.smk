@@ -1,4 +1,4 @@
-"""What the paper leaves open of its experiment, drawn together: how probable each statement is under each model."""
+"""What the paper leaves open of its experiment, drawn together; and what would tell the rival models apart."""
 
 
 rule uncertainty:
@@ -21,3 +21,26 @@ rule uncertainty:
         "Drawing what the paper leaves open"
     shell:
         "sonicvacuum paper uncertainty --claims {input.claims:q} --config {params.config:q} --out {output:q} 2> {log:q}"
+
+
+rule rivals:
+    output:
+        contours="results/identifiability.csv",
+        picture=report("results/identifiability.svg", category="Figures", caption="../report/rivals.rst"),
+        experiments=report("results/experiments.csv", category="Tables", caption="../report/rivals.rst"),
+        relaxation=report("results/relaxation.csv", category="Tables", caption="../report/rivals.rst"),
+    log:
+        "results/logs/rivals.log",
+    benchmark:
+        "results/benchmarks/rivals.tsv"
+    conda:
+        ENVIRONMENT
+    params:
+        sources=sources("paper rivals"),
+        config=CONFIG_FILE,
+        cases=lambda wildcards: msgspec.json.encode([CONFIG.cases.get("fig3a"), CONFIG.ledger]).decode(),
+    message:
+        "Comparing the rival models of the coating"
+    shell:
+        "sonicvacuum paper rivals --config {params.config:q} --map {output.contours:q} --picture {output.picture:q}"
+        " --experiments {output.experiments:q} --relaxation {output.relaxation:q} 2> {log:q}"

@@ -9,6 +9,7 @@ paper = Verbs(
         "observe": "sonicvacuum_paper.cli.observe:observe",
         "metrics": "sonicvacuum_paper.cli.metrics:metrics",
         "uncertainty": "sonicvacuum_paper.cli.uncertainty:uncertainty",
+        "rivals": "sonicvacuum_paper.cli.rivals:rivals",
         "ledger": "sonicvacuum_paper.cli.ledger:ledger",
         "audit": "sonicvacuum_paper.cli.ledger:audit",
         "draw": "sonicvacuum_paper.cli.draw:draw",

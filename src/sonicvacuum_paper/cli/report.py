@@ -32,6 +32,10 @@ _OUT = click.Path(dir_okay=False)
 @click.option("--histories", type=_FOLDER, help="Simulated cards; those of your own cases are shown.")
 @click.option("--animation", "animations", multiple=True, type=_FILE, help="SVG that moves; repeat.")
 @click.option("--linked", multiple=True, help="Name of a page beside this one; repeat.")
+@click.option("--map", "contours", type=_FILE, help="Map from `paper rivals`.")
+@click.option("--map-picture", type=_FILE, help="Its picture (SVG).")
+@click.option("--experiments", type=_FILE, help="Series from `paper rivals`.")
+@click.option("--relaxation", type=_FILE, help="Solids from `paper rivals`.")
 @click.option("--out", required=True, type=_OUT, help="Page (HTML) to write.")
 def report(cards, histories, out, **given):
     """Write the self-contained page with figures, ledger, audit, discoveries and provenance."""

@@ -11,8 +11,9 @@ from sonicvacuum.simulation import Simulation
 from sonicvacuum_blind import report as study
 from sonicvacuum_paper import ladder
 from sonicvacuum_paper.figures import caption
-from sonicvacuum_paper.report import answer, cursor, provenance, runs, tables, uncertain
+from sonicvacuum_paper.report import answer, cursor, provenance, rivals, runs, tables, uncertain
 from sonicvacuum_paper.shown import ANIMATIONS
+from sonicvacuum_paper.uncertainty import picture
 
 
 @dataclass(frozen=True)
@@ -29,6 +30,8 @@ class Sources:
         own: simulated cards of cases that a user added.
         animations: SVG files that move, named by `shown.ANIMATIONS`.
         linked: names of the pages beside this one, of `runs.html` and `blind.html`.
+        contours, experiments, relaxation: tables of `sonicvacuum paper rivals`, None each where there is none.
+        map_picture: the picture of the first of them (SVG).
     """
 
     ledger: Path
@@ -43,6 +46,10 @@ class Sources:
     own: Iterable[Simulation] = ()
     animations: Sequence[Path] = ()
     linked: Sequence[str] = ()
+    contours: Path | None = None
+    map_picture: Path | None = None
+    experiments: Path | None = None
+    relaxation: Path | None = None
 
 
 def build(given: Sources) -> str:
@@ -65,6 +72,8 @@ def build(given: Sources) -> str:
         models=[(c, m.title, m.free) for c, m in ladder.MODELS.items() if m.counted],
         first=tables.first(ledger),
         **uncertain.context(ledger),
+        **rivals.context(given.contours, given.experiments, given.relaxation),
+        map_picture=given.map_picture and _figure(Path(given.map_picture), picture.CAPTION),
         totals={t.model: t for t in ladder.totals(ledger.to_dict("records"))},
         figures=[_figure(Path(svg)) for svg in given.figures],
         cards=[_card_row(card, metrics) for card in given.cards],
@@ -122,15 +131,15 @@ def _claim_row(row: dict) -> dict:
     return {**row, "decides": row[first] if first else "", "others": others}
 
 
-def _figure(svg: Path) -> dict:
-    """One figure, its SVG inlined, with the scales of its CSV."""
+def _figure(svg: Path, told: str | None = None) -> dict:
+    """One figure, its SVG inlined, with the scales of its CSV; `told` is its caption, that of its name if None."""
     name, table = svg.stem, svg.with_suffix(".csv")
     return {
         "name": name,
         "number": name.removeprefix("fig"),
         "svg": inline.svg(svg, name),
-        "caption": inline.with_subscripts(caption(name)),
-        "scales": cursor.of_figure(name, table) if table.exists() else "",
+        "caption": inline.with_subscripts(told or caption(name)),
+        "scales": cursor.of_figure(name, table) if table.exists() and not told else "",
     }
 
 

@@ -12,19 +12,28 @@ IMPROBABLE = 0.05
 
 
 def shown(probability: str) -> str:
-    """The probabilities of a row of the ledger, models called as people read them."""
+    """The probabilities in a cell of the ledger, models called as people read them."""
     return ", ".join(f"{title(c)} {number(p, 2)}" for c, p in members(probability).items())
 
 
 def context(ledger: pd.DataFrame) -> dict:
     """What the section on the draws is made of; `ledger` as text, with the column `statement`."""
-    found = {r["claim"]: members(r["probability"]) for r in ledger.to_dict("records") if r["probability"]}
+    rows = {r["claim"]: r for r in ledger.to_dict("records") if r["probability"]}
+    found = {claim: members(r["probability"]) for claim, r in rows.items()}
     statement = ledger.set_index("claim")["statement"].to_dict()
     told = [c for c, shares in found.items() if c in FIRST or min(map(float, shares.values())) < IMPROBABLE]
     told.sort(key=lambda c: list(FIRST).index(c) if c in FIRST else len(FIRST))
     present = {column for shares in found.values() for column in shares}
     return {
         "drawn_models": [(c, m.title) for c, m in MODELS.items() if c in present],
-        "probable": [{"statement": FIRST.get(c, statement[c]), "shares": found[c]} for c in told],
+        "probable": [
+            {"statement": FIRST.get(c, statement[c]), "shares": _marked(found[c], rows[c])} for c in told
+        ],
         "inputs": INPUTS,
     }
+
+
+def _marked(shares, row):
+    """The shares, with what each model was fitted to said so."""
+    fitted = members(row["fitted"])
+    return {c: f"{share} (fitted)" if c in fitted else share for c, share in shares.items()}

@@ -23,6 +23,8 @@ OF_LANES: Mapping[Key, Callable] = {
     ("decay", BETWEEN): lambda lane, level: gauges.decay(lane, lane.gauges["g9"], lane.gauges["g5"]),
     ("arrival", "wall"): lambda lane, level: gauges.arrival(lane, lane.gauges["wall"]),
     ("duration_02", "g9"): lambda lane, level: gauges.duration(lane, lane.gauges["g9"], level),
+    ("duration_05", "g9"): lambda lane, level: gauges.duration(lane, lane.gauges["g9"], 0.05),
+    ("duration_half", "g9"): lambda lane, level: gauges.duration(lane, lane.gauges["g9"], 0.5),
     ("width_02", "g9"): lambda lane, level: gauges.width(lane, lane.gauges["g9"], level),
     ("duration_half", "wall"): lambda lane, level: gauges.duration(lane, lane.gauges["wall"], 0.5),
     ("pulse_count", "g9"): lambda lane, level: trains.pulse_count(lane, lane.gauges["g9"]),
@@ -69,11 +71,11 @@ def of_peaks(batch: Batch, draws: Draws) -> Values:
     (first, upper), (second, lower) = (
         _first_peak(batch.seen.readings[:, names.index(f"g{k}")]) for k in (UPPER, LOWER)
     )
-    apart = (UPPER - LOWER) * batch.card.bead.diameter_m
+    apart = (UPPER - LOWER) * batch.card.bead.diameter_m * misread(batch.card, draws)
+    between = (second - first) * batch.seen.history.time[1]
     return {
-        ("speed", BETWEEN): misread(batch.card, draws)
-        * apart
-        / ((second - first) * batch.seen.history.time[1]),
+        # A pulse that has died out has no peak that travels.
+        ("speed", BETWEEN): np.where(between > 0.0, apart / np.where(between > 0.0, between, 1.0), np.nan),
         ("reading", BETWEEN): 0.5 * (upper + lower),
         ("amplitude", "g9"): upper,
     }

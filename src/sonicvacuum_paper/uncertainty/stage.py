@@ -1,9 +1,13 @@
-"""The stage of the pipeline that draws: reads configuration and claims, writes the table of probabilities."""
+"""The stages of the pipeline that draw and compare rivals: read configuration and claims, write tables."""
+
+from collections.abc import Mapping
 
 from sonicvacuum.blas import one_thread
 from sonicvacuum.config import Config
+from sonicvacuum.files import InputError, replacing
 from sonicvacuum_paper.claims import Claim, read_table
-from sonicvacuum_paper.uncertainty import agreement, inputs, sample, table
+from sonicvacuum_paper.columns import column_cards
+from sonicvacuum_paper.uncertainty import agreement, decide, identify, inputs, sample, table, viscoelastic
 
 
 @one_thread
@@ -11,3 +15,25 @@ def write_uncertainty(claims_path, config: Config, out, count: int = inputs.DRAW
     """Draw what the paper leaves open, simulate, write how probable each statement is under each model."""
     sampled = sample.sample(config, inputs.draws(count))
     table.write(agreement.build(config, sampled, read_table(claims_path, Claim)), out)
+
+
+@one_thread
+def write_rivals(config: Config, out: Mapping[str, str]) -> None:
+    """Write the tables in which the two lossy models, and a relaxing solid, are held against each other.
+
+    Args:
+        config: must have the case fig3a under the models compared.
+        out: `map`, `experiments` and `relaxation` → file.
+    """
+    cards = column_cards(config, "fig3a")
+    missing = [model for model in ("layer_loss", "matched_loss", "matched") if model not in cards]
+    if missing:
+        raise InputError(f"cases.fig3a: no variant for the ledger's column {missing[0]}; add one")
+    tables = {
+        "map": lambda: identify.table(cards["layer_loss"]),
+        "experiments": lambda: decide.table(cards),
+        "relaxation": lambda: viscoelastic.table(cards["matched"]),
+    }
+    for name, made in tables.items():
+        with replacing(out[name]) as stream:
+            made().to_csv(stream, index=False, float_format="%.6g", lineterminator="\n")

@@ -1,0 +1,29 @@
+"""`sonicvacuum paper rivals`: which models of the coating are left, and what would tell them apart."""
+
+import click
+
+from sonicvacuum import config as configuration
+from sonicvacuum.cli import existing
+from sonicvacuum.outputs import check_apart
+
+_FILE = existing()
+
+
+@click.command()
+@click.option("--config", "path", default="config.yaml", show_default=True, type=_FILE)
+@click.option("--map", "contours", required=True, type=click.Path(dir_okay=False), help="Map (CSV) to write.")
+@click.option("--picture", required=True, type=click.Path(dir_okay=False), help="Its picture (SVG) to write.")
+@click.option("--experiments", required=True, type=click.Path(dir_okay=False), help="Series (CSV) to write.")
+@click.option("--relaxation", required=True, type=click.Path(dir_okay=False), help="Solids (CSV) to write.")
+def rivals(path, contours, picture, experiments, relaxation):
+    """Compare the layer with a loss, Hertz at 15 GPa with a loss, and a relaxing solid."""
+    import pandas
+
+    from sonicvacuum.figures import style
+    from sonicvacuum_paper.uncertainty import picture as drawing
+    from sonicvacuum_paper.uncertainty.stage import write_rivals
+
+    out = {"map": contours, "experiments": experiments, "relaxation": relaxation}
+    check_apart([*out.values(), picture], [path])
+    write_rivals(configuration.read(path), out)
+    style.save(drawing.draw(pandas.read_csv(contours)), picture)

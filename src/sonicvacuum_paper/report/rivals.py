@@ -1,0 +1,89 @@
+"""What the report shows of the rivals: the map, the deciding experiment, and whether relaxation would do.
+
+All numbers come from the tables of `sonicvacuum paper rivals`; the sentences around them stand in
+`uncertainty.html.j2`.
+"""
+
+import pandas as pd
+
+from sonicvacuum.report.tables import number
+from sonicvacuum_paper.printed import PRINTED
+from sonicvacuum_paper.uncertainty import formats
+from sonicvacuum_paper.verdict import BOUND
+
+WITHIN = 0.95
+# Errors of the ledger: of the printed duration in us, and of 130 m/s.
+DURATION, LOW = 14.0, 7.35
+CELLS = ("speed_m_s", "half_duration_us", "decay")
+
+
+def context(contours, experiments, relaxation) -> dict:
+    """What the template asks for, from the paths of the three tables; empty where they have not been made."""
+    if not (contours and experiments and relaxation):
+        return {"allowed": None}
+    series = pd.read_csv(experiments)[formats.EXPERIMENTS]
+    apart = series.groupby("series", sort=False)[["speeds_sigma", "all_sigma"]].first()
+    return {
+        "allowed": allowed(pd.read_csv(contours)[formats.MAP]),
+        "series": _series(series),
+        "apart": [(name, number(r.speeds_sigma, 2), number(r.all_sigma, 2)) for name, r in apart.iterrows()],
+        "decisive": apart.speeds_sigma.idxmax(),
+        "relaxing": relaxing(pd.read_csv(relaxation)[formats.RELAXATION]),
+    }
+
+
+def allowed(table: pd.DataFrame) -> dict:
+    """Moduli in GPa that the printed numbers allow of the printed film, and of one as thick as Hertz asks.
+
+    `handbook` and `matched`: whether 2.76 GPa on the first and 15 GPa on the second are among them.
+    """
+    plane = table[(table.x == "modulus_GPa") & (table.y == "thickness_um")]
+    found = {}
+    for name, thickness, modulus in (
+        ("handbook", PRINTED.coating, PRINTED.modulus_handbook),
+        ("matched", plane.y_value.max() * 1e-6, PRINTED.modulus_matched),
+    ):
+        nearest = plane.y_value.loc[(plane.y_value - 1e6 * thickness).abs().idxmin()]
+        inside = plane[(plane.y_value == nearest) & (plane.content < WITHIN)].x_value
+        found[f"{name}_range"] = _span(inside, 2) if len(inside) else "none"
+        found[name] = bool(len(inside)) and inside.min() <= modulus / 1e9 <= inside.max()
+    return found
+
+
+def _series(table):
+    """One row for each point: what both models show there."""
+    rows = []
+    for (series, unit, at), both in table.groupby(["series", "unit", "at"], sort=False):
+        of_model = both.set_index("model")
+        cells = [number(of_model.loc[model, cell], 3) for cell in CELLS for model in formats.MODELS]
+        rows.append({"series": f"{series}, {unit}", "at": number(at, 3), "cells": cells})
+    return rows
+
+
+def relaxing(table: pd.DataFrame) -> dict:
+    """What solids that relax from a static modulus to 15 GPa show, and how many show what is printed."""
+    broad, single = (table[table.solid == name] for name in (formats.BROAD, formats.SINGLE))
+    fast = (table.speed_m_s - PRINTED.speed_coated).abs() <= PRINTED.speed_error * PRINTED.speed_coated
+    slow = (table.low_speed_m_s - PRINTED.speed_low).abs() <= BOUND * LOW
+    lasts = (table.duration_us - 1e6 * PRINTED.duration_coated).abs() <= 2.0 * DURATION
+    hidden = single.loc[single.time_us.idxmax()]
+    return {
+        "tangent": _span(broad.loss_tangent, 2),
+        "duration": _span(broad.duration_us, 3),
+        "decay": _span(broad.decay, 2),
+        "hidden_tangent": number(hidden.loss_tangent, 1),
+        "hidden_ms": number(hidden.time_us / 1e3, 2),
+        "low": _span(single.low_speed_m_s[fast], 3),
+        "fits": int((fast & slow & lasts).sum()),
+        "sound": [f"{_longitudinal(m):.0f}" for m in (PRINTED.modulus_handbook, PRINTED.modulus_matched)],
+    }
+
+
+def _span(values, digits):
+    return f"{number(values.min(), digits)} to {number(values.max(), digits)}"
+
+
+def _longitudinal(modulus):
+    """Speed in m/s of a longitudinal wave in the coating, √(E (1 − ν)/((1 + ν)(1 − 2ν))/ρ)."""
+    nu = PRINTED.poisson
+    return (modulus * (1 - nu) / ((1 + nu) * (1 - 2 * nu)) / PRINTED.coating_density) ** 0.5

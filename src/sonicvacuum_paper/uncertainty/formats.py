@@ -1,0 +1,30 @@
+"""Columns of the tables that `sonicvacuum paper rivals` writes, and the names that stand in them."""
+
+# The two models that the experiments are to tell apart: columns of the ledger.
+MODELS = ("layer_loss", "matched_loss")
+# Solids that relax.
+BROAD, SINGLE = "even over all decades", "one relaxation time"
+MAP = ["x", "y", "x_value", "y_value", "content"]
+EXPERIMENTS = [
+    "series",
+    "unit",
+    "at",
+    "model",
+    "speed_m_s",
+    "half_duration_us",
+    "decay",
+    "speeds_sigma",
+    "all_sigma",
+]
+RELAXATION = [
+    "solid",
+    "static_GPa",
+    "time_us",
+    "loss_tangent",
+    "speed_m_s",
+    "gauge_N",
+    "decay",
+    "half_duration_us",
+    "duration_us",
+    "low_speed_m_s",
+]

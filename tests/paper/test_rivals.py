@@ -1,0 +1,90 @@
+"""Map, deciding experiment and relaxing solid: limits that are known, and the sentences of the report."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from sonicvacuum import config
+from sonicvacuum_paper.columns import column_cards
+from sonicvacuum_paper.report import rivals
+from sonicvacuum_paper.uncertainty import decide, formats, identify, picture, viscoelastic
+
+
+@pytest.fixture(scope="module")
+def cards(cases):
+    return column_cards(cases, "fig3a")
+
+
+@pytest.fixture(scope="module")
+def solids(cards):
+    return viscoelastic.table(cards["matched"])
+
+
+@pytest.fixture(scope="module")
+def experiments(cards):
+    return decide.table(cards)
+
+
+def test_content_of_a_normal_density():
+    # Two independent normals: the region within radius r holds 1 - exp(-r^2/2).
+    x = np.linspace(-6.0, 6.0, 241)
+    square = x[:, None] ** 2 + x[None, :] ** 2
+    content = identify.contained(np.exp(-0.5 * square))
+    assert content[120, 140] == pytest.approx(1.0 - np.exp(-0.5), abs=2e-3)  # a cell holds up to 4e-4
+
+
+def test_stiffening_spread_evenly_means_the_loss_tangent_of_a_power_law(solids):
+    # E ~ omega^n has tan(n pi/2); to first order n pi/2, with n = ln r/ln(rates).
+    one = solids[(solids.solid == formats.BROAD) & (solids.static_GPa == 2.76)].iloc[-1]
+    n = np.log(15.0 / 2.76) / np.log(1e3 / 1e-3)
+    assert one.loss_tangent == pytest.approx(np.tan(np.pi * n / 2.0), rel=0.02)  # tan x = x + x^3/3
+
+
+def test_a_slow_solid_is_an_elastic_one_under_a_softer_preload(solids):
+    elastic = solids[solids.solid == "elastic"].iloc[0]
+    slow = solids[solids.time_us == 1e4]
+    assert (slow.loss_tangent < 0.003).all()
+    # Stiffer than the elastic chain only by the deeper rest, which the weight makes on the soft modulus.
+    assert (slow.speed_m_s > elastic.speed_m_s).all() and (slow.speed_m_s < 1.06 * elastic.speed_m_s).all()
+    assert slow.decay.to_numpy() == pytest.approx(elastic.decay, abs=0.01)
+
+
+def test_no_relaxing_solid_meets_both_speeds_and_the_duration(solids):
+    told = rivals.relaxing(solids)
+    assert told["fits"] == 0 and told["sound"] == ["2053", "4786"]
+
+
+def test_series_separate_and_a_model_not_from_itself(cards, experiments):
+    assert (experiments.all_sigma >= experiments.speeds_sigma).all()  # more data never separate less
+    same = {"layer_loss": cards["layer_loss"], "matched_loss": cards["layer_loss"]}
+    assert decide.table(same).all_sigma.max() < 0.3 * experiments.all_sigma.min()
+
+
+def test_hertz_speeds_hardly_know_the_thickness_and_the_layer_s_do(experiments):
+    speeds = experiments[experiments.unit == "um"].groupby("model").speed_m_s.agg(["min", "max"])
+    spread = speeds["max"] / speeds["min"]
+    assert spread["layer_loss"] > 1.7 and spread["matched_loss"] < 1.1
+
+
+def test_the_map_is_drawn_and_told_from_its_table_alone():
+    axes = [np.geomspace(a[0], a[-1], 9) for a in identify.AXES.values()]
+    names = list(identify.AXES)
+    rows = []
+    for one, other in identify.PAIRS:
+        x, y = np.meshgrid(*(axes[names.index(n)] for n in (one, other)), indexing="ij")
+        # All that is allowed lies near the printed film.
+        content = np.clip(np.hypot(np.log(x / 2.76), 4.0 * np.log(y / 42.0)) / 2.0, 0.0, 1.0)
+        rows += [(one, other, *cells) for cells in zip(x.flat, y.flat, content.flat, strict=True)]
+    table = pd.DataFrame(rows, columns=formats.MAP)
+    told = rivals.allowed(table)
+    assert told["handbook"] and not told["matched"] and told["matched_range"] == "none"
+    assert len(picture.draw(table).axes) == 3
+
+
+def test_what_the_comparison_needs_is_named_where_it_is_missing(cases, tmp_path):
+    from sonicvacuum.files import InputError
+    from sonicvacuum_paper.uncertainty.stage import write_rivals
+
+    without = config.Config(**{**{f: getattr(cases, f) for f in cases.__struct_fields__}, "cases": {}})
+    with pytest.raises(InputError, match=r"cases\.fig3a: no variant for the ledger's column layer_loss"):
+        write_rivals(without, dict.fromkeys(("map", "experiments", "relaxation"), str(tmp_path / "x")))
