@@ -13,6 +13,7 @@ paper = Verbs(
         "ledger": "sonicvacuum_paper.cli.ledger:ledger",
         "audit": "sonicvacuum_paper.cli.ledger:audit",
         "draw": "sonicvacuum_paper.cli.draw:draw",
+        "digitised": "sonicvacuum_paper.cli.draw:digitised",
         "report": "sonicvacuum_paper.cli.report:report",
         "runs": "sonicvacuum_paper.cli.runs:runs",
         "animate": "sonicvacuum_paper.cli.animate:animate",

@@ -1,9 +1,10 @@
-"""`sonicvacuum paper draw`: a figure's numbers, then the figure made of them."""
+"""`sonicvacuum paper draw`, `digitised`: a figure's numbers, then the figure; points of others against it."""
 
 from pathlib import Path
 
 import click
 
+from sonicvacuum.cli import existing
 from sonicvacuum.cli.cards import read_card
 from sonicvacuum.outputs import check_apart
 
@@ -14,11 +15,12 @@ _FOLDER = click.Path(exists=True, file_okay=False)
 @click.argument("figure")
 @click.option("--cards", required=True, type=_FOLDER, help="Folder of resolved cards.")
 @click.option("--histories", required=True, type=_FOLDER, help="Folder of their simulations.")
+@click.option("--points", multiple=True, type=existing(), help="Points read off the paper (YAML); repeat.")
 @click.option("--out", required=True, type=click.Path(file_okay=False), help="Folder for CSV, SVG and PNG.")
-def draw(figure, cards, histories, out):
+def draw(figure, cards, histories, points, out):
     """Draw FIGURE (fig3, fig4, fig5 or fig6) of simulated cards."""
     from sonicvacuum import simulation
-    from sonicvacuum_paper import figures
+    from sonicvacuum_paper import digitised, figures
 
     check_apart([Path(out) / f"{figure}.{kind}" for kind in ("csv", "svg", "png")], [cards, histories])
     # A variant that the configuration does not have leaves its panel without that line.
@@ -27,4 +29,22 @@ def draw(figure, cards, histories, out):
         name: simulation.load(read_card(Path(cards) / f"{name}.json"), Path(histories) / f"{name}.npz")
         for name in names
     }
-    figures.make(figure, simulations, out)
+    figures.make(figure, simulations, out, [digitised.read(path) for path in points])
+
+
+@click.command()
+@click.argument("points", type=existing())
+@click.option("--figure", required=True, type=existing(), help="Numbers of its figure (CSV).")
+def digitised(points, figure):
+    """Check POINTS that were read off the paper, and hold them against each model of a figure."""
+    import pandas
+
+    from sonicvacuum.files import InputError
+    from sonicvacuum_paper import digitised as module
+
+    read = module.read(points)
+    if Path(figure).stem != read.figure:
+        raise InputError(
+            f"{points}: figure: is {read.figure!r}; give --figure {read.figure}.csv, not {figure}"
+        )
+    click.echo(module.told(read, pandas.read_csv(figure)))

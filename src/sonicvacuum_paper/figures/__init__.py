@@ -62,7 +62,7 @@ def caption(name: str) -> str:
 
 
 @one_thread
-def make(name: str, simulations: Mapping, out_dir) -> tuple[Path, Path, Path]:
+def make(name: str, simulations: Mapping, out_dir, points=()) -> tuple[Path, Path, Path]:
     """Write `name`.csv, then read it back and draw `name`.svg and `name`.png from it.
 
     Equal simulations give equal bytes.
@@ -72,6 +72,7 @@ def make(name: str, simulations: Mapping, out_dir) -> tuple[Path, Path, Path]:
         simulations: card name → `Simulation` of the cards in `cards_of(name)`; others are ignored, and
             a card may be absent as long as its panel has another.
         out_dir: folder, made where it does not exist.
+        points: sets of `sonicvacuum_paper.digitised`; those of other figures are ignored.
 
     Returns:
         The paths of the three files.
@@ -90,10 +91,24 @@ def make(name: str, simulations: Mapping, out_dir) -> tuple[Path, Path, Path]:
     module, stem = _module(name), Path(out_dir) / name
     paths = tuple(stem.with_suffix(suffix) for suffix in (".csv", ".svg", ".png"))
     with replacing(paths[0]) as stream:
-        module.table(wanted).to_csv(stream, index=False, float_format="%.9g", lineterminator="\n")
+        table = with_points(name, module.table(wanted), points)
+        table.to_csv(stream, index=False, float_format="%.9g", lineterminator="\n")
     figure = draw(name, paths[0])
     style.save(figure, *paths[1:])
     return paths
+
+
+def with_points(name: str, table, points):
+    """The table of a figure with the rows of the points that somebody read off it."""
+    import pandas
+
+    from sonicvacuum_paper import digitised
+
+    found = [row for one in points if one.figure == name for row in digitised.rows(one)]
+    if not found:
+        return table
+    rows = _module(name).placed(pandas.DataFrame(found, columns=table.columns), table)
+    return pandas.DataFrame([*table.to_dict("records"), *rows.to_dict("records")], columns=table.columns)
 
 
 def draw(name: str, path):

@@ -6,7 +6,7 @@ force_N, speed_m_s, speed_error_m_s. `force_N` is the contact force above rest, 
 (7) are for the total F_m. `gauge_N` is the mean reading of the two gauges, which is smaller: each
 averages two contacts. Series: `simulated`; `eq6`, `eq7`; `paper` (printed speed at a printed reading,
 taken as the reading that it is), `paper-as-read` (the same with the reading taken as the contact force);
-`paper-speed` (amplitude not printed).
+`digitised` (read off the paper's figure by somebody: `sonicvacuum_paper.digitised`).
 """
 
 from collections.abc import Mapping
@@ -21,6 +21,7 @@ from sonicvacuum.figures import style
 from sonicvacuum.observe.pulse import main_pulse
 from sonicvacuum.physics import theory
 from sonicvacuum.simulation import Simulation
+from sonicvacuum_paper import digitised
 from sonicvacuum_paper.figures import traces
 from sonicvacuum_paper.one_run import OneRun
 from sonicvacuum_paper.printed import PRINTED
@@ -138,6 +139,17 @@ def _printed(panel, series, speed, **where):
     return {"panel": panel, "series": series, "speed_m_s": speed, "speed_error_m_s": error, **where}
 
 
+def placed(rows: pandas.DataFrame, table: pandas.DataFrame) -> pandas.DataFrame:
+    """Digitised points stand at the contact force that the first sweep of their panel has at that reading."""
+    placed = rows.copy()
+    for panel, part in rows.groupby("panel"):
+        upright = (table.series == "simulated") & (table.panel == panel) & (table.orientation == "vertical")
+        sweep = next(iter(table[upright].groupby("model", sort=False)))[1].sort_values("gauge_N")
+        force = np.interp(np.log(part.gauge_N), np.log(sweep.gauge_N), np.log(sweep.force_N))
+        placed.loc[part.index, "force_N"] = np.exp(force)
+    return placed
+
+
 def draw(table: pandas.DataFrame) -> Figure:
     """The figure of these numbers."""
     with style.context():
@@ -208,6 +220,7 @@ def _marks(axes, table):
 _PAPER = {
     "paper": {"marker": "o", "color": "#CC0000", "ms": 5.0, "mew": 1.0},
     "paper-as-read": {"marker": "o", "color": "#CC0000", "ms": 5.0, "mew": 1.0, "mfc": "white"},
+    digitised.SERIES: {"marker": "x", "color": "#CC0000", "ms": 4.0, "mew": 1.0},
 }
 
 
@@ -243,6 +256,7 @@ def _legend(axes, table):
         mark = {"ls": "none", "marker": look.marker, "ms": 3.4, "mew": 0.8, "color": look.color}
         handles.append(Line2D([], [], **mark, mfc=face, label=label))
     texts = {"paper": "printed in the paper", "paper-as-read": "the same, reading as contact force"}
+    texts[digitised.SERIES] = "read off the paper's figure"
     for series in (s for s in texts if (table.series == s).any()):
         handles.append(Line2D([], [], ls="none", **_PAPER[series], label=texts[series]))
     axes.legend(handles=handles, loc="upper left", borderaxespad=0.1, handlelength=1.0, fontsize=7)

@@ -31,6 +31,11 @@ def table(simulations: Mapping[str, Simulation]) -> pandas.DataFrame:
     return traces.frame(found)
 
 
+def placed(rows: pandas.DataFrame, table: pandas.DataFrame) -> pandas.DataFrame:
+    """Digitised points stand where they were read."""
+    return rows
+
+
 def draw(table: pandas.DataFrame) -> Figure:
     """The figure of these numbers."""
     bars = {"a": (PRINTED.coated_bar, 200.0), "b": (PRINTED.steel_bar, 50.0)}

@@ -34,6 +34,11 @@ def table(simulations: Mapping[str, Simulation]) -> pandas.DataFrame:
     return wall[wall.sensor == "wall"].reset_index(drop=True)
 
 
+def placed(rows: pandas.DataFrame, table: pandas.DataFrame) -> pandas.DataFrame:
+    """Digitised points stand where they were read."""
+    return rows
+
+
 def draw(table: pandas.DataFrame) -> Figure:
     """The figure of these numbers."""
     with style.context():
@@ -42,11 +47,13 @@ def draw(table: pandas.DataFrame) -> Figure:
         for panel, left in (("a", 13.0), ("b", 101.0)):
             axes, part = style.panel(figure, (left, 10.0, 70.0, 49.0)), table[table.panel == panel]
             _panel(axes, part)
+            traces.points(axes, part, {"wall": 0.0})
             axes.set(xlim=(0, UNTIL_US), ylim=(-0.03 * highest, highest))
             axes.set_xlabel("Time after impact (µs)")
             axes.set_ylabel("Force on the wall (N)")
             style.title(figure, left - 12.0, _TITLES[panel])
-            handles = [_handle(part, model) for model in dict.fromkeys(part.model)]
+            models = dict.fromkeys(part.model[part.series == "simulated"])
+            handles = [_handle(part, model) for model in models]
             axes.legend(handles=handles, loc="upper left", bbox_to_anchor=(-0.01, 1.4), borderaxespad=0.0)
             axes.annotate(
                 _SEEN[panel], (0.98, 0.95), xycoords="axes fraction", ha="right", va="top", style="italic"

@@ -6,7 +6,7 @@ speed_m_s. Series: `simulated` (a reading until the reflection comes back, at th
 `reflected` (the same afterwards), `peak` (separate pulses before that, numbered; the main one of the
 lower gauge carries the speed from the upper one), `small` (the first smaller one after
 a train of three), `paper-arrival` and `paper-duration` (printed values,
-placed by the main pulse of the upper gauge).
+placed by the main pulse of the upper gauge), `digitised` (read off the paper's figure by somebody).
 """
 
 import re
@@ -22,6 +22,7 @@ from sonicvacuum.gauges import Gauge
 from sonicvacuum.observe.pulse import pulses
 from sonicvacuum.observe.shape import onset
 from sonicvacuum.simulation import Simulation
+from sonicvacuum_paper import digitised
 from sonicvacuum_paper.one_run import OneRun
 from sonicvacuum_paper.printed import PRINTED
 
@@ -160,6 +161,7 @@ def draw_panel(axes: Axes, table: pandas.DataFrame, force_bar: float, time_bar: 
     bases = base_lines(table)
     _lines(axes, table, bases)
     _paper(axes, table, bases)
+    points(axes, table, bases)
     number(axes, table, bases)
     # The last sample may lie just before the round end of the axis.
     until = 50.0 * np.ceil(table.time_us.max() / 50.0)
@@ -230,6 +232,15 @@ def _lines(axes, table, bases):
             **(look.line if series == "simulated" else look.pale),
             zorder=3.0 - 0.1 * models.index(model),
             gid=f"{series}-{sensor}-{model}",
+        )
+
+
+def points(axes: Axes, table: pandas.DataFrame, bases: dict[str, float]) -> None:
+    """What somebody read off the paper's figure, as crosses on the base line of its gauge."""
+    read = table[table.series == digitised.SERIES]
+    for sensor, part in read.groupby("sensor"):
+        axes.plot(
+            part.time_us, part.force_N + bases[sensor], "x", color="#CC0000", ms=3.0, mew=0.8, gid="digitised"
         )
 
 
