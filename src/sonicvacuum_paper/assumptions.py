@@ -4,11 +4,14 @@ import math
 from dataclasses import dataclass
 
 from sonicvacuum_paper.columns import Metrics
+from sonicvacuum_paper.ladder import title
 from sonicvacuum_paper.ledger import found_in_columns
 from sonicvacuum_paper.rows import write_lines
 from sonicvacuum_paper.verdict import DISAGREES, NOT_TESTABLE, Target, judge
 
 HOLDS, FAILS = "holds", "fails"
+# Columns of the ledger that are audited: Hertz with both moduli, the printed layer without and with its loss.
+AUDITED = ("handbook", "matched", "layer", "layer_loss")
 
 
 @dataclass(frozen=True)
@@ -38,6 +41,8 @@ class AssumptionRow:
     limit: str
     handbook: float
     matched: float
+    layer: float
+    layer_loss: float
     verdict: str
     reason: str
 
@@ -55,7 +60,7 @@ def write(rows: list[AssumptionRow], path) -> None:
 def _row(metrics, a, where):
     target = Target.parse(a.test, a.limit, "", where)
     rows = {} if a.test == "not-testable" else found_in_columns(metrics, a.metric, where)
-    values = {c: rows[c].value if c in rows else math.nan for c in ("handbook", "matched")}
+    values = {c: rows[c].value if c in rows else math.nan for c in AUDITED}
     verdicts = {
         c: _word(judge(target, values[c], rows[c].numerical_error).verdict)
         for c in values
@@ -84,7 +89,7 @@ def _verdict(verdicts):
     good = [c for c, v in verdicts.items() if v == HOLDS]
     if len(good) == len(verdicts):
         return HOLDS
-    return f"{HOLDS} at {' and '.join(good)} only" if good else FAILS
+    return f"{HOLDS} for {'; '.join(map(title, good))} only" if good else FAILS
 
 
 def _reason(a, rows, values, verdicts):
@@ -96,5 +101,5 @@ def _reason(a, rows, values, verdicts):
     if len({rows[c].key for c in verdicts}) == 1:
         shown = f"{values[next(iter(verdicts))]:.4g}"
     else:
-        shown = ", ".join(f"{c} {values[c]:.4g}" for c in verdicts)
+        shown = ", ".join(f"{title(c)}: {values[c]:.4g}" for c in verdicts)
     return f"{shown} against {bound}{unit}."

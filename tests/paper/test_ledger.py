@@ -203,15 +203,15 @@ def test_malformed_metric_and_table_are_refused(tmp_path):
     [
         (0.05, 0.05, "holds"),
         (0.2, 0.3, "fails"),
-        (0.2, 0.05, "holds at matched only"),
-        (0.05, 0.2, "holds at handbook only"),
+        (0.2, 0.05, "holds for Hertz, 15 GPa only"),
+        (0.05, 0.2, "holds for Hertz, 2.76 GPa only"),
     ],
 )
 def test_assumption_verdicts(handbook, matched, verdict):
     rows = [Row(f"fig3a.{c}", "depth", "", v, "1") for c, v in (("handbook", handbook), ("matched", matched))]
     row = assumptions.build(Metrics(rows, COLUMNS), [assumption()])[0]
     assert row.verdict == verdict
-    assert row.reason == f"handbook {handbook:g}, matched {matched:g} against at most 0.1."
+    assert row.reason == f"Hertz, 2.76 GPa: {handbook:g}, Hertz, 15 GPa: {matched:g} against at most 0.1."
 
 
 def test_assumption_without_metric_or_value():
@@ -219,6 +219,12 @@ def test_assumption_without_metric_or_value():
     assert (untested.verdict, untested.reason) == ("not testable", "A note.")
     gone = Metrics([absent("fig3a.matched", "depth", "", "1", "no pulse")], COLUMNS)
     assert assumptions.build(gone, [assumption()])[0].verdict == "not testable"
+
+
+def test_the_audit_looks_at_the_layer_too():
+    rows = [Row(f"fig3a.{c}", "depth", "", v, "1") for c, v in (("handbook", 0.05), ("layer", 0.2))]
+    row = assumptions.build(Metrics(rows, COLUMNS | {"layer": ["layer"]}), [assumption()])[0]
+    assert row.layer == 0.2 and row.verdict == "holds for Hertz, 2.76 GPa only"
 
 
 def test_assumption_within_numerical_error_holds():
@@ -230,7 +236,10 @@ def test_written_audit_has_the_promised_columns(tmp_path):
     rows = assumptions.build(Metrics([], COLUMNS), [assumption()])
     assumptions.write(rows, tmp_path / "a.csv")
     header = (tmp_path / "a.csv").read_text().splitlines()[0]
-    assert header == "assumption,section,statement,quantity,unit,limit,handbook,matched,verdict,reason"
+    assert (
+        header
+        == "assumption,section,statement,quantity,unit,limit,handbook,matched,layer,layer_loss,verdict,reason"
+    )
 
 
 def test_probabilities_stand_beside_the_models():

@@ -10,6 +10,7 @@ from sonicvacuum.report import inline, interactive, record
 from sonicvacuum.simulation import Simulation
 from sonicvacuum_blind import report as study
 from sonicvacuum_paper import ladder
+from sonicvacuum_paper.assumptions import AUDITED
 from sonicvacuum_paper.figures import caption
 from sonicvacuum_paper.report import answer, cursor, provenance, rivals, runs, tables, uncertain
 from sonicvacuum_paper.shown import ANIMATIONS
@@ -67,6 +68,7 @@ def build(given: Sources) -> str:
         verdicts=tables.VERDICTS,
         disagreements=tables.disagreements(ledger).to_dict("records"),
         assumptions=tables.read(given.assumptions, tables.ASSUMPTIONS).to_dict("records"),
+        audited=[(c, ladder.title(c)) for c in AUDITED],
         headline=tables.headline(ledger),
         answer=answer.sentences(ledger, metrics),
         models=[(c, m.title, m.free) for c, m in ladder.MODELS.items() if m.counted],
