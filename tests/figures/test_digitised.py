@@ -72,9 +72,9 @@ def test_points_on_a_model_s_own_curve_leave_nothing_of_it(written, sweep, drawn
     assert found["handbook"] > 100.0 and found["matched"] > 10.0
 
 
-def test_points_are_drawn_at_the_force_that_their_reading_means(written, sweep, studies, tmp_path):
+def test_points_are_drawn_at_the_force_that_their_reading_means(written, sweep, simulations, tmp_path):
     points = [digitised.read(written(block(sweep)))]
-    path, *_ = figures.make("fig4", studies, tmp_path, points)
+    path, *_ = figures.make("fig4", simulations, tmp_path, points)
     table = pd.read_csv(path)
     read = table[table.series == digitised.SERIES]
     own = table[
@@ -86,14 +86,14 @@ def test_points_are_drawn_at_the_force_that_their_reading_means(written, sweep, 
 
 
 @pytest.mark.parametrize(("figure", "sensor"), [("fig3", "g9"), ("fig5", "wall"), ("fig6", "wall")])
-def test_a_trace_lies_on_its_gauge_s_line(written, studies, tmp_path, figure, sensor):
-    table = pd.read_csv(figures.make(figure, studies, tmp_path)[0])
+def test_a_trace_lies_on_its_gauge_s_line(written, simulations, tmp_path, figure, sensor):
+    table = pd.read_csv(figures.make(figure, simulations, tmp_path)[0])
     line = table[(table.panel == "a") & (table.sensor == sensor) & (table.model == "matched")]
     line = line[line.series == "simulated"].iloc[::40]
     own = [(float(t), float(f)) for t, f in zip(line.time_us, line.force_N, strict=True)]
     points = digitised.read(written(block(own, figure=figure, sensor=sensor)))
     assert digitised.left(points, table)["matched"] < 1e-6
-    path, *_ = figures.make(figure, studies, tmp_path, [points])
+    path, *_ = figures.make(figure, simulations, tmp_path, [points])
     axes = figures.draw(figure, path).axes[0]
     (crosses,) = (one for one in axes.lines if one.get_gid() == "digitised" and len(one.get_xdata()))
     assert len(crosses.get_xdata()) == len(own)
