@@ -16,7 +16,7 @@ def plastic_force(delta, loading, largest, residual):
     return select(largest - delta, loading * power_3_2(share), loading)
 
 
-TERM = Term("plastic-contact", "path", plastic_force, 1)
+TERM = Term("plastic-contact", "path", plastic_force, 1, strengths=(0,))
 
 
 def coefficients(chain, stiffness, mass, residual):

@@ -9,8 +9,19 @@ from numba import njit
 from numba.extending import overload
 
 from sonicvacuum.physics import lanes
-from sonicvacuum.physics.lanes import positive, root, select
-from sonicvacuum.physics.table import INLINED, REST, REST_FORCE, U, V, first_memory, get, put, zero
+from sonicvacuum.physics.lanes import absolute, positive, root, select
+from sonicvacuum.physics.table import (
+    INLINED,
+    REST,
+    REST_FORCE,
+    U,
+    V,
+    first_memory,
+    get,
+    is_any_positive,
+    put,
+    zero,
+)
 
 # Gauss's rule on −1 to 1, moved to 0 to 1; exact where a correction is a polynomial in √compression up to the
 # eleventh power.
@@ -47,6 +58,7 @@ class _Source:
         self.lines = [f"def composed({signature}):"]
         self.namespace = {name: getattr(lanes, name) for name in ("select", "positive", "without_fusing")}
         self.namespace |= {"get": get, "put": put, "highest": highest}
+        self.namespace |= {"absolute": absolute, "is_any_positive": is_any_positive}
 
     def call(self, term, what, *arguments):
         """The call of one formula of a term, its coefficients read from the table."""
@@ -59,6 +71,18 @@ class _Source:
     def add(self, *lines):
         self.lines += [f"    {line}" for line in lines]
 
+    def add_acting(self, term, line):
+        """A line that works a term out, passed over where its strengths are zero in all lanes.
+
+        A term that has the law set to itself (beside the elastic one) is there because it acts.
+        """
+        if not term.strengths or len(self.laws.terms) < 3:
+            self.add(line)
+            return
+        start = self.composition.first_coefficient + self.laws.first_coefficient[term.name]
+        sizes = " + ".join(f"absolute(get(c, table, body, {start + k}))" for k in term.strengths)
+        self.add(f"if is_any_positive({sizes}):", f"    {line}")
+
     def add_elastic(self, first_memory):
         """Leave the elastic force before and after path dependence in `loading` and `elastic`."""
         (base,) = self.laws.in_slot("elastic")
@@ -68,7 +92,7 @@ class _Source:
         self.add("elastic = loading")
         for term in self.laws.in_slot("path"):
             largest = f"get(c, table, body, {first_memory} + {self.laws.memory_of[term.name]})"
-            self.add(f"elastic = {self.call(term, 'formula', 'delta', 'loading', largest)}")
+            self.add_acting(term, f"elastic = {self.call(term, 'formula', 'delta', 'loading', largest)}")
 
     def add_energy(self, name, delta):
         """Leave the work of the loading curve up to a compression in a variable.
@@ -108,7 +132,7 @@ def _push(c, table, body, approach, rate, first_memory):
     source.add_elastic("first_memory")
     source.add("force = elastic")
     for term in laws.in_slot("force"):
-        source.add(f"force = force + {source.call(term, 'formula', 'delta', 'rate', 'elastic')}")
+        source.add_acting(term, f"force = force + {source.call(term, 'formula', 'delta', 'rate', 'elastic')}")
     for term in laws.in_slot("memory"):
         state = f"get(c, table, body, first_memory + {laws.memory_of[term.name]})"
         source.add(f"force = force + {source.call(term, 'formula', 'elastic', state)}")
@@ -212,8 +236,10 @@ def body_acceleration(c, table, body, velocity):
 @overload(body_acceleration, jit_options=INLINED)
 def _body_acceleration(c, table, body, velocity):
     source = _Source(c.composition, "c, table, body, velocity")
-    calls = [source.call(t, "formula", "velocity") for t in c.composition.laws.in_slot("body")]
-    source.add(f"return {' + '.join(calls) if calls else '0.0 * velocity'}")
+    source.add("total = 0.0 * velocity")
+    for term in c.composition.laws.in_slot("body"):
+        source.add_acting(term, f"total = total + {source.call(term, 'formula', 'velocity')}")
+    source.add("return total")
     return source.function()
 
 

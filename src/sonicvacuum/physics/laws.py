@@ -44,6 +44,8 @@ class Term:
             compression at rest for `path`, zero for `memory`.
         energy: elastic energy stored, a function of (delta, c…) for slot `elastic`; None where the term
             stores none.
+        strengths: slots `path`, `force` and `body`: which coefficients are all zero where the term does
+            nothing, so that it is passed over there; None: it is always worked out.
     """
 
     name: str
@@ -53,6 +55,7 @@ class Term:
     growth: Callable | None = None
     start: Callable | None = None
     energy: Callable | None = None
+    strengths: tuple[int, ...] | None = None
 
     def __post_init__(self):
         if self.slot not in SLOTS:
@@ -80,7 +83,8 @@ class Term:
     def key(self) -> str:
         """Name and fingerprint of the formulas that are compiled."""
         formulas = [f for f in (self.formula, self.growth, self.energy) if f is not None]
-        return f"{self.name}:{'.'.join(fingerprint(f) for f in formulas)}"
+        strengths = "" if self.strengths is None else "/" + ".".join(map(str, self.strengths))
+        return f"{self.name}:{'.'.join(fingerprint(f) for f in formulas)}{strengths}"
 
 
 def hertz_force(delta, stiffness):
