@@ -163,7 +163,8 @@ def _outliers(r):
 
 def _oscillation(r, wide):
     """p of the best damped or lasting sinusoid in one trace."""
-    highest = max(float(_bank(r[None], *one).max()) for one in _plan(len(r), wide))
+    windows, products = _windows(len(r), wide)
+    highest = float(_squares(r * windows, products).max())
     return float(-np.expm1(TRIALS * len(r) * np.log1p(-np.exp(-0.5 * highest))))
 
 
@@ -176,28 +177,44 @@ def _plan(samples, wide):
     return windows
 
 
+@lru_cache(maxsize=32)
+def _windows(samples, wide):
+    """(W, T) all windows of a trace, and their products; kept, as one record's traces are asked again."""
+    windows = np.array([_window(samples, *one) for one in _plan(samples, wide)])
+    return windows, _products(windows)
+
+
 def _bank(r, start, decay):
     """(L, F) χ² (two degrees of freedom) of oscillations of all frequencies in (L, T) residuals."""
-    window, norm = _window(r.shape[1], start, decay)
-    cosine, sine, both = norm
-    transformed = np.fft.rfft(r * window, axis=1)[:, 1:]
+    window = _window(r.shape[1], start, decay)
+    return _squares(r * window, _products(window))
+
+
+def _squares(r, products):
+    """(…, F) χ² of oscillations in (…, T) residuals times a window."""
+    cosine, sine, both, inverse = products
+    transformed = np.fft.rfft(r, axis=-1)[..., 1:]
     b, c = transformed.real, -transformed.imag
-    determinant = cosine * sine - both**2
-    good = determinant > _APART * 0.25 * (window @ window) ** 2
-    value = (sine * b**2 - 2.0 * both * b * c + cosine * c**2) / np.where(good, determinant, np.inf)
-    return value
+    return (sine * b**2 - 2.0 * both * b * c + cosine * c**2) * inverse
 
 
-@lru_cache(maxsize=4096)
 def _window(samples, start, decay):
-    """(T,) window and products (F,) of cosine with itself, sine with itself, and both under it."""
+    """(T,) decay from a start on."""
     time = np.arange(samples) - start
-    window = np.where(time >= 0, np.exp(-np.maximum(time, 0) / decay), 0.0)
-    square = window**2
-    doubled = np.fft.fft(square)[2 * np.arange(1, samples // 2 + 1) % samples]
-    whole = square.sum()
-    norm = (0.5 * (whole + doubled.real), 0.5 * (whole - doubled.real), -0.5 * doubled.imag)
-    return window, norm
+    return np.where(time >= 0, np.exp(-np.maximum(time, 0) / decay), 0.0)
+
+
+def _products(window):
+    """(…, F) products of cosine with itself, sine with itself and both under (…, T) windows, and the inverse
+    determinant of the three: 0 where they cannot be told apart.
+    """
+    square, samples = window**2, window.shape[-1]
+    doubled = np.fft.fft(square, axis=-1)[..., 2 * np.arange(1, samples // 2 + 1) % samples]
+    whole = square.sum(axis=-1, keepdims=True)
+    cosine, sine, both = 0.5 * (whole + doubled.real), 0.5 * (whole - doubled.real), -0.5 * doubled.imag
+    determinant = cosine * sine - both**2
+    good = determinant > _APART * 0.25 * whole**2
+    return cosine, sine, both, np.where(good, 1.0 / np.where(good, determinant, 1.0), 0.0)
 
 
 def _shared(forward, left):
