@@ -100,7 +100,7 @@ class Chain:
         shapes += [np.shape(getattr(self, name).modulus) for name in _ENDS]
         shapes += [shape for body in self.bodies.kinds for shape in body.shapes()]
         lanes = np.broadcast_shapes(*shapes) or (1,)
-        self._map(lambda value: np.broadcast_to(np.asarray(value, dtype=float), lanes))
+        self._map(lambda value: _broadcast(value, lanes))
         for name in ("striker_mass", "speed"):
             _check(name, getattr(self, name) > 0.0, "positive", getattr(self, name))
         for body in self.bodies.kinds:
@@ -334,10 +334,17 @@ def _law_set(terms, preloaded, symplectic):
     return LawSet(terms, preloaded, symplectic)
 
 
+def _broadcast(value, lanes):
+    """A number or an array as (lanes,) floats; what is so already as it is, for chains are made often."""
+    if isinstance(value, np.ndarray) and value.shape == lanes and value.dtype == float:
+        return value
+    return np.broadcast_to(np.asarray(value, dtype=float), lanes)
+
+
 _NUMBERS = ("striker_mass", "speed", "gravity", "static_force")
 _ENDS = ("striker", "wall")
 
 
 def _check(name, good, must_be, values):
-    if not np.all(good):
+    if not good.all():
         raise ValueError(f"{name} is {values[~good][0]:g}; it must be {must_be}")

@@ -60,8 +60,10 @@ def duration_of(record: Record, runs: list[Run], chain: Chain) -> float:
     return max(ends)
 
 
-def interval_of(record: Record, runs: list[Run], chain: Chain) -> float:
-    """Sampling interval in s: the traces' own divided by a whole number, or `sampling_of` without any."""
-    fine = sampling_of(chain)
+def interval_of(record: Record, runs: list[Run], chain: Chain, coarser: float = 1.0) -> float:
+    """Sampling interval in s: the traces' own divided by a whole number, or `sampling_of` without any; at most
+    `coarser` times as long as that.
+    """
+    fine = coarser * sampling_of(chain)
     own = min((r.signals.interval_s for r in runs if r.signals), default=fine)
     return own / max(1, math.ceil(own / fine))

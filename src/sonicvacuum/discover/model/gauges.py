@@ -2,9 +2,9 @@
 
 import numpy as np
 
-# Interpolation between samples: polynomials through six neighbours.
-POINTS = 6
-_OFFSETS = np.arange(POINTS) - (POINTS // 2 - 1)
+from sonicvacuum.physics.resample import BEFORE, POINTS, resampled
+
+_OFFSETS = np.arange(POINTS) - BEFORE
 
 
 def lagrange(fraction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -47,26 +47,8 @@ def shifted(simulated: np.ndarray, interval: float, time: np.ndarray, shift: np.
     place = (time[0] - shift) / interval
     whole = np.floor(place).astype(int)
     weights, slopes = lagrange(place - whole)
-    reach = stride * (len(time) - 1) + 1
-    lanes, rated = np.arange(len(shift)), np.arange(0, len(shift), rate_of)
-    value = np.zeros((len(lanes), simulated.shape[1], len(time)))
-    rate = np.zeros((len(rated), *value.shape[1:]))
-    for first in np.unique(whole):
-        at, of = lanes[whole == first], np.flatnonzero(whole[rated] == first)
-        window = _window(simulated[at], first + _OFFSETS[0], reach + POINTS - 1)
-        rates = np.isin(at, rated)
-        for k in range(POINTS):
-            part = window[..., k : k + reach : stride]
-            value[at] += weights[at, k, None, None] * part
-            rate[of] += slopes[rated[of], k, None, None] * part[rates]
-    return value, rate / interval
-
-
-def _window(signals, first, count):
-    """`count` samples of (L, S, T') from `first`, zero before the first one, the last one held after the
-    end.
-    """
-    index = np.arange(first, first + count)
-    part = signals[..., np.clip(index, 0, signals.shape[-1] - 1)]
-    part[..., index < 0] = 0.0
-    return part
+    rated = slice(None, None, rate_of)
+    value = resampled(simulated, whole, weights, stride, len(time))
+    rate = resampled(simulated[rated], whole[rated], slopes[rated], stride, len(time))
+    rate /= interval
+    return value, rate

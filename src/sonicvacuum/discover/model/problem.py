@@ -30,6 +30,9 @@ from sonicvacuum.records.record import Record
 
 # Smooth error of the simulation and of the interpolation, relative to the largest reading of a gauge.
 MODEL_FLOOR = 1e-4
+# Traces are read between samples by polynomials of the fifth degree, so that these may lie further apart than
+# where pulses are measured on them.
+COARSER = 2.0
 # The quiet stretch ends well before the first sample that exceeds the larger of these.
 _QUIET_SIGMAS, _QUIET_PEAK, _QUIET_SHARE = 6.0, 0.03, 0.7
 _FEWEST, _LEAST = 40, 12
@@ -193,7 +196,8 @@ def batches(record: Record) -> tuple[Batch, ...]:
         for places in by_interval.values():
             runs = [record.runs[k] for k in places]
             chain = chain_of(record, runs)
-            room = interval_of(record, runs, chain)
+            coarser = 1.0 if any(r.observables for r in runs) else COARSER
+            room = interval_of(record, runs, chain, coarser)
             duration = duration_of(record, runs, chain) + 4.0 * room
             result.append(Batch(chain, tuple(places), room, duration))
     return tuple(result)
