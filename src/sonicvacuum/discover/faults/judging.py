@@ -83,6 +83,7 @@ class Judge:
     def __init__(self, model: Model, make: Callable[[Bench], Experiment]):
         self.model, self.make = model, make
         self.simulations = 0
+        self._columns = None
         self._own = self._residuals(model.bench.record)
 
     def _bench(self, record: Record) -> Bench:
@@ -91,14 +92,17 @@ class Judge:
     def _forward(self, record):
         return Forward(self.make(self._bench(record)), self.model.forward.threads)
 
-    def _residuals(self, record, afresh=False):
+    def _residuals(self, record, afresh=False, near=False):
         """Residuals and slopes of every run for a changed record, and its Σ log σ².
 
-        At the model's parameters; with `afresh` at nuisances of zero as well, (starts, runs) then.
+        At the model's parameters; with `afresh` at nuisances of zero as well, (starts, runs) then. Where the
+        record is `near` the one as it is, slopes that take a simulation each are those of that one.
         """
         forward, one = self._forward(record), self.model.fit
         starts = np.stack([one.nu, 0.0 * one.nu][: 1 + afresh])
-        columns = forward.columns(one.hypothesis, np.repeat(one.u[None], len(starts), axis=0), starts)
+        many_u, held = np.repeat(one.u[None], len(starts), axis=0), self._columns if near else None
+        columns = forward.columns(one.hypothesis, many_u, starts, held=held)
+        self._columns = self._columns or columns
         self.simulations += forward.chains
         found = []
         for lane, nu in enumerate(starts):
@@ -113,7 +117,7 @@ class Judge:
         (own,), volume = self._own
         record, size = self.model.bench.record, slip.start
         if slip.continuous and not size:
-            ((changed, _),), _ = self._residuals(slip.change(record, slip.step))
+            ((changed, _),), _ = self._residuals(slip.change(record, slip.step), near=True)
             extra = [(a[0] - b[0]) / slip.step for a, b in zip(own[0], changed, strict=True)]
             after, size = self._with_size(own, extra, slip)
             after += volume
@@ -172,7 +176,7 @@ class Judge:
     def _step(self, slip):
         """Step of a slip's size from a record that is changed already; sizes add up."""
         (own,), _ = self._own
-        ((changed, _),), _ = self._residuals(slip.change(self.model.bench.record, slip.step))
+        ((changed, _),), _ = self._residuals(slip.change(self.model.bench.record, slip.step), near=True)
         extra = [(a[0] - b[0]) / slip.step for a, b in zip(own[0], changed, strict=True)]
         return self._with_size(own, extra, slip)[1]
 

@@ -77,8 +77,15 @@ def linearise(
 
     Lanes that cannot be simulated have χ² = inf.
     """
-    columns = forward.columns(hypothesis, u, nu, places, precise, steps)
-    return from_slopes(forward, np.shape(u)[1], u, nu, columns)
+    return linearised(forward, hypothesis, u, nu, places, steps, precise)[0]
+
+
+def linearised(
+    forward: Forward, hypothesis: Hypothesis, u, nu, places=None, steps=None, precise=False, held=None
+) -> tuple[Normal, list[np.ndarray]]:
+    """The same, with the columns that they are made of; see `Forward.columns`."""
+    columns = forward.columns(hypothesis, u, nu, places, precise, steps, held)
+    return from_slopes(forward, np.shape(u)[1], u, nu, columns), columns
 
 
 def from_slopes(forward: Forward, free: int, u, nu, columns) -> Normal:

@@ -1,6 +1,8 @@
 """Non-linear least squares for many starts at once: Levenberg–Marquardt, one lane for each start.
 
-Marquardt, J. SIAM 11, 431 (1963). Bounds are kept by clipping; a coordinate at its bound that is pushed
+Marquardt, J. SIAM 11, 431 (1963). Slopes to the parameters are taken afresh at each step; those to the
+nuisances that cost a simulation each hardly change on the way, and are held until a parameter has moved far.
+At the end all are taken once more, to second order for the parameters. Bounds are kept by clipping; a coordinate at its bound that is pushed
 outward is held there. `scipy.optimize.least_squares` is the reference that the tests hold this against.
 """
 
@@ -8,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sonicvacuum.discover.fit.normal import Normal, linearise
+from sonicvacuum.discover.fit.normal import Normal, linearise, linearised
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Hypothesis
 
@@ -18,6 +20,8 @@ LAST = 2
 SETTLED = 1e-3
 # Longest step: in a coordinate of an effect, in a nuisance (standard errors).
 LONGEST_U, LONGEST_NU = 1.2, 6.0
+# In coordinates and in standard errors, how far a fit may move before slopes that were held are taken anew.
+FAR_U, FAR_NU = 0.5, 3.0
 _HELD = 1e12
 _AIM = 4.0
 
@@ -96,11 +100,11 @@ def fit(
     chosen = _promising(forward.coarse if coarse else forward, hypothesis, u, nu, places, keep)
     u, nu, places = u[chosen], nu[chosen], None if places is None else places[chosen]
     if coarse:
-        rough = linearise(forward.coarse, hypothesis, u, nu, places)
-        rough, _ = descend(forward.coarse, hypothesis, rough, places, coarse)
+        rough, columns = linearised(forward.coarse, hypothesis, u, nu, places)
+        rough, _ = descend(forward.coarse, hypothesis, rough, places, coarse, columns)
         u, nu = rough.u, rough.nu
-    now = linearise(forward, hypothesis, u, nu, places)
-    now, settled = descend(forward, hypothesis, now, places, iterations)
+    now, columns = linearised(forward, hypothesis, u, nu, places)
+    now, settled = descend(forward, hypothesis, now, places, iterations, columns)
     order = np.argsort(now.objective, kind="stable")
     best = int(order[0])
     found = hypothesis if places is None else hypothesis.with_places(places[best])
@@ -118,8 +122,10 @@ def _finished(forward, hypothesis, now):
     """The last steps with slopes to second order: those to first order point a little beside the minimum."""
     if not np.isfinite(now.objective[0]) or now.free == 0:
         return now
-    precise = linearise(forward, hypothesis, now.u, now.nu, None, _differences(now), precise=True)
-    return descend(forward, hypothesis, precise, None, LAST, precise=True)[0]
+    steps = _differences(now)
+    _, columns = linearised(forward, hypothesis, now.u, now.nu, None, steps)
+    precise, columns = linearised(forward, hypothesis, now.u, now.nu, None, steps, True, columns)
+    return descend(forward, hypothesis, precise, None, LAST, columns, precise=True)[0]
 
 
 def _promising(forward, hypothesis, u, nu, places, keep):
@@ -132,36 +138,72 @@ def _promising(forward, hypothesis, u, nu, places, keep):
     return np.sort(np.argsort(chi2, kind="stable")[:keep])
 
 
-def descend(forward, hypothesis, now: Normal, places, iterations, precise=False):
+def descend(forward, hypothesis, now: Normal, places, iterations, columns=None, precise=False):
     """Follow all lanes to their minimum; the normal equations there and which have settled.
 
     While a lane is far from the data, its nuisances are held by as much more as its χ² per datum exceeds 1:
-    they must not do the work of the effect.
+    they must not do the work of the effect. `columns` are those of `now`, where at hand.
     """
     lanes = len(now.u)
     now = now.take(np.arange(lanes))
     size = sum(forward.experiment.size(run) for run in range(len(now.chi2)))
     damping = np.full(lanes, 1e-3)
     settled = ~np.isfinite(now.objective)
+    held = _Held(columns, lanes)
     for _ in range(iterations):
-        at = np.flatnonzero(~settled)
-        if not len(at):
-            break
-        part = now.take(at)
+        part = now.take(~settled)
         weight = np.maximum(1.0, part.chi2.sum(axis=0) / (2.0 * size))
         gradient, hessian = part.total(weight)
-        step = _step(part, hypothesis, gradient, hessian, damping[at])
+        step = _step(part, hypothesis, gradient, hessian, damping[~settled])
+        # Where a step promises nothing it need not be tried.
+        goes_on = (_promise(gradient, hessian, step) >= SETTLED) | (weight > 1.0)
+        at = np.flatnonzero(~settled)[goes_on]
+        settled[~settled] = ~goes_on
+        if not len(at):
+            break
+        part, weight, step = part.take(goes_on), weight[goes_on], step[goes_on]
+        gradient, hessian = gradient[goes_on], hessian[goes_on]
         u, nu = _moved(part, hypothesis, step)
         here = None if places is None else places[at]
-        new = linearise(forward, hypothesis, u, nu, here, _differences(part), precise)
+        steps, known = _differences(part), held.near(at)
+        new, columns = linearised(forward, hypothesis, u, nu, here, steps, precise, known)
         gained = part.weighted(weight) - new.weighted(weight)
         better = gained > 0.0
+        held.noted(at, better, columns, known, np.abs(u - part.u), np.abs(nu - part.nu))
         now.replaced(at[better], new.take(better))
         done = (better & (gained < SETTLED)) | (damping[at] > 1e7)
         done |= ~better & (_promise(gradient, hessian, step) < SETTLED)
         settled[at] = done & ((weight == 1.0) | ~better)
         damping[at] = np.where(better, damping[at] * 0.1, damping[at] * 8.0).clip(1e-9, 1e9)
     return now, settled
+
+
+class _Held:
+    """Columns of all lanes, of which slopes are held, and how far each lane has moved since they were taken;
+    in units of what is too far.
+    """
+
+    def __init__(self, columns, lanes):
+        self.columns = None if columns is None else [c.copy() for c in columns]
+        self.moved = np.zeros(lanes)
+
+    def near(self, at) -> list[np.ndarray] | None:
+        """Columns to be held by some lanes; None where there are none, or one lane has moved too far."""
+        if self.columns is None or self.moved[at].max() > 1.0:
+            return None
+        return [c[at] for c in self.columns]
+
+    def noted(self, at, better, columns, known, du, dnu):
+        """Keep columns that were taken afresh, and count what lanes moved with those that were held."""
+        if known is not None:
+            far = np.maximum(du.max(axis=1, initial=0.0) / FAR_U, dnu.max(axis=1, initial=0.0) / FAR_NU)
+            self.moved[at] += np.where(better, far, 0.0)
+            return
+        if self.columns is None:
+            self.columns = [np.zeros((len(self.moved), *c.shape[1:])) for c in columns]
+        for kept, new in zip(self.columns, columns, strict=True):
+            kept[at] = new
+        self.moved[at] = 0.0
 
 
 def _differences(part):

@@ -17,10 +17,15 @@ from sonicvacuum.discover.model.hypothesis import Hypothesis
 from sonicvacuum.discover.model.nuisances import Layout
 from sonicvacuum.effects import Setup
 from sonicvacuum.forward import Seen, see, virtual
+from sonicvacuum.physics.chain import Chain
 
 # Largest steps of speed and modulus for finite differences, relative; smaller where the data are precise, so
 # that all data together change by about this many standard errors, and collinear columns come out collinear.
 LARGEST_STEP, STEP_AIM = 3e-3, 10.0
+# Error of a simulation at full accuracy as a share of the data's norm, and what is allowed of it, in standard
+# errors over all data together; it grows as the fourth power of the step. Beyond LONGEST_STEP steps the laws
+# that remember are no longer followed.
+ERROR, ERROR_AIM, LONGEST_STEP = 1e-6, 0.05, 2.5
 CHUNK = 512  # chains simulated in one call, to bound the memory
 
 
@@ -37,6 +42,7 @@ class Forward:
         self.layout = Layout(len(experiment.runs), len(experiment.gauges), experiment.shared)
         self.strengths: dict[tuple, np.ndarray] = {}
         self._coarse = None
+        self._tiled: dict[tuple, Chain] = {}
 
     @property
     def coarse(self) -> "Forward":
@@ -59,6 +65,12 @@ class Forward:
         """Relative step of speeds and modulus for finite differences."""
         size = np.sqrt(sum(float(d @ d) for d in self._whitened))
         return float(np.clip(STEP_AIM / max(size, 1e-9), 1e-5, LARGEST_STEP))
+
+    @cached_property
+    def refine(self) -> float:
+        """By what the stepper's full accuracy is refined: below 1, as far as the noise leaves it unseen."""
+        size = np.sqrt(sum(float(d @ d) for d in self._whitened))
+        return float(np.clip((ERROR * size / ERROR_AIM) ** 0.25, 1.0 / LONGEST_STEP, 1.0))
 
     @cached_property
     def _whitened(self):
@@ -87,6 +99,7 @@ class Forward:
         places: np.ndarray | None = None,
         precise: bool = False,
         steps: np.ndarray | None = None,
+        held: list[np.ndarray] | None = None,
     ) -> list[np.ndarray]:
         """Whitened predictions and their derivatives.
 
@@ -98,24 +111,25 @@ class Forward:
             steps: (L, p) finite-difference steps of the coordinates; None: their default.
             precise: slopes to second order (twice the simulations), so that collinear ones come out
                 collinear.
+            held: columns of these lanes from nearby, whose slopes to what takes a simulation of its own
+                (speeds, moduli, masses) are taken as they are; None: simulated.
 
         Returns:
             For each run (L, c, M): prediction, p derivatives to u, those to nuisances as in `Layout.local`.
         """
         u, nu = np.atleast_2d(u), np.atleast_2d(nu)
-        once = self._assemble(hypothesis, u, nu, places, 1.0, steps)
+        once = self._assemble(hypothesis, u, nu, places, 1.0, steps, held)
         if not precise:
             return once
-        twice = self._assemble(hypothesis, u, nu, places, 2.0, steps)
+        twice = self._assemble(hypothesis, u, nu, places, 2.0, steps, held)
         for one, two in zip(once, twice, strict=True):
             one[:, 1:] = 2.0 * one[:, 1:] - two[:, 1:]
         return once
 
-    def _assemble(self, hypothesis, u, nu, places, stretch, steps):
+    def _assemble(self, hypothesis, u, nu, places, stretch, steps, held):
         """Stack base, parameter, nuisance and speed lanes, simulate them at once, take differences."""
         lanes, p = u.shape
-        simulated = self.layout.simulated
-        sets = p + 2 + len(simulated)
+        sets = p + 1 + (0 if held else 1 + len(self.layout.simulated))
         many_u, many_nu = np.repeat(u, sets, axis=0), np.repeat(nu, sets, axis=0)
         if steps is None:
             steps = np.broadcast_to([c.step for c in hypothesis.coordinates], u.shape)
@@ -124,7 +138,8 @@ class Forward:
             towards = np.where(u[:, k] + steps[:, k] > hypothesis.coordinates[k].high, -1.0, 1.0)
             many_u[1 + k :: sets, k] += steps[:, k] * towards
         h = stretch * self.step
-        self._displace(many_nu, p, sets, h)
+        if not held:
+            self._displace(many_nu, p, sets, h)
         many_places = None if places is None else np.repeat(places, sets, axis=0)
         found = self.sampled(hypothesis, many_u, many_nu, many_places, rate_of=sets)
         divide = many_u.reshape(lanes, sets, p)[:, 1 : 1 + p] - u[:, None]
@@ -134,8 +149,11 @@ class Forward:
             value = value.reshape(lanes, sets, -1)
             base = value[:, :1]
             slopes = (value[:, 1 : 1 + p] - base) / divide[..., None]
-            changes = (value[:, 1 + p :] - base) / h
-            nuisances = self._nuisance_columns(run, base[:, 0], changes, timing)
+            departures = None if held else (value[:, 1 + p :] - base) / h
+            nuisances = self._nuisance_columns(run, base[:, 0], departures, timing)
+            if held:
+                kept = self._kept(run)
+                nuisances[:, kept] = held[run][:, 1 + p + kept]
             self._like_nuisances(hypothesis, run, places, slopes, nuisances)
             columns = np.concatenate([base, slopes, nuisances], axis=1)
             columns[:, 1:, self.counts(run)] = 0.0
@@ -150,25 +168,38 @@ class Forward:
         for place in self.layout.other("speed-common") or range(runs):
             many_nu[sets - 1 :: sets, place] += h / sigma[place] if sigma[place] else 0.0
 
-    def _nuisance_columns(self, run, value, changes, timing):
+    def _nuisance_columns(self, run, value, departures, timing):
         """(L, S + 3 + others, M) changes of the data of a run with its nuisances, as in `Layout.local`.
 
         Args:
             run: index of the run.
             value: (L, M) predictions.
-            changes: (L, simulated + 1, M) slopes to the simulated ones, relative, and to the speeds.
+            departures: (L, simulated + 1, M) slopes to the simulated ones, relative, and to the speeds; None
+                leaves their columns at zero.
             timing: (L, 1 + clock + delays, M) slopes to time zero, clock and delays.
         """
         layout, sigma = self.layout, self.nuisance_sigma
         gains = self._gain_columns(run, value)
-        own = {place: changes[:, k] for k, place in enumerate(layout.simulated)}
-        own |= {layout.speed(run): changes[:, -1], layout.trigger(run): timing[:, 0]}
+        if departures is None:
+            departures = np.zeros((len(value), 1 + len(layout.simulated), 1))
+        own = {place: departures[:, k] for k, place in enumerate(layout.simulated)}
+        own |= {layout.speed(run): departures[:, -1], layout.trigger(run): timing[:, 0]}
         own |= {place: gains[:, s] for s, place in enumerate(layout.gains)}
-        own |= dict.fromkeys(layout.other("speed-common"), changes[:, -1])
+        own |= dict.fromkeys(layout.other("speed-common"), departures[:, -1])
         own |= dict.fromkeys(layout.other("gain-common"), gains.sum(axis=1))
         timed = [*layout.other("clock"), *layout.other("delay")]
         own |= {place: timing[:, 1 + k] for k, place in enumerate(timed)}
-        return np.stack([own[place] * sigma[place] for place in layout.local(run)], axis=1)
+        places = layout.local(run)
+        result = np.empty((len(value), len(places), value.shape[1]))
+        for k, place in enumerate(places):
+            result[:, k] = own[place] * sigma[place]
+        return result
+
+    def _kept(self, run) -> np.ndarray:
+        """Which of the columns to the nuisances of a run, as in `Layout.local`, take simulations."""
+        layout = self.layout
+        own = {*layout.simulated, layout.speed(run), *layout.other("speed-common")}
+        return np.flatnonzero([place in own for place in layout.local(run)])
 
     def nuisance_column(self, acts_like: str, run: int, place):
         """Where the nuisance stands that a ratio acts like, and its standard error.
@@ -295,13 +326,20 @@ class Forward:
         """Setup of all lanes of a batch (lane-major, run-minor) with the nuisances in force."""
         sigma, runs, layout = self.nuisance_sigma, np.array(batch.runs), self.layout
         lanes = len(nu)
-        chain = batch.chain.take(np.tile(np.arange(len(runs)), lanes))
+        chain = self._repeated(batch, lanes)
         speed = chain.speed * np.exp(nu[:, runs] * sigma[runs]).ravel()
         stiffer = np.repeat(np.exp(nu[:, layout.modulus] * sigma[layout.modulus]), len(runs))
         chain = replace(chain, speed=speed).stiffened(chain.first.surface.name, stiffer)
         for place, one in enumerate(layout.others, start=layout.modulus + 1):
             chain = one.change(chain, np.repeat(np.exp(nu[:, place] * sigma[place]), len(runs)))
         return Setup(chain, batch.gauges or self.experiment.gauges, self.experiment.catalogue)
+
+    def _repeated(self, batch, lanes):
+        """The nominal chains of a batch, all runs for each lane; kept, as few numbers of lanes are asked for."""
+        key = (batch.runs, lanes)
+        if key not in self._tiled:
+            self._tiled[key] = batch.chain.take(np.tile(np.arange(len(batch.runs)), lanes))
+        return self._tiled[key]
 
     def simulate(self, batch, setup: Setup) -> Seen:
         """What a batch shows, with what the scalars need besides."""
@@ -313,6 +351,7 @@ class Forward:
             batch.interval,
             besides=virtual(self.experiment.gauges, setup.chain.beads) if asked else (),
             striker=asked,
+            refine=self.refine,
             threads=self.threads,
             forgiving=True,
         )
