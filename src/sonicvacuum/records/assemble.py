@@ -61,8 +61,9 @@ def duration_of(record: Record, runs: list[Run], chain: Chain) -> float:
 
 
 def interval_of(record: Record, runs: list[Run], chain: Chain, coarser: float = 1.0) -> float:
-    """Sampling interval in s: the traces' own divided by a whole number, or `sampling_of` without any; at most
-    `coarser` times as long as that.
+    """Sampling interval in s: the traces' own divided by a whole number, or `sampling_of` without any.
+
+    At most `coarser` times as long as `sampling_of`.
     """
     fine = coarser * sampling_of(chain)
     own = min((r.signals.interval_s for r in runs if r.signals), default=fine)

@@ -2,15 +2,16 @@
 
 Marquardt, J. SIAM 11, 431 (1963). Slopes to the parameters are taken afresh at each step; those to the
 nuisances that cost a simulation each hardly change on the way, and are held until a parameter has moved far.
-At the end all are taken once more, to second order for the parameters. Bounds are kept by clipping; a coordinate at its bound that is pushed
-outward is held there. `scipy.optimize.least_squares` is the reference that the tests hold this against.
+At the end all are taken once more, to second order. Bounds are kept by clipping; a
+coordinate at its bound that is pushed outward is held there. `scipy.optimize.least_squares` is the reference
+that the tests hold this against.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from sonicvacuum.discover.fit.normal import Normal, linearise, linearised
+from sonicvacuum.discover.fit.normal import Normal, linearised
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Hypothesis
 
@@ -123,8 +124,7 @@ def _finished(forward, hypothesis, now):
     if not np.isfinite(now.objective[0]) or now.free == 0:
         return now
     steps = _differences(now)
-    _, columns = linearised(forward, hypothesis, now.u, now.nu, None, steps)
-    precise, columns = linearised(forward, hypothesis, now.u, now.nu, None, steps, True, columns)
+    precise, columns = linearised(forward, hypothesis, now.u, now.nu, None, steps, True)
     return descend(forward, hypothesis, precise, None, LAST, columns, precise=True)[0]
 
 

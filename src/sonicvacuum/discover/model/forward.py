@@ -11,7 +11,7 @@ from functools import cached_property
 
 import numpy as np
 
-from sonicvacuum.discover.model import gauges, scalars
+from sonicvacuum.discover.model import accuracy, differences, gauges, scalars
 from sonicvacuum.discover.model.experiment import Experiment
 from sonicvacuum.discover.model.hypothesis import Hypothesis
 from sonicvacuum.discover.model.nuisances import Layout
@@ -19,13 +19,6 @@ from sonicvacuum.effects import Setup
 from sonicvacuum.forward import Seen, see, virtual
 from sonicvacuum.physics.chain import Chain
 
-# Largest steps of speed and modulus for finite differences, relative; smaller where the data are precise, so
-# that all data together change by about this many standard errors, and collinear columns come out collinear.
-LARGEST_STEP, STEP_AIM = 3e-3, 10.0
-# Error of a simulation at full accuracy as a share of the data's norm, and what is allowed of it, in standard
-# errors over all data together; it grows as the fourth power of the step. Beyond LONGEST_STEP steps the laws
-# that remember are no longer followed.
-ERROR, ERROR_AIM, LONGEST_STEP = 1e-6, 0.05, 2.5
 CHUNK = 512  # chains simulated in one call, to bound the memory
 
 
@@ -61,16 +54,9 @@ class Forward:
         return self._whitened[run]
 
     @cached_property
-    def step(self) -> float:
-        """Relative step of speeds and modulus for finite differences."""
-        size = np.sqrt(sum(float(d @ d) for d in self._whitened))
-        return float(np.clip(STEP_AIM / max(size, 1e-9), 1e-5, LARGEST_STEP))
-
-    @cached_property
-    def refine(self) -> float:
-        """By what the stepper's full accuracy is refined: below 1, as far as the noise leaves it unseen."""
-        size = np.sqrt(sum(float(d @ d) for d in self._whitened))
-        return float(np.clip((ERROR * size / ERROR_AIM) ** 0.25, 1.0 / LONGEST_STEP, 1.0))
+    def _norm(self) -> float:
+        """Of all data, in standard errors."""
+        return float(np.sqrt(sum(float(d @ d) for d in self._whitened)))
 
     @cached_property
     def _whitened(self):
@@ -118,55 +104,57 @@ class Forward:
             For each run (L, c, M): prediction, p derivatives to u, those to nuisances as in `Layout.local`.
         """
         u, nu = np.atleast_2d(u), np.atleast_2d(nu)
-        once = self._assemble(hypothesis, u, nu, places, 1.0, steps, held)
-        if not precise:
-            return once
-        twice = self._assemble(hypothesis, u, nu, places, 2.0, steps, held)
-        for one, two in zip(once, twice, strict=True):
-            one[:, 1:] = 2.0 * one[:, 1:] - two[:, 1:]
-        return once
-
-    def _assemble(self, hypothesis, u, nu, places, stretch, steps, held):
-        """Stack base, parameter, nuisance and speed lanes, simulate them at once, take differences."""
         lanes, p = u.shape
-        sets = p + 1 + (0 if held else 1 + len(self.layout.simulated))
-        many_u, many_nu = np.repeat(u, sets, axis=0), np.repeat(nu, sets, axis=0)
         if steps is None:
             steps = np.broadcast_to([c.step for c in hypothesis.coordinates], u.shape)
-        steps = stretch * steps
-        for k in range(p):
-            towards = np.where(u[:, k] + steps[:, k] > hypothesis.coordinates[k].high, -1.0, 1.0)
-            many_u[1 + k :: sets, k] += steps[:, k] * towards
-        h = stretch * self.step
-        if not held:
-            self._displace(many_nu, p, sets, h)
+        orders = (1.0, 2.0) if precise else (1.0,)
+        h = accuracy.difference(self._norm)
+        where = () if held else self._simulated
+        many_u, many_nu, sets = differences.displaced(hypothesis, u, nu, steps, orders, where, h)
         many_places = None if places is None else np.repeat(places, sets, axis=0)
         found = self.sampled(hypothesis, many_u, many_nu, many_places, rate_of=sets)
-        divide = many_u.reshape(lanes, sets, p)[:, 1 : 1 + p] - u[:, None]
-        divide = np.einsum("lkk->lk", divide) if p else np.zeros((lanes, 0))
+        each = (sets - 1) // len(orders)
+        # What each lane departs by, to divide its change by.
+        size = np.full((lanes, sets), h)
+        for o, order in enumerate(orders):
+            own = 1 + o * each + np.arange(p)
+            size[:, 1 + o * each + p : 1 + (o + 1) * each] *= order
+            size[:, own] = (many_u.reshape(lanes, sets, p)[:, own] - u[:, None])[
+                :, np.arange(p), np.arange(p)
+            ]
         result = []
         for run, (value, timing) in enumerate(found):
             value = value.reshape(lanes, sets, -1)
-            base = value[:, :1]
-            slopes = (value[:, 1 : 1 + p] - base) / divide[..., None]
-            departures = None if held else (value[:, 1 + p :] - base) / h
-            nuisances = self._nuisance_columns(run, base[:, 0], departures, timing)
-            if held:
-                kept = self._kept(run)
-                nuisances[:, kept] = held[run][:, 1 + p + kept]
-            self._like_nuisances(hypothesis, run, places, slopes, nuisances)
-            columns = np.concatenate([base, slopes, nuisances], axis=1)
-            columns[:, 1:, self.counts(run)] = 0.0
-            result.append(columns)
+            changes = (value[:, 1:] - value[:, :1]) / size[:, 1:, None]
+            slopes = 2.0 * changes[:, :each] - changes[:, each:] if precise else changes
+            kept = None if held is None else held[run][:, 1 + p :]
+            result.append(self._columns(hypothesis, run, places, value[:, :1], slopes, timing, kept))
         return result
 
-    def _displace(self, many_nu, p, sets, h):
-        """Move the simulated nuisances and, in the last lane of a set, the speeds by the relative step h."""
-        sigma, runs = self.nuisance_sigma, len(self.experiment.runs)
-        for k, place in enumerate(self.layout.simulated):
-            many_nu[1 + p + k :: sets, place] += h / sigma[place] if sigma[place] else 0.0
-        for place in self.layout.other("speed-common") or range(runs):
-            many_nu[sets - 1 :: sets, place] += h / sigma[place] if sigma[place] else 0.0
+    @property
+    def _simulated(self):
+        """For each simulation that slopes to nuisances take, their places and standard errors."""
+        layout, sigma = self.layout, self.nuisance_sigma
+        speeds = layout.other("speed-common") or range(len(self.experiment.runs))
+        groups = [*([place] for place in layout.simulated), list(speeds)]
+        return [[(place, sigma[place]) for place in group] for group in groups]
+
+    def _columns(self, hypothesis, run, places, base, slopes, timing, held):
+        """(L, c, M) columns of one run from its prediction (L, 1, M), slopes of simulations (L, ·, M) and to
+        times; `held` are columns to its nuisances.
+        """
+        p = len(hypothesis.coordinates)
+        nuisances = self._nuisance_columns(
+            run, base[:, 0], None if held is not None else slopes[:, p:], timing
+        )
+        if held is not None:
+            kept = self._kept(run)
+            nuisances[:, kept] = held[:, kept]
+        slopes = slopes[:, :p].copy()
+        self._like_nuisances(hypothesis, run, places, slopes, nuisances)
+        columns = np.concatenate([base, slopes, nuisances], axis=1)
+        columns[:, 1:, self.counts(run)] = 0.0
+        return columns
 
     def _nuisance_columns(self, run, value, departures, timing):
         """(L, S + 3 + others, M) changes of the data of a run with its nuisances, as in `Layout.local`.
@@ -335,7 +323,7 @@ class Forward:
         return Setup(chain, batch.gauges or self.experiment.gauges, self.experiment.catalogue)
 
     def _repeated(self, batch, lanes):
-        """The nominal chains of a batch, all runs for each lane; kept, as few numbers of lanes are asked for."""
+        """The nominal chains of a batch, all runs for each lane; kept: few numbers of lanes are asked for."""
         key = (batch.runs, lanes)
         if key not in self._tiled:
             self._tiled[key] = batch.chain.take(np.tile(np.arange(len(batch.runs)), lanes))
@@ -351,7 +339,7 @@ class Forward:
             batch.interval,
             besides=virtual(self.experiment.gauges, setup.chain.beads) if asked else (),
             striker=asked,
-            refine=self.refine,
+            refine=accuracy.refinement(self._norm),
             threads=self.threads,
             forgiving=True,
         )

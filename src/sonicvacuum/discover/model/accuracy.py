@@ -1,0 +1,25 @@
+"""How accurate the simulations of a search are: the stepper and finite differences, as far as noise asks for.
+
+Both follow the norm of the whitened data, in standard errors: a weak record is simulated with longer steps
+than a precise one, so that the error stays the same small part of the noise.
+"""
+
+import numpy as np
+
+# Largest steps of speed and modulus for finite differences, relative; smaller where the data are precise, so
+# that all data together change by about this many standard errors, and collinear columns come out collinear.
+LARGEST_STEP, STEP_AIM = 3e-3, 10.0
+# Error of a simulation at full accuracy as a share of the data's norm, and what is allowed of it, in standard
+# errors over all data together; it grows as the fourth power of the step. Beyond LONGEST times the step laws
+# that remember are no longer followed.
+ERROR, ERROR_AIM, LONGEST = 1e-6, 0.05, 2.5
+
+
+def difference(norm: float) -> float:
+    """Relative step of speeds and moduli for finite differences."""
+    return float(np.clip(STEP_AIM / max(norm, 1e-9), 1e-5, LARGEST_STEP))
+
+
+def refinement(norm: float) -> float:
+    """By what the stepper's full accuracy is refined: below 1, as far as the noise leaves it unseen."""
+    return float(np.clip((ERROR * norm / ERROR_AIM) ** 0.25, 1.0 / LONGEST, 1.0))
