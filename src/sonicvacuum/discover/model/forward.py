@@ -156,24 +156,24 @@ class Forward:
         columns[:, 1:, self.counts(run)] = 0.0
         return columns
 
-    def _nuisance_columns(self, run, value, departures, timing):
+    def _nuisance_columns(self, run, value, changes, timing):
         """(L, S + 3 + others, M) changes of the data of a run with its nuisances, as in `Layout.local`.
 
         Args:
             run: index of the run.
             value: (L, M) predictions.
-            departures: (L, simulated + 1, M) slopes to the simulated ones, relative, and to the speeds; None
+            changes: (L, simulated + 1, M) slopes to the simulated ones, relative, and to the speeds; None
                 leaves their columns at zero.
             timing: (L, 1 + clock + delays, M) slopes to time zero, clock and delays.
         """
         layout, sigma = self.layout, self.nuisance_sigma
         gains = self._gain_columns(run, value)
-        if departures is None:
-            departures = np.zeros((len(value), 1 + len(layout.simulated), 1))
-        own = {place: departures[:, k] for k, place in enumerate(layout.simulated)}
-        own |= {layout.speed(run): departures[:, -1], layout.trigger(run): timing[:, 0]}
+        if changes is None:
+            changes = np.zeros((len(value), 1 + len(layout.simulated), 1))
+        own = {place: changes[:, k] for k, place in enumerate(layout.simulated)}
+        own |= {layout.speed(run): changes[:, -1], layout.trigger(run): timing[:, 0]}
         own |= {place: gains[:, s] for s, place in enumerate(layout.gains)}
-        own |= dict.fromkeys(layout.other("speed-common"), departures[:, -1])
+        own |= dict.fromkeys(layout.other("speed-common"), changes[:, -1])
         own |= dict.fromkeys(layout.other("gain-common"), gains.sum(axis=1))
         timed = [*layout.other("clock"), *layout.other("delay")]
         own |= {place: timing[:, 1 + k] for k, place in enumerate(timed)}

@@ -9,6 +9,7 @@ left out (`masks`).
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -161,8 +162,17 @@ def _run(record, run):
 
 def believed(trace: np.ndarray, sigma: float) -> np.ndarray:
     """(T,) whether a sample counts: it is neither a spike nor cut off."""
+    return _believed(np.asarray(trace, dtype=float).tobytes(), float(sigma))
+
+
+@lru_cache(maxsize=512)
+def _believed(samples: bytes, sigma):
+    """The same, remembered: each hypothesis of a slip asks again of traces that it leaves as they are."""
+    trace = np.frombuffer(samples)
     noise_ = max(sigma, flicker(trace))
-    return ~(spikes(trace, noise_) | cut(trace, noise_))
+    found = ~(spikes(trace, noise_) | cut(trace, noise_))
+    found.flags.writeable = False
+    return found
 
 
 def _notes(record, runs):
