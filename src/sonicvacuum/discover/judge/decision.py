@@ -5,14 +5,14 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from sonicvacuum.discover import policy
-from sonicvacuum.discover.fit import heldout, smooth
+from sonicvacuum.discover.fit import evidence, heldout, smooth
 from sonicvacuum.discover.fit.evidence import Candidate, Combination
 from sonicvacuum.discover.fit.normal import linearise
 from sonicvacuum.discover.fit.refit import Fit, polish
 from sonicvacuum.discover.judge import explanations
 from sonicvacuum.discover.judge.left import Left, left, sure
 from sonicvacuum.discover.model.forward import Forward
-from sonicvacuum.discover.search import directions, pairs, screen, several, unknown
+from sonicvacuum.discover.search import directions, pairs, screen, several, singles, unknown
 from sonicvacuum.effects import Setup
 
 # Pairs that are asked what they leave.
@@ -145,10 +145,6 @@ class Case:
         final = several.moved(self.forward, grown.best.fit) if grown.size.size else grown.best.fit
         gain = self.null.objective - final.objective
         behind = _behind(gain, most)
-        if behind > 0.0 and grown.size.size:
-            # Slopes far from the data promise too much: held against each other under what stays unexplained.
-            shape, most = unknown.simplest(grown.forward, grown.null)
-            behind = _behind(grown.null.objective - grown.best.fit.objective, most)
         after = left(self.forward, final, self.known, behind=behind) if effects else seen
         alarms["set"] = after.p
         if len(effects) > 1:
@@ -169,7 +165,7 @@ class Case:
         if counted.failed and fit_.hypothesis.components:
             kept = several.irreplaceable(counted, fit_, needed)
             for k in reversed(range(len(fit_.hypothesis.components))):
-                if k not in kept:
+                if k not in kept and not self._ahead(fit_, k):
                     name = fit_.hypothesis.ids[k]
                     reasons.append(
                         f"{name} may be no more than the nearest to what is left in {counted.group}"
@@ -187,6 +183,29 @@ class Case:
         return Decision(
             [*named, UNKNOWN], final, alarms, reasons, after.p, tried, grown.size.size, view, weights
         )
+
+    def _ahead(self, whole: Fit, k: int) -> bool:
+        """Whether effect k gains clearly more than any one shape outside the catalogue would in its place,
+        noise as it is, and is likelier than more of a discrepancy instead.
+
+        Only far from the data, where slopes of sixty shapes together promise to replace anything.
+        """
+        if self.known is None:
+            return False
+        with_it = several.moved(self.forward, whole)
+        if self.null.objective - with_it.objective < singles.NONLINEAR:
+            return False
+        hypothesis, u = several.without(with_it.hypothesis, with_it.u, k, self.setup)
+        here = linearise(self.forward, hypothesis, u[None], with_it.nu[None])
+        less = polish(self.forward, Fit(hypothesis, here)) if hypothesis.components else self.null
+        gain = less.objective - with_it.objective
+        instead = smooth.infer(self.forward, less, self.known).log_odds
+        beside = smooth.infer(self.forward, with_it, self.known).log_odds
+        price = evidence.occam(with_it, gain) - evidence.occam(less, gain)
+        earned = 0.5 * gain + price + beside - instead
+        if earned < policy.LEAST_LOG10_BAYES * np.log(10.0):
+            return False
+        return gain > (1.0 + policy.SHARE) * unknown.simplest(self.forward, less)[1] + policy.MARGIN
 
     def _rivals(self, grown: several.Grown) -> list[Combination]:
         """Single effects that were near the best, with the discrepancy counted as noise."""
