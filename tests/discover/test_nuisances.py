@@ -8,7 +8,7 @@ from made_records import block, made
 
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Hypothesis
-from sonicvacuum.discover.model.nuisances import Layout, Shared
+from sonicvacuum.discover.model.nuisances import Layout, Shared, exact
 from sonicvacuum.discover.model.problem import experiment
 from sonicvacuum.discover.model.slow import columns
 from sonicvacuum.discover.rounds import nominal
@@ -182,3 +182,12 @@ def test_priors_of_the_record_reach_the_search(quiet):
     assert "kuwabara-kono" in asked
     with pytest.raises(InputError, match=r"priors\.gremlins: no such effect"):
         experiment(with_keys(quiet, priors={"gremlins": 2.0}))
+
+
+def test_what_counts_as_exact_is_said(empty):
+    bodies = "the beads' mass, the beads' diameter, the striker's mass"
+    assert exact(empty, experiment(empty).shared) == f"{bodies}: taken as exact, no tolerance being stated"
+    some = with_keys(empty, tolerances={"bead_mass_rel": 0.002, "bead_diameter_rel": 0.0005})
+    words = exact(some, experiment(some).shared)
+    assert words == "the striker's mass: taken as exact, no tolerance being stated"
+    assert exact(some, experiment(with_keys(empty, tolerances=TOLERANCES)).shared) == ""

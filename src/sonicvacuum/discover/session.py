@@ -18,6 +18,7 @@ from sonicvacuum.discover.judge import degenerate, explanations, locate
 from sonicvacuum.discover.judge.law import surface
 from sonicvacuum.discover.model import window
 from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.model.nuisances import exact
 from sonicvacuum.discover.rounds import Investigation
 from sonicvacuum.discover.search import directions, screen, singles
 from sonicvacuum.discover.search.free_law import FreeLaw, free_law
@@ -114,6 +115,7 @@ def discover(*records: Record, threads: int | None = None, catalogue: Catalogue 
         next_experiment=proposal,
         reasons=[
             *found.reasons,
+            *_exact(found),
             *(law.reasons(told) if free else ()),
             *verdict.corrections(outcome.findings),
         ],
@@ -132,6 +134,13 @@ def discover(*records: Record, threads: int | None = None, catalogue: Catalogue 
     )
     said = tuple(line for lines in notes for line in lines)
     return Result(outcome.record, records, said, found, places, after, limits, result, free)
+
+
+def _exact(found: Investigation) -> list[str]:
+    """What was taken as exact, where something is named: a tolerance might explain it instead."""
+    e = found.forward.experiment
+    said = exact(e.record, e.shared) if found.named and e.record is not None else ""
+    return [said] if said else []
 
 
 def _doubts(found: Investigation, record: Record) -> list[str]:

@@ -167,6 +167,22 @@ def shared(record: Record, chain: Chain) -> tuple[Shared, ...]:
 
 
 _BODIES = ("bead-mass", "bead-diameter", "striker-mass")
+_SAID = {
+    "bead-mass": "the beads' mass",
+    "bead-diameter": "the beads' diameter",
+    "striker-mass": "the striker's mass",
+}
+
+
+def exact(record: Record, given: tuple[Shared, ...]) -> str:
+    """What of the bodies counts as exactly known, in words; "" where nothing does.
+
+    `given` are the data set's `shared` nuisances.
+    """
+    bodies = _BODIES if record.beads else ("striker-mass",)
+    open_ = {one.kind for one in given}
+    words = [_SAID[kind] for kind in bodies if kind not in open_]
+    return f"{', '.join(words)}: taken as exact, no tolerance being stated" if words else ""
 
 
 def _moduli(record, chain) -> dict[str, float]:

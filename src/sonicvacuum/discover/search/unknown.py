@@ -79,14 +79,14 @@ def simplest(forward: Forward, null: Fit) -> tuple[str, float]:
     seen = _screened(forward, null, [_profiles()], shapes)
     at = [k for k, d in enumerate(seen.directions) if d.effect == "gauge"]
     best = max(at, key=lambda k: seen.z[k] ** 2)
-    gauge = seen.directions[best]
+    shape = seen.directions[best]
     profile = max(_tried(forward, null, seen, share) for share in (0.4, 0.7, 1.0))
     if profile[0] > seen.z[best] ** 2:
         return f"a {profile[1]} profile along the chain", profile[0]
     gain = _distorted(forward, null, seen, best)
     if profile[0] > gain:
         return f"a {profile[1]} profile along the chain", profile[0]
-    return f"{gauge.strength} of gauge {forward.experiment.gauges[gauge.place].id}", gain
+    return f"{shape.strength} of gauge {forward.experiment.gauges[shape.place or 0].id}", gain
 
 
 def _distorted(forward, null, seen: screen.Screen, k) -> float:
