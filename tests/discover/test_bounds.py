@@ -37,6 +37,14 @@ def test_a_fit_at_a_bound_is_followed_beyond(hidden, setup):
     assert found.objective < one.objective
 
 
+def test_a_bound_that_is_decades_off_is_left_behind(hidden, setup):
+    ((full,),) = variants(effect("kuwabara-kono"), setup)
+    forward, one = restricted(hidden, setup, low=full.inverse(1e-4), high=full.inverse(1e-3))
+    found, held = bounds.beyond(forward, one)
+    assert not held
+    assert found.u[0] == pytest.approx(full.inverse(0.3), abs=4.0 * found.sigma[0])  # as hidden
+
+
 def test_the_bound_towards_off_is_none(empty, setup):
     """Without damping the fit leads to off: nothing is stuck."""
     forward, one = restricted(empty, setup)

@@ -14,8 +14,10 @@ from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Hypothesis
 from sonicvacuum.discover.model.parameters import Coordinate
 
-# A bound is moved by this factor (logarithmic coordinates), or by the whole range (linear ones).
-FACTOR = 10.0
+# A bound is moved by this factor (logarithmic coordinates), or by the whole range (linear ones), so many
+# times at most: from beads of some millimetres to balls of half a kilogramme, or to grains, damping constants
+# and forces change by four decades.
+FACTOR, TURNS = 10.0, 4
 # In χ², less is no reason to leave the range.
 WORTH = 0.5
 _ROOM = 1e-6
@@ -36,19 +38,28 @@ def stuck(fit: Fit) -> np.ndarray:
 
 
 def beyond(forward: Forward, fit: Fit) -> tuple[Fit, bool]:
-    """The fit with the coordinates that are stuck let go, and whether one is stuck even so.
+    """The fit with the coordinates that are stuck let go, again and again while that gains, and whether one
+    is stuck even so.
 
-    The same fit where that gains nothing: there the bound holds nothing back.
+    The same fit where letting go gains nothing: there the bound holds nothing back.
     """
+    found, held = fit, False
+    for _ in range(TURNS):
+        if not stuck(found).any():
+            return found, False
+        further = _further(forward, found)
+        if not further.objective < found.objective - WORTH:
+            return found, False
+        found, held = further, bool(stuck(further).any())
+    return found, held
+
+
+def _further(forward: Forward, fit: Fit) -> Fit:
+    """The fit with its stuck coordinates let go once."""
     at = stuck(fit)
-    if not at.any():
-        return fit, False
     wider = iter([_wider(c) if s else c for c, s in zip(fit.hypothesis.coordinates, at, strict=True)])
     parts = tuple(replace(c, free=tuple(next(wider) for _ in c.free)) for c in fit.hypothesis.components)
-    found = polish(forward, Fit(Hypothesis(parts, fit.hypothesis.common), fit.normal, others=fit.others))
-    if not found.objective < fit.objective - WORTH:
-        return fit, False
-    return found, bool(stuck(found).any())
+    return polish(forward, Fit(Hypothesis(parts, fit.hypothesis.common), fit.normal, others=fit.others))
 
 
 def _off_below(c: Coordinate) -> bool:
