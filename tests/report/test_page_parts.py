@@ -183,7 +183,8 @@ def test_a_law_without_a_name_is_told_and_drawn(folder):
     force = [[0.5 * d**1.5 * (1.0 + v) for v in grid[1]] for d in grid[0]]
     found = Law(
         depth_um=grid[0], speed_m_s=grid[1], force_N=force, band_N=force, visited=[[True] * 3] * 3,
-        nearest=[Near(effect="tsuji", distance=0.25)], formula="2 N s/m delta^{1/4} v", log10_bayes=9.0, closed=0.8,
+        nearest=[Near(effect="tsuji", distance=0.25)],
+        formula="2 N s/m delta^{1/4} v", log10_bayes=9.0, closed=0.8,
     )  # fmt: skip
     write_json(verdict(named=["unknown"], parameters={}, law=found), folder / "verdict.json")
     table = [",".join(("depth_um", "speed_m_s", "hertz_N", "force_N", "band_N", "visited"))]

@@ -188,7 +188,8 @@ def law(verdict: Verdict, catalogue: Catalogue = CATALOGUE) -> str:
     near = [f"{plain(n.effect, catalogue)} ({n.distance:.2f})" for n in found.nearest[:3]]
     text = f"What is left is described by a contact law without a name: {found.formula}."
     if near:
-        text += f" The nearest named laws, with their distance from it (0: the same, 1: no nearer than Hertz): {joined(near)}."
+        scale = "with their distance from it (0: the same, 1: no nearer than Hertz)"
+        text += f" The nearest named laws, {scale}: {joined(near)}."
     if found.closed is not None:
         text += f" On runs left out of its fit it closes {100.0 * found.closed:.0f} % of what was left."
     return text

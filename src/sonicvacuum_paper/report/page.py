@@ -31,7 +31,7 @@ class Sources:
         own: simulated cards of cases that a user added.
         animations: SVG files that move, named by `shown.ANIMATIONS`.
         linked: names of the pages beside this one, of `runs.html` and `blind.html`.
-        contours, experiments, relaxation: tables of `sonicvacuum paper rivals`, None each where there is none.
+        contours, experiments, relaxation: tables of `sonicvacuum paper rivals`, None where there are none.
         map_picture: the picture of the first of them (SVG).
     """
 
@@ -134,7 +134,7 @@ def _claim_row(row: dict) -> dict:
 
 
 def _figure(svg: Path, told: str | None = None) -> dict:
-    """One figure, its SVG inlined, with the scales of its CSV; `told` is its caption, that of its name if None."""
+    """One figure, its SVG inlined, with the scales of its CSV; `told` is its caption, if not its own."""
     name, table = svg.stem, svg.with_suffix(".csv")
     return {
         "name": name,
