@@ -12,7 +12,7 @@ import pytest
 import sonicvacuum as sv
 from sonicvacuum.card import CaseBlock, resolve
 from sonicvacuum.files import convert
-from sonicvacuum.simulation import run
+from sonicvacuum.simulation import simulate
 from sonicvacuum_paper.metrics import card_rows
 from sonicvacuum_paper.report import animation, runs, space_time, tables
 
@@ -33,7 +33,7 @@ BLOCK = {
 @pytest.fixture(scope="module")
 def study():
     """Two runs of a small chain, with a gauge of each sort of reading."""
-    return run(resolve("mine", "nominal", convert(BLOCK, CaseBlock, "case")))
+    return simulate(resolve("mine", "nominal", convert(BLOCK, CaseBlock, "case")))
 
 
 @pytest.fixture

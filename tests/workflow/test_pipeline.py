@@ -243,7 +243,7 @@ def test_another_configuration_may_be_named_and_needs_no_ledger(project, snakema
     (project / "own.yaml").write_text(head + cases[cases.index("cases:") :])
     tables = ("results/ledger.csv", "results/assumptions.csv", "results/runs.html")
     done = snakemake(project, *tables, "--configfile", "own.yaml")
-    assert done.returncode == 0, done.stderr
+    assert done.returncode == 0, done.said
     assert "coated.soft" in (project / "results/runs.html").read_text()
     verdicts = {line.split(",")[-2] for line in (project / "results/ledger.csv").read_text().splitlines()[1:]}
     assert "disagrees" not in verdicts

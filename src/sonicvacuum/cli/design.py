@@ -4,12 +4,15 @@ import json
 
 import click
 
+from sonicvacuum.cli.helped import examples
 from sonicvacuum.cli.predict import chain_options
 
 
 @click.command(
-    epilog="Example: sonicvacuum design --effects sensor-droop,kuwabara-kono --beads 12 --diameter 5mm "
-    "--material bearing-steel --speed 0.5"
+    epilog=examples(
+        "sonicvacuum design --effects sensor-droop,kuwabara-kono --beads 12 --diameter 5mm "
+        "--material bearing-steel --speed 0.5"
+    )
 )
 @click.option("--effects", required=True, metavar="A,B", help="To tell apart; ids: sonicvacuum effects.")
 @chain_options

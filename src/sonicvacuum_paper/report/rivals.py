@@ -22,6 +22,8 @@ def context(contours, experiments, relaxation) -> dict:
     if not (contours and experiments and relaxation):
         return {"allowed": None}
     series = pd.read_csv(experiments)[formats.EXPERIMENTS]
+    if series.empty:  # a configuration without a ledger
+        return {"allowed": None}
     apart = series.groupby("series", sort=False)[["speeds_sigma", "all_sigma"]].first()
     return {
         "allowed": allowed(pd.read_csv(contours)[formats.MAP]),

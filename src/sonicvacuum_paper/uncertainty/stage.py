@@ -8,13 +8,20 @@ from sonicvacuum.files import InputError, replacing
 from sonicvacuum_paper.claims import Claim, read_table
 from sonicvacuum_paper.columns import column_cards
 from sonicvacuum_paper.uncertainty import agreement, decide, identify, inputs, sample, table, viscoelastic
+from sonicvacuum_paper.uncertainty.formats import EXPERIMENTS, MAP, RELAXATION
 
 
 @one_thread
 def write_uncertainty(claims_path, config: Config, out, count: int = inputs.DRAWS) -> None:
-    """Draw what the paper leaves open, simulate, write how probable each statement is under each model."""
-    sampled = sample.sample(config, inputs.draws(count))
-    table.write(agreement.build(config, sampled, read_table(claims_path, Claim)), out)
+    """Draw what the paper leaves open, simulate, write how probable each statement is under each model.
+
+    A configuration without a ledger holds no statement against its cases: the table is then empty.
+    """
+    rows = []
+    if config.ledger:
+        sampled = sample.sample(config, inputs.draws(count))
+        rows = agreement.build(config, sampled, read_table(claims_path, Claim))
+    table.write(rows, out)
 
 
 @one_thread
@@ -22,9 +29,14 @@ def write_rivals(config: Config, out: Mapping[str, str]) -> None:
     """Write the tables in which the two lossy models, and a relaxing solid, are held against each other.
 
     Args:
-        config: must have the case fig3a under the models compared.
+        config: must have the case fig3a under the models compared; without a ledger the tables are empty.
         out: `map`, `experiments` and `relaxation` → file.
     """
+    if not config.ledger:
+        for name, header in (("map", MAP), ("experiments", EXPERIMENTS), ("relaxation", RELAXATION)):
+            with replacing(out[name]) as stream:
+                stream.write(",".join(header) + "\n")
+        return
     cards = column_cards(config, "fig3a")
     missing = [model for model in ("layer_loss", "matched_loss", "matched") if model not in cards]
     if missing:
