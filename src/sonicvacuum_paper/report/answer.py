@@ -23,19 +23,22 @@ def sentences(ledger: pd.DataFrame, metrics: pd.DataFrame) -> list[str]:
          for claim in wanted}  # fmt: skip
     fast, slow = (float(m) for m in like)
     speed, low, lasting, wide, force, ratio = (n[claim] for claim in wanted)
+    speed_, low_, lasting_, wide_, force_, ratio_ = (rows[claim]["measured"] for claim in wanted)  # printed
     return [
         f"{_verdict(rows)} the 50 µm layer that is printed, with the handbook's 2.76 GPa and nothing fitted, "
         f"runs like a Hertz contact of {fast:.1f} GPa at 0.44 m/s and of {slow:.1f} GPa at 0.25 N.",
-        f"It gives {speed['layer']} and {low['layer']} m/s where 197 and 130 are printed; Hertz with the "
-        f"fitted 15 GPa gives {speed['matched']} and {low['matched']}.",
+        f"It gives {speed['layer']} and {low['layer']} m/s where {speed_} and {low_} are printed; Hertz with "
+        f"the fitted 15 GPa gives {speed['matched']} and {low['matched']}.",
         f"Against the bare layer stand its speed at 0.44 m/s ({_by(rows['fig3a-speed'], 'layer')}), a pulse "
-        f"of {lasting['layer']} µs and {wide['layer']} diameters (130 and 5.3 printed) and {force['layer']} "
-        "N on the gauge (about 3).",
-        f"One loss, calibrated on the 130 µs alone, gives {speed['layer_loss']} and {low['layer_loss']} m/s, "
-        f"ratio {ratio['layer_loss']} (1.515 printed), and {force['layer_loss']} N; the same on 15 GPa gives "
-        f"{speed['matched_loss']} and {low['matched_loss']} m/s, ratio {ratio['matched_loss']}.",
-        "Not settled: the loss's law, the base level of the 130 µs, the film's thickness and its modulus at "
-        "impact, of which no tolerance is printed; films of other thickness on the same balls would decide.",
+        f"of {lasting['layer']} µs and {wide['layer']} diameters ({lasting_} and {wide_} printed) and "
+        f"{force['layer']} N on the gauge (about {force_}).",
+        f"One loss, calibrated on the {lasting_} µs alone, gives {speed['layer_loss']} and "
+        f"{low['layer_loss']} m/s, ratio {ratio['layer_loss']} ({ratio_} printed), and {force['layer_loss']} "
+        f"N; the same on 15 GPa gives {speed['matched_loss']} and {low['matched_loss']} m/s, ratio "
+        f"{ratio['matched_loss']}.",
+        f"Not settled: the loss's law, the base level of the {lasting_} µs, the film's thickness and its "
+        "modulus at impact, of which no tolerance is printed; films of other thickness on the same balls "
+        "would decide.",
     ]
 
 
