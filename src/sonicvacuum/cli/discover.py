@@ -33,8 +33,11 @@ from sonicvacuum.cli.own_effects import catalogue, own_effects
     help="Threads; all processors by default. Results do not depend on it.",
 )
 @click.option("--quiet", is_flag=True, help="Say nothing but the verdicts.")
+@click.option(
+    "--no-limits", is_flag=True, help="Search even where it seems to need more than a computer gives."
+)
 @own_effects
-def discover(records, out, together, figures, threads, own, quiet):
+def discover(records, out, together, figures, threads, own, quiet, no_limits):
     """Find what is missing from the nominal model of measured data in the folders RECORDS.
 
     One record is written to OUT; of several each has its own folder OUT/<folder name>. All of them are read
@@ -45,6 +48,7 @@ def discover(records, out, together, figures, threads, own, quiet):
     from sonicvacuum.outputs import renewed
     from sonicvacuum.physics.run import available_threads
     from sonicvacuum.records import read
+    from sonicvacuum.records.extent import check_extent
     from sonicvacuum.records.guard import check_out
 
     if figures:
@@ -54,8 +58,10 @@ def discover(records, out, together, figures, threads, own, quiet):
     groups = {Path(out): records} if together else {f: (p,) for p, f in _folders(records, Path(out)).items()}
     for folder in groups:
         check_out(folder, records)
-    for path in records:
-        read(path)  # all of them are sound before hours are spent on the first
+    for path in records:  # all of them are sound before hours are spent on the first
+        record = read(path)
+        if not no_limits:
+            check_extent(record)
     for folder, paths in groups.items():
         with stages_shown(", ".join(paths), quiet):
             result = session.discover(
