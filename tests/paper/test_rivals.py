@@ -5,8 +5,9 @@ import pandas as pd
 import pytest
 
 from sonicvacuum import config
+from sonicvacuum.report import inline
 from sonicvacuum_paper.columns import column_cards
-from sonicvacuum_paper.report import rivals
+from sonicvacuum_paper.report import rivals, uncertain
 from sonicvacuum_paper.uncertainty import decide, formats, identify, picture, viscoelastic
 
 
@@ -66,19 +67,39 @@ def test_hertz_speeds_hardly_know_the_thickness_and_the_layer_s_do(experiments):
     assert spread["layer_loss"] > 1.7 and spread["matched_loss"] < 1.1
 
 
-def test_the_map_is_drawn_and_told_from_its_table_alone():
+@pytest.fixture(scope="module")
+def contours():
+    """A map on which all that is allowed lies near the printed film."""
     axes = [np.geomspace(a[0], a[-1], 9) for a in identify.AXES.values()]
     names = list(identify.AXES)
     rows = []
     for one, other in identify.PAIRS:
         x, y = np.meshgrid(*(axes[names.index(n)] for n in (one, other)), indexing="ij")
-        # All that is allowed lies near the printed film.
         content = np.clip(np.hypot(np.log(x / 2.76), 4.0 * np.log(y / 42.0)) / 2.0, 0.0, 1.0)
         rows += [(one, other, *cells) for cells in zip(x.flat, y.flat, content.flat, strict=True)]
-    table = pd.DataFrame(rows, columns=formats.MAP)
-    told = rivals.allowed(table)
+    return pd.DataFrame(rows, columns=formats.MAP)
+
+
+def test_the_map_is_drawn_and_told_from_its_table_alone(contours):
+    told = rivals.allowed(contours)
     assert told["handbook"] and not told["matched"] and told["matched_range"] == "none"
-    assert len(picture.draw(table).axes) == 3
+    assert len(picture.draw(contours).axes) == 3
+
+
+def test_the_section_of_the_report_says_what_the_tables_say(contours, experiments, solids, tmp_path):
+    paths = [tmp_path / name for name in ("map.csv", "experiments.csv", "relaxation.csv")]
+    for path, table in zip(paths, (contours, experiments, solids), strict=True):
+        table.to_csv(path, index=False)
+    ledger = pd.DataFrame(
+        [("fig3a-speed", "The pulse runs at 197 m/s.", "layer 0.02; matched 0.3", "matched")],
+        columns=["claim", "statement", "probability", "fitted"],
+    )
+    template = inline.environment("sonicvacuum_paper.report").get_template("uncertainty.html.j2")
+    page = template.render(**uncertain.context(ledger), **rivals.context(*paths), map_picture=None)
+    assert "0.3 (fitted)" in page and "±1 mm each" in page
+    assert "by them the thickness of the coating decides" in page
+    assert "None of the solids tried meets both speeds and the duration" in page
+    assert "Nothing has been drawn" in template.render(probable=(), allowed=None)
 
 
 def test_what_the_comparison_needs_is_named_where_it_is_missing(cases, tmp_path):
