@@ -8,13 +8,17 @@ from xml.etree import ElementTree
 import numpy as np
 import pandas as pd
 import pytest
+import yaml
 
 import sonicvacuum as sv
+from sonicvacuum import config
 from sonicvacuum.card import CaseBlock, resolve
 from sonicvacuum.files import convert
 from sonicvacuum.simulation import simulate
+from sonicvacuum_paper.figures import drawable, names
 from sonicvacuum_paper.metrics import card_rows
 from sonicvacuum_paper.report import animation, runs, space_time, tables
+from sonicvacuum_paper.shown import own
 
 BALL = {"diameter_mm": 5.0, "mass_g": 0.51, "material": "bearing-steel"}
 BLOCK = {
@@ -117,3 +121,13 @@ def test_an_equal_ball_stops_and_a_heavy_one_follows():
     assert place[-1, 0] > 0.9 * place[:, 1:].max()
     with pytest.raises(sv.InputError, match="use one of solitary, train"):
         animation.animation("soliton")
+
+
+def test_a_configuration_of_own_cases_needs_no_ledger(tmp_path):
+    path = tmp_path / "own.yaml"
+    path.write_text(yaml.safe_dump({"cases": {"mine": BLOCK}}))
+    found = config.read(path)
+    assert found.ledger == {}
+    assert [own(name) for name in config.card_names(found)] == [True]
+    assert not own("fig3a.layer")
+    assert not any(drawable(name, config.card_names(found)) for name in names())
