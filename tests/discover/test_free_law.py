@@ -16,8 +16,8 @@ from sonicvacuum.discover.rounds import nominal
 from sonicvacuum.discover.search.free_law import free_law
 from sonicvacuum.effects import CATALOGUE, Setup
 from sonicvacuum.figures import force_law
-from sonicvacuum.figures.discovery import rows
 from sonicvacuum.figures.style import context
+from sonicvacuum.tables import read_csv
 
 DAMPING = 2e5  # kg/(s m): the law outside the catalogue is F = K δ^1.5 + b δ v
 
@@ -111,7 +111,7 @@ def test_what_is_told_of_it(found):
 def test_it_is_drawn_where_contacts_have_been(found, tmp_path):
     verdict.write_table(tmp_path / "law.csv", *telling.rows(surface(found)))
     with context():
-        left, right = force_law.law(rows(tmp_path / "law.csv")).axes
+        left, right = force_law.law(read_csv(tmp_path / "law.csv")).axes
     seen = surface(found)
     for line in left.get_lines()[:3]:
         shown = np.isfinite(line.get_ydata())

@@ -120,7 +120,7 @@ def test_fig4_and_fig6_draw_the_numbers_of_the_csv(drawn):
         part = table[(table.panel == panel) & (table.series == "simulated")]
         for modulus, trace in part.groupby("model"):
             assert np.array_equal(
-                lines(axes)[f"simulated-wall-{modulus}"].get_xydata(), trace[["time_us", "force_N"]]
+                lines(axes)[f"simulated-wall-{modulus}-{panel}"].get_xydata(), trace[["time_us", "force_N"]]
             )
 
 
