@@ -103,7 +103,7 @@ study: .venv/studied  ## the full blind study with its baselines and further run
 	$(START) --cores $(CORES) blind_full blind_resolved
 
 docs: .venv/documented  ## build the documentation into results/docs
-	$(BIN)/mkdocs build --quiet
+	$(BIN)/mkdocs build --quiet --config-file workflow/mkdocs.yml
 
 lock:  ## resolve the requirements anew; versions already locked stay unless UPGRADE=--upgrade
 	@tools=$$(mktemp -d) && trap 'rm -rf "$$tools"' EXIT && $(PYTHON) -m venv "$$tools" && \

@@ -29,7 +29,7 @@ _DAMAGED = (
     AttributeError,
     EOFError,
     LookupError,
-    NotImplementedError,
+    NotImplementedError,  # zipfile's word for a compression that it does not know
     RecursionError,
     TypeError,
     ValueError,

@@ -7,14 +7,12 @@ are null.
 import math
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Literal
 
 import msgspec
 import numpy as np
-from msgspec import UNSET, Struct, UnsetType
+from msgspec import UNSET, Struct, UnsetType, field
 
 from sonicvacuum.discover.faults.found import Finding
-from sonicvacuum.discover.faults.table import FAULTS
 from sonicvacuum.discover.fit.goodness import Goodness
 from sonicvacuum.discover.fit.heldout import HeldOut
 from sonicvacuum.discover.fit.refit import Fit
@@ -23,6 +21,20 @@ from sonicvacuum.discover.judge.explanations import key
 from sonicvacuum.discover.judge.locate import Place
 from sonicvacuum.discover.law import Law
 from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.parts import (
+    CellFit,
+    Fault,
+    Gap,
+    Gaps,
+    GoodnessOfFit,
+    Known,
+    Next,
+    Part,
+    Source,
+    Sources,
+    Value,
+    Where,
+)
 from sonicvacuum.discover.rounds import Investigation
 from sonicvacuum.discover.search.free_law import FreeLaw
 from sonicvacuum.effects import Catalogue
@@ -31,121 +43,9 @@ from sonicvacuum.tables import write_csv
 
 # How the line begins that says which slips were put right.
 PUT_RIGHT = "all else is of the record put right"
-FaultId = Literal[tuple(FAULTS)]
 
 
-class _Part(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    pass
-
-
-class Value(_Part, kw_only=True):
-    """A parameter with its standard error; `sigma` 0 for a place."""
-
-    value: float
-    sigma: float
-
-
-class Gap(_Part, kw_only=True):
-    """Mean squared residual over its noise variance, nuisances fitted; closed = 1 − (after − floor)/(before
-    − floor).
-    """
-
-    before: float
-    after: float
-    floor: float
-    closed: float | None
-
-
-class Gaps(_Part, kw_only=True):
-    """Over all data as fitted, and over runs left out; null where there is a single run."""
-
-    fitted: Gap
-    held_out: Gap | None
-
-
-class Where(_Part, kw_only=True):
-    """One significant disagreement of the nominal model."""
-
-    run: str
-    sensor: str
-    feature: str
-    z: float
-    p: float
-
-
-class CellFit(_Part, kw_only=True):
-    """Residual of one run at one gauge: χ² per datum with its p, p of its whiteness."""
-
-    run: str
-    sensor: str
-    chi2: float
-    p: float
-    whiteness: float
-
-
-class GoodnessOfFit(_Part, kw_only=True):
-    """The gap of the nominal and of the extended model, by run and gauge.
-
-    Attributes:
-        nominal, extended: cells.
-        p: test → p of what the extended model leaves, over all runs and gauges.
-        smooth_rel: standard deviation of the smooth misfit that is left, as a share of the peak, stated or
-            inferred; upper limits count it as noise. 0 where there is none.
-        wider: factor on the errors behind the upper limits, for what else is left.
-    """
-
-    nominal: list[CellFit]
-    extended: list[CellFit]
-    p: dict[str, float]
-    smooth_rel: float
-    wider: float
-
-
-class Known(_Part, kw_only=True):
-    """What the data say of something that the record leaves open, and no effect.
-
-    Attributes:
-        value: over the recorded one; a delay in µs, a clock's relative error.
-        sigma: its standard error, relative; of delays in µs.
-        prior: the error that the record states; null where it is unknown.
-    """
-
-    value: float
-    sigma: float
-    prior: float | None
-
-
-class Next(_Part, kw_only=True):
-    """The change of the experiment that best separates rivals; `delta_chi2` as predicted."""
-
-    change: dict[str, float | int | str]
-    separates: list[str]
-    delta_chi2: float
-
-
-class Source(_Part, kw_only=True):
-    """Where a law that does not come with the project is from: name of its file or package, and the SHA-256
-    digest of its text.
-    """
-
-    name: str
-    sha256: str
-
-
-Sources = dict[str, Source] | UnsetType
-
-
-class Fault(_Part, kw_only=True):
-    """One slip of the laboratory; `sensor` one id or several, null where it concerns none."""
-
-    fault: FaultId
-    run: str | None
-    sensor: str | list[str] | None
-    probability: float
-    value: float | None
-
-
-class Verdict(_Part, kw_only=True):
+class Verdict(Part, kw_only=True):
     """The verdict on one record, format 1.
 
     Attributes:
@@ -195,7 +95,7 @@ class Verdict(_Part, kw_only=True):
     warnings: list[str] | UnsetType = UNSET
     fit: GoodnessOfFit | None = None
     nuisances: dict[str, Known] | UnsetType = UNSET
-    faults: list[Fault] = []
+    faults: list[Fault] = field(default_factory=list)
     law: Law | UnsetType = UNSET
 
     @property
@@ -209,7 +109,7 @@ class Verdict(_Part, kw_only=True):
         return not (self.named or self.upper_limits) and bool(self.not_testable)
 
 
-class Model(_Part, kw_only=True):
+class Model(Part, kw_only=True):
     """The extended model: effects with their parameters (places included) and the record's nuisances as
     fitted.
 
