@@ -21,6 +21,12 @@ MISFIT = 1e-3
 MARGIN, SHARE = 6.0, 0.05
 # Beside what is left, effects are named where they are so many times likelier than all else together.
 CLEAR = 1.0
+# Where the best explanation leaves more χ² per datum than this, twice the noise, that no longer counts, ...
+GROSS = 4.0
+# ... and an effect is named that is so surely part of what explains the data.
+STANDS_OUT = 0.95
+# Effects that are less surely there are not told of.
+TOLD = 0.05
 # No more effects than this are named together: a set of more is not looked through in any sense.
 MOST_EFFECTS = 6
 

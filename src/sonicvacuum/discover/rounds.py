@@ -1,13 +1,13 @@
 """The order of the steps: nominal model, screen, singles, what is left, pairs, more effects, decision."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from sonicvacuum import stages
 from sonicvacuum.discover import policy
-from sonicvacuum.discover.fit import bounds, evidence, places, smooth
+from sonicvacuum.discover.fit import bounds, evidence, places, smooth, wide
 from sonicvacuum.discover.fit.evidence import Candidate, Combination
 from sonicvacuum.discover.fit.refit import Fit, fit, polish
 from sonicvacuum.discover.judge import explanations
@@ -19,6 +19,7 @@ from sonicvacuum.discover.search import directions, screen, singles
 
 # Candidates whose Δχ² is this far behind the best are not followed to their minimum.
 NEAR = 15.0
+FAR = 0.5
 # Those with a place may be the best at a better one, if they are not further behind than this.
 ALONG = 60.0
 COARSE = 6
@@ -79,8 +80,13 @@ def nominal(forward: Forward) -> Fit:
     size = sum(forward.experiment.size(r) for r in range(len(forward.experiment.runs)))
     if direct.objective < 2.0 * size:
         return direct
-    rough = fit(forward, Hypothesis(), np.zeros((1, 0)), start, coarse=COARSE)
-    return min((direct, rough), key=lambda f: f.objective)
+    tried = [direct, fit(forward, Hypothesis(), np.zeros((1, 0)), start, coarse=COARSE)]
+    if wide.wide(forward):
+        starts = wide.starts(forward)
+        nothing = np.zeros((len(starts), 0))
+        tried.append(fit(forward, Hypothesis(), nothing, starts, keep=wide.FOLLOWED, halved=wide.FIRST))
+    best = min(tried, key=lambda f: f.objective)
+    return replace(best, elsewhere=tried[-1].elsewhere)
 
 
 def investigate(experiment: Experiment, threads: int = 1) -> Investigation:
@@ -187,7 +193,9 @@ def _likelier_than_none(found: list[Candidate], prior) -> bool:
 def _polished(forward, null, found):
     """The leading candidates followed to their minimum."""
     result = []
-    least = max((c.gain for c in found), default=0.0) - NEAR
+    most = max((c.gain for c in found), default=0.0)
+    # Where something is hardly known, fits that have not settled may be far from their minima.
+    least = most - (max(NEAR, FAR * most) if wide.wide(forward) else NEAR)
     for c in found:
         if c.gain > least and not c.fit.settled:
             better = polish(forward, c.fit)

@@ -23,6 +23,8 @@ SETTLED = 1e-3
 LONGEST_U, LONGEST_NU = 1.2, 6.0
 # In coordinates and in standard errors, how far a fit may move before slopes that were held are taken anew.
 FAR_U, FAR_NU = 0.5, 3.0
+# Neither step nor distance is longer in the logarithm of a nuisance that is hardly known: slopes bend there.
+LONGEST_LOG, FAR_LOG = 0.5, 0.15
 _HELD = 1e12
 _AIM = 4.0
 
@@ -36,12 +38,14 @@ class Fit:
         normal: normal equations there, one lane.
         settled: whether the fit converged.
         others: (n,) objectives of the other starts that settled elsewhere, ascending.
+        elsewhere: (n, q) their nuisances.
     """
 
     hypothesis: Hypothesis
     normal: Normal
     settled: bool = True
     others: np.ndarray = None
+    elsewhere: np.ndarray = None
 
     @property
     def u(self) -> np.ndarray:
@@ -90,16 +94,23 @@ def fit(
     keep: int = 4,
     iterations: int = ITERATIONS,
     coarse: int = 0,
+    halved: int = 0,
 ) -> Fit:
     """The best fit from (L, p) starts; only the `keep` of lowest χ² are followed.
 
     With `coarse`, starts are judged, and followed for so many steps, on running integrals of the traces
-    first.
+    first. With `halved`, four times as many starts are followed for so many steps before they are judged.
     """
     u = np.atleast_2d(np.asarray(u, dtype=float))
     nu = np.broadcast_to(nu, (len(u), forward.layout.size)).copy()
-    chosen = _promising(forward.coarse if coarse else forward, hypothesis, u, nu, places, keep)
+    many = 4 * keep if halved else keep
+    chosen = _promising(forward.coarse if coarse else forward, hypothesis, u, nu, places, many)
     u, nu, places = u[chosen], nu[chosen], None if places is None else places[chosen]
+    if halved and len(u) > keep:
+        near, columns = linearised(forward, hypothesis, u, nu, places)
+        near, _ = descend(forward, hypothesis, near, places, halved, columns)
+        chosen = np.sort(np.argsort(near.objective, kind="stable")[:keep])
+        u, nu, places = near.u[chosen], near.nu[chosen], None if places is None else places[chosen]
     if coarse:
         rough, columns = linearised(forward.coarse, hypothesis, u, nu, places)
         rough, _ = descend(forward.coarse, hypothesis, rough, places, coarse, columns)
@@ -110,13 +121,14 @@ def fit(
     best = int(order[0])
     found = hypothesis if places is None else hypothesis.with_places(places[best])
     last = _finished(forward, found, now.take([best]))
-    return Fit(found, last, bool(settled[best]), now.objective[order[1:]])
+    return Fit(found, last, bool(settled[best]), now.objective[order[1:]], now.nu[order[1:]])
 
 
 def polish(forward: Forward, one: Fit, iterations: int = ITERATIONS) -> Fit:
     """The same fit, followed further."""
     now, settled = descend(forward, one.hypothesis, one.normal.take([0]), None, iterations)
-    return Fit(one.hypothesis, _finished(forward, one.hypothesis, now), bool(settled[0]), one.others)
+    last = _finished(forward, one.hypothesis, now)
+    return Fit(one.hypothesis, last, bool(settled[0]), one.others, one.elsewhere)
 
 
 def _finished(forward, hypothesis, now):
@@ -149,12 +161,13 @@ def descend(forward, hypothesis, now: Normal, places, iterations, columns=None, 
     size = sum(forward.experiment.size(run) for run in range(len(now.chi2)))
     damping = np.full(lanes, 1e-3)
     settled = ~np.isfinite(now.objective)
-    held = _Held(columns, lanes)
+    held = _Held(columns, lanes, np.minimum(FAR_NU, FAR_LOG / spread(forward)))
+    longest = np.minimum(LONGEST_NU, LONGEST_LOG / spread(forward))
     for _ in range(iterations):
         part = now.take(~settled)
         weight = np.maximum(1.0, part.chi2.sum(axis=0) / (2.0 * size))
         gradient, hessian = part.total(weight)
-        step = _step(part, hypothesis, gradient, hessian, damping[~settled])
+        step = _step(part, hypothesis, gradient, hessian, damping[~settled], longest)
         # Where a step promises nothing it need not be tried.
         goes_on = (_promise(gradient, hessian, step) >= SETTLED) | (weight > 1.0)
         at = np.flatnonzero(~settled)[goes_on]
@@ -183,7 +196,8 @@ class _Held:
     in units of what is too far.
     """
 
-    def __init__(self, columns, lanes):
+    def __init__(self, columns, lanes, far):
+        self.far = far
         self.columns = None if columns is None else [c.copy() for c in columns]
         self.moved = np.zeros(lanes)
 
@@ -196,7 +210,7 @@ class _Held:
     def noted(self, at, better, columns, known, du, dnu):
         """Keep columns that were taken afresh, and count what lanes moved with those that were held."""
         if known is not None:
-            far = np.maximum(du.max(axis=1, initial=0.0) / FAR_U, dnu.max(axis=1, initial=0.0) / FAR_NU)
+            far = np.maximum(du.max(axis=1, initial=0.0) / FAR_U, (dnu / self.far).max(axis=1, initial=0.0))
             self.moved[at] += np.where(better, far, 0.0)
             return
         if self.columns is None:
@@ -216,7 +230,15 @@ def _promise(gradient, hessian, step):
     return 2.0 * np.einsum("ln,ln->l", gradient, step) - np.einsum("ln,lnm,lm->l", step, hessian, step)
 
 
-def _step(now, hypothesis, gradient, hessian, damping):
+def spread(forward: Forward) -> np.ndarray:
+    """(q,) standard errors of the logarithms of the nuisances that change the chain; 0 of all others."""
+    sigma = np.zeros(forward.layout.size)
+    own = [*range(forward.layout.runs), *forward.layout.simulated]
+    sigma[own] = forward.nuisance_sigma[own]
+    return np.maximum(sigma, 1e-12)
+
+
+def _step(now, hypothesis, gradient, hessian, damping, longest_nu):
     """(L, n) Marquardt's step, coordinates at their bounds held."""
     free, diagonal = now.free, np.einsum("lnn->ln", hessian)
     matrix = hessian.copy()
@@ -229,7 +251,7 @@ def _step(now, hypothesis, gradient, hessian, damping):
         matrix[held, k, k] += _HELD
         matrix[:, k, k] += 1e-9
     step = np.linalg.solve(matrix, gradient[..., None])[..., 0]
-    longest = np.concatenate([np.full(free, LONGEST_U), np.full(matrix.shape[1] - free, LONGEST_NU)])
+    longest = np.concatenate([np.full(free, LONGEST_U), longest_nu])
     over = np.abs(step / longest).max(axis=1)
     return step / np.maximum(over, 1.0)[:, None]
 

@@ -9,7 +9,7 @@ from sonicvacuum.discover.fit import evidence, heldout, smooth
 from sonicvacuum.discover.fit.evidence import Candidate, Combination
 from sonicvacuum.discover.fit.normal import linearise
 from sonicvacuum.discover.fit.refit import Fit, polish
-from sonicvacuum.discover.judge import explanations
+from sonicvacuum.discover.judge import explanations, gross
 from sonicvacuum.discover.judge.left import Left, left, sure
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.search import directions, pairs, screen, several, singles, unknown
@@ -89,7 +89,7 @@ class Case:
         seen = left(self.forward, best.fit, self.known, scores, _behind(best.gain, most))
         alarms = {"single": seen.p}
         instead = self._smooth_instead(best, seen)
-        if instead is not None:
+        if instead is not None and not gross.gross(self.forward, best.fit):
             return instead
         if seen.shapes.failed or seen.fit.failed or seen.size.found:
             return self._more(scores.threshold(policy.FALSE_ALARM), most, shape, alarms, seen)
@@ -139,6 +139,14 @@ class Case:
 
     def _set(self, needed, most, shape, alarms, start: Fit, seen: Left, tried) -> Decision:
         """Effects added and taken away; what is found is kept, and said beside what is left."""
+        nearest = min([start, *(c.fit for c in tried)], key=lambda f: f.objective)
+        if self.known is not None and gross.gross(self.forward, nearest):
+            found = [pairs.combination(self.null, c.fit, self.setup) for c in self.found]
+            prior = self.forward.experiment.prior_odds
+            standing = gross.standing_out(self.forward, self.null, [*found, *tried], self.setup, prior)
+            if standing.fit is None or gross.gross(self.forward, standing.fit):
+                return self._standing_out(standing, alarms, seen, tried)
+            start = standing.fit
         turns = several.Turns(self.forward, self.known, needed, self.setup, self.known is not None)
         grown = turns.grow(self.null, start)
         effects = list(grown.best.effects)
@@ -157,6 +165,23 @@ class Case:
         if behind > 0.0:
             return self._unknown(alarms, [f"{shape} explains more than any effect or set"], after, tried)
         return self._beside(grown, needed, alarms, after, tried)
+
+    def _standing_out(self, standing: gross.Standing, alarms, seen: Left, tried) -> Decision:
+        """What stands out of a misfit that is large beside the noise, and something unknown."""
+        one = standing.fit
+        after = left(self.forward, one, self.known) if one is not None else seen
+        reasons = [f"what is left is large beside the noise: {after.where}"]
+        reasons += [
+            f"{name}: part of what explains these data with probability {p:.2f}"
+            for name, p in sorted(standing.shares.items(), key=lambda x: -x[1])
+            if p > policy.TOLD
+        ]
+        if one is None:
+            return self._unknown(alarms, [*reasons, "no effect stands out of it"], after, tried)
+        alarms["set"] = after.p
+        view = View(*gross.widened(self.forward, self.null, one))
+        named = [*one.hypothesis.ids, UNKNOWN]
+        return Decision(named, one, alarms, reasons, after.p, tried, after.size.size, view, standing.weights)
 
     def _beside(self, grown: several.Grown, needed, alarms, after: Left, tried) -> Decision:
         """What stays named beside something unknown."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sonicvacuum import stages
+from sonicvacuum.discover.fit import wide
 from sonicvacuum.discover.fit.evidence import Candidate, log_bayes, ranked
 from sonicvacuum.discover.fit.refit import Fit, fit
 from sonicvacuum.discover.model.forward import Forward
@@ -44,6 +45,7 @@ def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
     traced = any(r.has_signals for r in forward.experiment.runs)
     nonlinear = largest > NONLINEAR
     # Few scalars with large errors leave room for large deviations, which slopes do not foresee.
+    rough = nonlinear and wide.wide(forward)
     loose = nonlinear or (not traced and largest > CLEAR)
     steps = FIRST if loose else ITERATIONS
     setup = setup_of(forward)
@@ -60,6 +62,7 @@ def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
             far = effect.id in best and abs(scores.strength[best[effect.id]]) > FAR
             grid = nonlinear or (loose and far and not effect.places)
             effort = Effort(grid, steps, COARSE if grid and traced else 0)
+            effort = Effort(True, ITERATIONS, 0, wide.FIRST) if grid and rough else effort
             found.append(candidate(forward, null, scores, effect, effort))
             stages.step()
         left = [e for e in left if e not in chosen]
@@ -74,12 +77,13 @@ def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
 @dataclass(frozen=True)
 class Effort:
     """How an effect is searched: `grid` adds starts over the whole range to those of the screen; all are
-    followed for so many `steps`, on integrals of the traces for `coarse` steps before.
+    followed for so many `steps`, on integrals of the traces for `coarse` steps before; `halved`: see `fit`.
     """
 
     grid: bool
     steps: int
     coarse: int
+    halved: int = 0
 
 
 def candidate(forward, null: Fit, scores: Screen, effect: Effect, effort: Effort):
@@ -93,7 +97,7 @@ def candidate(forward, null: Fit, scores: Screen, effect: Effect, effort: Effort
             continue
         hypothesis = Hypothesis((Component(effect, free),))
         keep = _kept(effect, free, effort)
-        one = fit(forward, hypothesis, u, nu, places, keep, effort.steps, effort.coarse)
+        one = fit(forward, hypothesis, u, nu, places, keep, effort.steps, effort.coarse, effort.halved)
         if not np.isfinite(one.objective):
             continue
         gain = null.objective - one.objective
@@ -140,7 +144,8 @@ def starts(forward, null: Fit, scores: Screen, effect: Effect, free, grid: bool,
         finite = secants.search(forward, null, effect, setup_of(forward))
     rows += [([one.u], one.place, one.nu) for one in finite or () if _tried(effect, free)]
     if grid:
-        rows += [(*row, np.zeros(forward.layout.size)) for row in _grid(scores, effect, free)]
+        nuisances = wide.minima(forward, null)
+        rows += [(*row, nu) for row in _grid(scores, effect, free) for nu in nuisances]
     u = np.array([r[0] for r in rows]).reshape(len(rows), len(free))
     for k, c in enumerate(free):
         u[:, k] = u[:, k].clip(c.low + 1e-9, c.high - 1e-9)

@@ -1,0 +1,180 @@
+"""What stands out of a gross misfit: where even the best explanation leaves far more than the noise.
+
+The noise then says nothing of how sure an effect is, for what is left is many times larger; nor does a smooth
+discrepancy that is free in every run, for it takes up any slow effect. What can still be said is which effect
+every explanation needs that explains much. Explanations are weighed as if what is left were noise of unknown
+size: with n independent pieces of it, exp(−½ n ln χ²) (the likelihood of Gaussian noise at its best standard
+deviation). n counts samples by their correlation for an estimate of a variance (Bayley & Hammersley, J. R.
+Stat. Soc. Suppl. 8, 184, 1946), and runs by how much of a systematic error they share. An effect is named
+where the explanations that have it are together clearly the likelier.
+"""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from sonicvacuum.discover import policy
+from sonicvacuum.discover.fit import evidence
+from sonicvacuum.discover.fit.evidence import Combination
+from sonicvacuum.discover.fit.normal import linearise
+from sonicvacuum.discover.fit.refit import Fit, polish
+from sonicvacuum.discover.judge import explanations
+from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.search import pairs, several, unknown
+from sonicvacuum.effects import Setup
+
+# Third effects, and further ones, that are fitted beside what stands out.
+TRIED = 3
+
+
+def gross(forward: Forward, fit: Fit) -> bool:
+    """Whether a fit leaves so much that the noise no longer counts."""
+    e = forward.experiment
+    return float(fit.normal.chi2.sum()) > policy.GROSS * sum(e.size(run) for run in range(len(e.runs)))
+
+
+def pieces(forward: Forward, fit: Fit) -> float:
+    """Number of independent pieces of what a fit leaves, over all gauges of all runs; 1 at least."""
+    e, total = forward.experiment, 0.0
+    found = forward.sampled(fit.hypothesis, fit.u[None], fit.nu[None])
+    for run, (value, _) in enumerate(found):
+        left, samples = forward.data(run) - value[0], len(e.runs[run].time)
+        total += sum(_pieces(left[s * samples : (s + 1) * samples]) for s in range(len(e.gauges)))
+        total += len(e.runs[run].scalars)
+    runs = sum(r.has_signals for r in e.runs)
+    return max(1.0, total / (1.0 + policy.SMOOTH_SHARED * max(0, runs - 1)))
+
+
+def _pieces(left: np.ndarray) -> float:
+    """Number of independent values in one trace (T,), for an estimate of its variance."""
+    samples, power = len(left), float(left @ left)
+    if not power > 0.0:
+        return 0.0
+    padded = np.fft.rfft(left, 2 * samples)
+    correlation = np.fft.irfft(np.abs(padded) ** 2)[:samples] / power
+    return samples / (1.0 + 2.0 * float(np.square(correlation[1:]).sum()))
+
+
+@dataclass(frozen=True)
+class Standing:
+    """What stands out.
+
+    Attributes:
+        fit: with the effects that do, None where none does.
+        shares: effect → probability that it is there.
+        weights: log weights of explanations, those that have all that stands out as one.
+    """
+
+    fit: Fit | None
+    shares: dict[str, float]
+    weights: dict[str, float]
+
+
+def standing_out(
+    forward: Forward, null: Fit, found: Iterable[Combination], setup: Setup, prior: Mapping[str, float]
+) -> Standing:
+    """What stands out of all explanations `found`, to the best of which effects are added as long as all of
+    its own do.
+    """
+    found = list(found)
+    while True:
+        ranked = sorted(weighed(forward, null, found), key=lambda c: -c.log_bayes)
+        weights = explanations.log_weights((), ranked, [], prior)
+        odds = shares(weights)
+        fit = _told_apart(forward, null, ranked, odds, setup)
+        if fit is None:
+            return Standing(None, odds, weights)
+        best = ranked[0].effects
+        grown = set(fit.hypothesis.ids) == set(best) and 1 < len(best) < policy.MOST_EFFECTS
+        more = _more(forward, null, fit, setup, found) if grown else []
+        if not more:
+            return Standing(fit, odds, _merged(weights, fit.hypothesis.ids))
+        found += more
+
+
+def _more(forward, null, fit: Fit, setup: Setup, found) -> list[Combination]:
+    """Explanations with one effect more than a fit, if that was not tried yet."""
+    known = {frozenset(c.effects) for c in found}
+    starts = sorted(pairs.beside(forward, null, fit, setup), key=lambda s: -s.gain)
+    fits = [pairs.fitted(forward, s, setup, np.inf) for s in starts[:TRIED] if s.effects not in known]
+    return [pairs.combination(null, one, setup) for one in fits if np.isfinite(one.objective)]
+
+
+def _told_apart(forward, null, ranked, odds, setup) -> Fit | None:
+    """The best explanation without the effects that do not stand out, or gain no more than one shape outside
+    the catalogue would in their place.
+    """
+    fit = ranked[0].fit
+    for k in reversed(range(len(ranked[0].effects))):
+        if odds[fit.hypothesis.ids[k]] < policy.STANDS_OUT or not _ahead(
+            forward, null, fit, k, ranked, setup
+        ):
+            fit = _less(forward, null, fit, k, ranked, setup)
+    return fit if fit.hypothesis.components else None
+
+
+def _less(forward, null, fit: Fit, k: int, ranked, setup) -> Fit:
+    """The best fit known without effect k."""
+    hypothesis, u = several.without(fit.hypothesis, fit.u, k, setup)
+    if not hypothesis.components:
+        return null
+    here = polish(forward, Fit(hypothesis, linearise(forward, hypothesis, u[None], fit.nu[None])))
+    same = [c.fit for c in ranked if set(c.effects) == set(hypothesis.ids)]
+    return min([here, *same], key=lambda f: f.objective)
+
+
+def _ahead(forward, null, fit: Fit, k: int, ranked, setup) -> bool:
+    less = _less(forward, null, fit, k, ranked, setup)
+    gain = less.objective - fit.objective
+    return gain > (1.0 + policy.SHARE) * unknown.simplest(forward, less)[1] + policy.MARGIN
+
+
+def widened(forward: Forward, null: Fit, fit: Fit) -> tuple[Forward, Fit, Fit]:
+    """The predictor, the nominal fit and a fit with errors as what is left makes them: its χ² spread over its
+    independent pieces.
+    """
+    e = forward.experiment
+    wider = max(1.0, float(fit.normal.chi2.sum()) / pieces(forward, fit)) ** 0.5
+    view = Forward(replace(e, sigma=wider * e.sigma), forward.threads)
+    there = Fit(fit.hypothesis, linearise(view, fit.hypothesis, fit.u[None], fit.nu[None]))
+    return view, Fit(null.hypothesis, linearise(view, null.hypothesis, null.u[None], null.nu[None])), there
+
+
+def weighed(forward: Forward, null: Fit, found: Iterable[Combination]) -> list[Combination]:
+    """Explanations with the evidence that they have where what is left is noise of unknown size."""
+    found = list(found)
+    count = pieces(forward, min((c.fit for c in found), key=lambda f: f.objective))
+    return [_weighed(c, count, null) for c in found]
+
+
+def _weighed(c: Combination, count: float, null: Fit) -> Combination:
+    gain = count * float(np.log(null.objective / c.fit.objective))
+    # Each switch is worth what its effect gains on the average; places have their price already.
+    places = c.log_bayes - evidence.log_bayes(c.fit, c.gain) if len(c.effects) > 1 else 0.0
+    worth = 0.5 * gain + evidence.occam(c.fit, max(gain, 0.0), False) + min(places, 0.0)
+    return Combination(c.effects, c.fit, c.gain, worth)
+
+
+def shares(weights: dict[str, float]) -> dict[str, float]:
+    """Effect → probability that it is there, by the log weights of all explanations."""
+    logs = np.array(list(weights.values()))
+    odds = np.exp(logs - logs.max())
+    odds /= odds.sum()
+    names = dict.fromkeys(n for key in weights for n in explanations.effects(key))
+    return {
+        name: float(sum(p for key, p in zip(weights, odds, strict=True) if name in explanations.effects(key)))
+        for name in names
+    }
+
+
+def _merged(weights: dict[str, float], named: Iterable[str]) -> dict[str, float]:
+    """Log weights in which explanations that have all that is named, and more, count as that with something
+    unknown.
+    """
+    own = set(named)
+    within = [key for key in weights if own <= set(explanations.effects(key))]
+    whole = float(np.logaddexp.reduce([weights[key] for key in within]))
+    return {key: value for key, value in weights.items() if key not in within} | {
+        explanations.key(own): whole
+    }
