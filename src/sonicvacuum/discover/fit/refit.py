@@ -231,11 +231,13 @@ def _promise(gradient, hessian, step):
 
 
 def spread(forward: Forward) -> np.ndarray:
-    """(q,) standard errors of the logarithms of the nuisances that change the chain; 0 of all others."""
-    sigma = np.zeros(forward.layout.size)
-    own = [*range(forward.layout.runs), *forward.layout.simulated]
-    sigma[own] = forward.nuisance_sigma[own]
-    return np.maximum(sigma, 1e-12)
+    """(q,) standard errors of the logarithms of speeds, moduli, masses and sizes; nearly 0 of all others."""
+    layout = forward.layout
+    law = layout.other("law")
+    own = [*range(layout.runs), *(k for k in layout.simulated if k not in law)]
+    sigma = np.full(layout.size, 1e-12)
+    sigma[own] = np.maximum(forward.nuisance_sigma[own], 1e-12)
+    return sigma
 
 
 def _step(now, hypothesis, gradient, hessian, damping, longest_nu):

@@ -145,7 +145,7 @@ class Case:
             prior = self.forward.experiment.prior_odds
             standing = gross.standing_out(self.forward, self.null, [*found, *tried], self.setup, prior)
             if standing.fit is None or gross.gross(self.forward, standing.fit):
-                return self._standing_out(standing, alarms, seen, tried)
+                return self._standing_out(standing, alarms, seen, tried, shape, most)
             start = standing.fit
         turns = several.Turns(self.forward, self.known, needed, self.setup, self.known is not None)
         grown = turns.grow(self.null, start)
@@ -166,9 +166,11 @@ class Case:
             return self._unknown(alarms, [f"{shape} explains more than any effect or set"], after, tried)
         return self._beside(grown, needed, alarms, after, tried)
 
-    def _standing_out(self, standing: gross.Standing, alarms, seen: Left, tried) -> Decision:
+    def _standing_out(self, standing: gross.Standing, alarms, seen: Left, tried, shape, most) -> Decision:
         """What stands out of a misfit that is large beside the noise, and something unknown."""
         one = standing.fit
+        if one is not None and _behind(self.null.objective - one.objective, most) > 0.0:
+            return self._unknown(alarms, [f"{shape} explains more than any effect or set"], seen, tried)
         after = left(self.forward, one, self.known) if one is not None else seen
         reasons = [f"what is left is large beside the noise: {after.where}"]
         reasons += [

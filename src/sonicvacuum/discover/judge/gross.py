@@ -15,17 +15,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sonicvacuum.discover import policy
-from sonicvacuum.discover.fit import evidence
+from sonicvacuum.discover.fit import evidence, wide
 from sonicvacuum.discover.fit.evidence import Combination
 from sonicvacuum.discover.fit.normal import linearise
 from sonicvacuum.discover.fit.refit import Fit, polish
 from sonicvacuum.discover.judge import explanations
 from sonicvacuum.discover.model.forward import Forward
-from sonicvacuum.discover.search import pairs, several, unknown
+from sonicvacuum.discover.search import pairs, profiles, screen, several, singles, unknown
 from sonicvacuum.effects import Setup
 
 # Third effects, and further ones, that are fitted beside what stands out.
 TRIED = 3
+_PROFILES = {effect.id for effect in profiles.effects()}
 
 
 def gross(forward: Forward, fit: Fit) -> bool:
@@ -77,11 +78,13 @@ def standing_out(
     """What stands out of all explanations `found`, to the best of which effects are added as long as all of
     its own do.
     """
-    found = list(found)
+    found = [*found, *_profiles(forward, null, setup)]
     while True:
         ranked = sorted(weighed(forward, null, found), key=lambda c: -c.log_bayes)
         weights = explanations.log_weights((), ranked, [], prior)
         odds = shares(weights)
+        if set(ranked[0].effects) & _PROFILES:
+            return Standing(None, odds, {})
         fit = _told_apart(forward, null, ranked, odds, setup)
         if fit is None:
             return Standing(None, odds, weights)
@@ -91,6 +94,16 @@ def standing_out(
         if not more:
             return Standing(fit, odds, _merged(weights, fit.hypothesis.ids))
         found += more
+
+
+def _profiles(forward, null, setup) -> list[Combination]:
+    """Deviations along the chain as explanations, fitted where slopes promise that they explain much."""
+    if forward.experiment.beads < 2:
+        return []
+    seen = screen.screen(forward, null, [profiles.family()])
+    effort = singles.Effort(True, singles.ITERATIONS, 0, wide.FIRST)
+    fits = [singles.candidate(forward, null, seen, effect, effort) for effect in profiles.effects()]
+    return [Combination((c.effect,), c.fit, c.gain, c.log_bayes) for c in fits if c is not None]
 
 
 def _more(forward, null, fit: Fit, setup: Setup, found) -> list[Combination]:

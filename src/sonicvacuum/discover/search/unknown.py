@@ -19,7 +19,7 @@ from sonicvacuum.discover.model import flexible
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import FLEXIBLE, with_common_laws
 from sonicvacuum.discover.search import directions as ways
-from sonicvacuum.discover.search import screen
+from sonicvacuum.discover.search import profiles, screen
 from sonicvacuum.discover.search.directions import Direction, Family
 
 # Cosines between signatures that are resolved as different.
@@ -76,7 +76,7 @@ def simplest(forward: Forward, null: Fit) -> tuple[str, float]:
     if not forward.experiment.beads or not _traced(forward):
         return "", 0.0
     shapes = [s for s in distortions(forward, null) if s[0][0].effect == "gauge"]
-    seen = _screened(forward, null, [_profiles()], shapes)
+    seen = _screened(forward, null, [profiles.family()], shapes)
     at = [k for k, d in enumerate(seen.directions) if d.effect == "gauge"]
     best = max(at, key=lambda k: seen.z[k] ** 2)
     shape = seen.directions[best]
@@ -109,7 +109,7 @@ def _distorted(forward, null, seen: screen.Screen, k) -> float:
 
 def _tried(forward, null, seen: screen.Screen, share) -> tuple[float, str]:
     """Δχ² of the best profile, taken `share` of its estimate far, and its name."""
-    family = _profiles()
+    family = profiles.family()
     strengths = share * seen.strength[: len(family.directions)]
     columns = ways.finite(forward, null.hypothesis, null.u, null.nu, family, strengths)
     base = forward.columns(null.hypothesis, null.u[None], null.nu[None], precise=True)
@@ -166,7 +166,9 @@ def _largest(catalogue):
 def families(forward: Forward, fit: Fit) -> list[Family]:
     """The flexible law; stiffness of each contact and mass of each bead, one by one and as profiles."""
     found = [_law(fit.hypothesis.ids)]
-    return [*found, _places(forward.experiment.beads), _profiles()] if forward.experiment.beads else found
+    return (
+        [*found, _places(forward.experiment.beads), profiles.family()] if forward.experiment.beads else found
+    )
 
 
 def _law(present):
@@ -193,33 +195,6 @@ def _places(beads):
         return replace(setup, chain=chain)
 
     return Family(tuple(places), change, 0.02)
-
-
-# Deviations along the chain, x from −1 at the striker to 1 at the wall, k counted from there.
-_PROFILES = {
-    "linear": lambda x, k: x,
-    "quadratic": lambda x, k: x**2 - 1.0 / 3.0,
-    "alternating": lambda x, k: 1.0 - 2.0 * (k % 2),
-}
-
-
-def _profiles():
-    kinds = [(what, name) for what in ("stiffness", "mass") for name in _PROFILES]
-    directions = tuple(Direction("profile", f"{what} {name}", two_sided=True) for what, name in kinds)
-
-    def change(setup, index, strengths):
-        chain, beads = setup.chain, setup.chain.beads
-        for at in range(beads + 1):
-            x = 2.0 * at / max(1, beads) - 1.0
-            size = np.array([_PROFILES[name](x, at) for _, name in kinds])[index]
-            ratio = np.exp(np.clip(strengths * size, -1.0, 1.0))
-            stiff = np.array([what == "stiffness" for what, _ in kinds])[index]
-            chain = chain.with_defect("stiffness", at, np.where(stiff, ratio, 1.0))
-            if at:
-                chain = chain.with_defect("mass", at, np.where(stiff, 1.0, ratio))
-        return replace(setup, chain=chain)
-
-    return Family(directions, change, 0.01)
 
 
 def distortions(forward: Forward, fit: Fit):
