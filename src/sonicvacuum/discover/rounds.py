@@ -201,6 +201,8 @@ def _polished(forward, null, found):
             better = polish(forward, c.fit)
             flags = tuple(f for f in c.flags if f != "unsettled") + ("unsettled",) * (not better.settled)
             c = _moved(c, null, better, c.places, flags)
+        if c.gain > least and wide.wide(forward):
+            c = _moved(c, null, wide.again(forward, c.fit), c.places, c.flags)
         result.append(_beyond(forward, null, c) if c.gain > least else c)
     return evidence.ranked(result, forward.experiment.prior_odds)
 

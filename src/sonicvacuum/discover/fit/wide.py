@@ -8,7 +8,7 @@ from itertools import product
 
 import numpy as np
 
-from sonicvacuum.discover.fit.refit import Fit
+from sonicvacuum.discover.fit.refit import Fit, fit
 from sonicvacuum.discover.model.forward import Forward
 
 # Known no better than this, a modulus or a speed may put an echo beside the measured one.
@@ -55,3 +55,11 @@ def minima(forward: Forward, null: Fit) -> np.ndarray:
         return np.zeros((1, forward.layout.size))
     others = null.elsewhere if null.elsewhere is not None else np.zeros((0, forward.layout.size))
     return np.concatenate([null.nu[None], others[: MINIMA - 1]])
+
+
+def again(forward: Forward, one: Fit) -> Fit:
+    """The better of a fit and of one from all over the priors, with the effects as they are there."""
+    rows = starts(forward)
+    u = np.repeat(one.u[None], len(rows), axis=0)
+    other = fit(forward, one.hypothesis, u, rows, keep=FOLLOWED, halved=FIRST)
+    return min((one, other), key=lambda f: f.objective)

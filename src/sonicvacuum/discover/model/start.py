@@ -14,6 +14,10 @@ from scipy.signal import correlate
 
 from sonicvacuum.discover.model.experiment import Experiment
 
+# A run is shifted by what suits all runs, within so many widths of its pulse, if it resembles the predicted
+# one there by this share of what it does where it resembles it most.
+NEAR, SUITS = 3, 0.7
+
 
 def started(data: Experiment, time_zero_unknown: bool = False) -> Experiment:
     """The data set with nominal gains and shifts for what is not known; the same object where all is."""
@@ -22,7 +26,7 @@ def started(data: Experiment, time_zero_unknown: bool = False) -> Experiment:
         return data
     pairs = _pairs(data)
     if time_zero_unknown:
-        shifts = {run: _lag(found) for run, found in pairs.items()}
+        shifts = _lags(pairs)
         data = replace(data, runs=tuple(_shifted(r, shifts.get(k)) for k, r in enumerate(data.runs)))
     ratio = {
         g.id: _factor([found[s] for found in pairs.values()]) if unknown[s] else 1.0
@@ -55,13 +59,43 @@ def _pairs(data):
     return result
 
 
-def _lag(found) -> int:
-    """Samples by which the measured traces of a run are best shifted, all gauges together."""
+def _lags(pairs) -> dict[int, int]:
+    """Samples by which the measured traces of each run are best shifted, all gauges together.
+
+    An echo may resemble the predicted pulse more than the measured pulse does. Runs are mostly triggered
+    alike, so that each run's shift is taken near the one that suits all, unless it suits it badly.
+    """
+    alike = {run: _alike(found) for run, found in pairs.items()}
+    own = {run: int(np.argmax(a)) for run, (_, a) in alike.items()}
+    zeros = {run: zero for run, (zero, _) in alike.items()}
+    best = {run: at - zeros[run] for run, at in own.items()}
+    if len(alike) < 2:
+        return best
+    least, most = -min(zeros.values()), min(len(a) - zeros[run] for run, (_, a) in alike.items())
+    whole = sum(a[zeros[run] + least : zeros[run] + most] for run, (_, a) in alike.items())
+    common = int(np.argmax(whole)) + least
+    for run, (zero, a) in alike.items():
+        near = NEAR * max(_width(found) for found in pairs[run])
+        first = max(0, zero + common - near)
+        at = first + int(np.argmax(a[first : zero + common + near + 1]))
+        if a[at] > SUITS * a[own[run]]:
+            best[run] = at - zero
+    return best
+
+
+def _alike(found):
+    """How much the traces of a run resemble the predicted ones at each shift, and the place of no shift."""
     total = 0.0
     for measured, predicted in found:
         size = np.linalg.norm(measured) * np.linalg.norm(predicted)
         total = total + correlate(measured, predicted) / (size or 1.0)
-    return int(np.argmax(total)) - (len(found[0][1]) - 1)
+    return len(found[0][1]) - 1, total
+
+
+def _width(pair) -> int:
+    """Samples for which the predicted trace of a gauge exceeds half its peak, 1 at least."""
+    size = np.abs(pair[1])
+    return max(1, int(np.count_nonzero(size > 0.5 * size.max(initial=0.0))))
 
 
 def _shifted(run, lag):

@@ -1,0 +1,161 @@
+"""Wide priors and gross misfits: a chain before a soft wall that is hardly known, one uncalibrated gauge, no
+time zero, and more missing than the catalogue has.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from sonicvacuum.discover.fit import wide
+from sonicvacuum.discover.judge import gross
+from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.model.hypothesis import Hypothesis
+from sonicvacuum.discover.model.problem import experiment
+from sonicvacuum.discover.rounds import investigate, nominal
+from sonicvacuum.effects import CATALOGUE, IDS
+from sonicvacuum.records import Record, Signals
+from sonicvacuum.records.reader import parse
+
+TAU, STIFFER, FASTER = 170.0, 2.5, 1.15  # us, the wall's modulus and the speeds over what the record says
+LOOKED_AT = ("sensor-droop", "sensor-lowpass", "linear-dashpot", "sensor-offset", "gravity")
+
+
+def block(sigma_N, known=False):
+    """Twelve steel balls of 19 mm before a foam; a heavier ball with flat faces is the gauge, its calibration
+    and its time zero known or not.
+    """
+    steel = {"shape": "sphere", "material": "steel", "mass_g": 28.2, "diameter_mm": 19.05}
+    return {
+        "format": 1,
+        "title": "made",
+        "chain": {
+            "beads": 12,
+            "orientation": "vertical",
+            "bead": {"diameter_mm": 19.05, "mass_g": 28.2, "material": "steel"},
+            "bodies": {6: {"mass_g": 29.9, "faces": "flat"}},
+            "wall": {"material": "foam"},
+        },
+        "materials": {
+            "steel": {"modulus_GPa": 200.0, "poisson": 0.29, "modulus_rel_sigma": 0.02},
+            "foam": {"modulus_GPa": 0.08, "poisson": 0.3, "modulus_rel_sigma": 0.6},
+        },
+        "sensors": [
+            {
+                "id": "g6",
+                "kind": "embedded",
+                "bead": 6,
+                "sigma_N": sigma_N,
+                "gain_rel_sigma": 0.0 if known else "unknown",
+            }
+        ],
+        "trigger_sigma_us": 0.0 if known else "unknown",
+        "priors": {name: 0.0 for name in IDS if name not in LOOKED_AT},
+        "runs": [
+            {
+                "id": f"v{k}",
+                "striker": {**steel, "speed_m_s": 0.26, "speed_rel_sigma": 0.2},
+                "signals": f"v{k}.csv",
+            }
+            for k in range(2)
+        ],
+    }
+
+
+def made(effects, systematics, seed=1) -> Record:
+    """Traces in volts from a zero nobody knows; with a smooth error of so many peaks, half of it common."""
+    content = parse(block(0.5, known=True))
+    time = np.arange(0.0, 2600.0, 12.0)
+    empty = {r.id: Signals(time, {"g6": np.zeros(len(time))}) for r in content.runs}
+    forward = Forward(experiment(Record(content, empty, "made")))
+    rng = np.random.default_rng(np.random.SeedSequence(seed))
+
+    def change(setup, index):
+        chain = setup.chain.stiffened("foam", np.full(setup.chain.lanes, STIFFER))
+        setup = replace(setup, chain=replace(chain, speed=FASTER * chain.speed))
+        for name, given in effects:
+            setup = CATALOGUE.effect(name).apply(
+                setup, **{k: np.full(setup.chain.lanes, v) for k, v in given.items()}
+            )
+        return setup
+
+    nothing = np.zeros((1, forward.layout.size))
+    found = forward.sampled(Hypothesis(), np.zeros((1, 0)), nothing, change=change)
+    both = smooth(rng, len(time))
+    signals = {}
+    for run, (value, _) in zip(content.runs, found, strict=True):
+        clean = value[0] * forward.experiment.sigma[0]
+        error = systematics * clean.max() * (both + smooth(rng, len(time))) / np.sqrt(2.0)
+        signals[run.id] = Signals(
+            time + 150.0, {"g6": 0.1 * (clean + error + 0.5 * rng.normal(size=len(time)))}
+        )
+    return Record(parse(block(0.05)), signals, "made")
+
+
+def smooth(rng, samples):
+    kernel = np.exp(-np.square(np.arange(-20, 21) / 5.0))
+    return np.convolve(rng.normal(size=samples + 40), kernel / np.linalg.norm(kernel), mode="valid")
+
+
+def test_the_nominal_fit_finds_a_wall_far_from_what_the_record_says():
+    forward = Forward(experiment(made((), 0.0)))
+    assert wide.wide(forward)
+    null = nominal(forward)
+    size = sum(forward.experiment.size(k) for k in range(2))
+    assert null.normal.chi2.sum() / size < 1.0 + 4.0 * np.sqrt(2.0 / size)  # noise, within 4 of its errors
+    modulus = forward.layout.other("modulus")[0]
+    stiffer = np.exp(null.nu[modulus] * forward.nuisance_sigma[modulus])
+    assert stiffer == pytest.approx(STIFFER, rel=0.05)  # of the noise: a few parts in a thousand
+
+
+def test_nothing_wide_needs_one_start(empty):
+    forward = Forward(experiment(empty))
+    assert not wide.wide(forward)
+    np.testing.assert_array_equal(wide.starts(forward), np.zeros((1, forward.layout.size)))
+
+
+@pytest.fixture(scope="module")
+def found():
+    return investigate(experiment(made([("sensor-droop", {"tau_us": TAU})], 0.06)))
+
+
+def test_what_stands_out_of_a_gross_misfit_is_named_beside_unknown(found):
+    assert found.named == ["sensor-droop", "unknown"]
+    assert found.probabilities["sensor-droop + unknown"] > 0.9
+    assert gross.gross(found.forward, found.final)
+
+
+def test_its_errors_are_those_that_the_misfit_makes(found):
+    (value,) = found.final.hypothesis.values(found.final.u)["sensor-droop"].values()
+    error = np.log(value / TAU)
+    assert abs(error) < 4.0 * found.counted.final.sigma[0]
+    assert found.counted.final.sigma[0] > 3.0 * found.final.sigma[0]  # the noise's, of which 6 % are many
+
+
+def test_a_gross_misfit_alone_names_nothing():
+    assert investigate(experiment(made((), 0.06))).named == ["unknown"]
+
+
+@pytest.mark.parametrize(("rho", "samples"), [(0.0, 4000), (0.6, 4000), (0.9, 8000)])
+def test_pieces_are_the_independent_values_of_a_variance(rho, samples):
+    rng = np.random.default_rng(np.random.SeedSequence(4))
+    left = rng.normal(size=samples)
+    for k in range(1, samples):
+        left[k] += rho * left[k - 1]
+    # Of an autoregression 1 + 2 Σ ρ^2k = (1 + ρ²)/(1 − ρ²); estimated correlations add noise of 2 T/T.
+    exact = samples / ((1.0 + rho**2) / (1.0 - rho**2))
+    assert exact / 4.0 < gross._pieces(left) < 1.1 * exact
+
+
+def test_explanations_with_more_count_as_what_is_named_and_unknown():
+    weights = {"none": 0.0, "a": 1.0, "a + b": 2.0, "c": 0.5}
+    merged = gross._merged(weights, ["a"])
+    assert merged == {"none": 0.0, "c": 0.5, "a": pytest.approx(np.logaddexp(1.0, 2.0))}
+    shares = gross.shares(weights)
+    assert shares["a"] == pytest.approx((np.exp(1) + np.exp(2)) / (1 + np.exp(1) + np.exp(2) + np.exp(0.5)))
+
+
+def test_noise_is_no_gross_misfit(empty):
+    forward = Forward(experiment(empty))
+    assert not gross.gross(forward, nominal(forward))
+    assert gross._pieces(np.zeros(5)) == 0.0
