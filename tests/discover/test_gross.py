@@ -18,7 +18,7 @@ from sonicvacuum.records import Record, Signals
 from sonicvacuum.records.reader import parse
 
 TAU, STIFFER, FASTER = 170.0, 2.5, 1.15  # us, the wall's modulus and the speeds over what the record says
-LOOKED_AT = ("sensor-droop", "sensor-lowpass", "linear-dashpot", "sensor-offset", "gravity")
+LOOKED_AT = ("sensor-droop", "linear-dashpot", "sensor-offset")
 
 
 def block(sigma_N, known=False):
