@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import median_filter
 
 # The trace is cut into so many stretches to find those at rest.
 STRETCHES = 64
@@ -53,6 +52,8 @@ class Trace:
 
 def look(values: np.ndarray) -> Trace:
     """Find rest, noise and pulse in (S,) finite samples."""
+    from scipy.ndimage import median_filter
+
     values = np.asarray(values, dtype=float)
     step = converter_step(values)
     rest, sigma, wander = _rest(values, step)

@@ -1,7 +1,6 @@
 """Thinning of traces sampled finer than their pulses need: a zero-phase low-pass, then every q-th sample."""
 
 import numpy as np
-from scipy.signal import firwin, oaconvolve
 
 # Samples that a pulse keeps over its width at half height.
 SAMPLES_A_PULSE = 40
@@ -14,6 +13,8 @@ LOSS = 1.5
 
 def low_pass(factor: int) -> np.ndarray:
     """Taps of the filter for one factor, summing to 1."""
+    from scipy.signal import firwin
+
     return firwin(2 * HALF * factor + 1, CUTOFF / factor, window=("kaiser", BETA))
 
 
@@ -44,6 +45,8 @@ def _harmless(values, arrival, factor):
 
 def filtered(values: np.ndarray, factor: int) -> np.ndarray:
     """(S,) samples behind the low-pass, delayed by nothing; the ends are continued by their last values."""
+    from scipy.signal import oaconvolve
+
     reach = HALF * factor
     padded = np.concatenate((np.full(reach, values[0]), values, np.full(reach, values[-1])))
     return oaconvolve(padded, low_pass(factor), mode="valid")

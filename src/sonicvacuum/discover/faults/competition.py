@@ -12,7 +12,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.stats import chi2 as chi_squared
 
 from sonicvacuum import stages
 from sonicvacuum.discover.faults import policy
@@ -22,7 +21,7 @@ from sonicvacuum.discover.faults.judging import Judge, Judged, Model, noise_volu
 from sonicvacuum.discover.faults.slips import hypotheses
 from sonicvacuum.discover.faults.table import FAULTS
 from sonicvacuum.discover.faults.timing import time_zero, with_starts
-from sonicvacuum.discover.fit import evidence, smooth
+from sonicvacuum.discover.fit import evidence, smooth, tails
 from sonicvacuum.discover.fit.refit import polish
 from sonicvacuum.discover.judge import explanations
 from sonicvacuum.discover.model.experiment import Experiment
@@ -263,7 +262,9 @@ def suspicious(model: Model) -> bool:
     size = sum(e.size(r) for r in range(len(e.runs)))
     misfit = float(one.normal.chi2.sum()) - size
     strained = float(one.nu @ one.nu)
-    return misfit > policy.SUSPICIOUS * math.sqrt(2.0 * size) or strained > chi_squared.isf(1e-3, len(one.nu))
+    return misfit > policy.SUSPICIOUS * math.sqrt(2.0 * size) or strained > tails.chi_squared_at(
+        1e-3, len(one.nu)
+    )
 
 
 def obvious(judged: Judged, model: Model) -> bool:

@@ -1,7 +1,8 @@
 """Traces beside the nominal model's: is there a pulse at all, and is it the right way up?"""
 
 import numpy as np
-from scipy.signal import correlate
+
+from sonicvacuum.discover.correlation import correlated
 
 # A pulse is expected where the model's reading is this many standard deviations of the noise high ...
 EXPECTED = 20.0
@@ -21,13 +22,13 @@ def verdict(trace: np.ndarray, model: np.ndarray, sigma: float) -> str:
     if not peak > EXPECTED * sigma or not peak > 0.0:
         return ""
     power = float(model @ model)
-    found = correlate(trace - np.median(trace), model, method="fft") / power
+    found = correlated(trace - np.median(trace), model) / power
     up, down = float(found.max()), float(-found.min())
     if max(up, down) < max(SHARE, SILENT * sigma / np.sqrt(power)) and np.abs(trace).max() < SILENT * max(
         sigma, 1e-12
     ):
         return "silent"
     # A motion gauge's reading swings both ways by itself: what the model's own would show.
-    own = correlate(model, model, method="fft") / power
+    own = correlated(model, model) / power
     swing = max(1.0, INVERTED * max(float(-own.min()), 0.0))
     return "inverted" if down > INVERTED * up and down * swing > SHARE and down > up else ""

@@ -5,8 +5,8 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
-from scipy.signal import correlate, correlation_lags
 
+from sonicvacuum.discover.correlation import correlated
 from sonicvacuum.discover.faults import changes
 from sonicvacuum.discover.faults.slips import WIDTH, Slip
 from sonicvacuum.records import Record
@@ -26,10 +26,10 @@ def _lag(record, run, predicted, ids):
     signals, total = record.signals[run], 0.0
     for id in ids:
         if id in predicted[run]:
-            total = total + correlate(predicted[run][id], signals.readings[id], method="fft") / max(
+            total = total + correlated(predicted[run][id], signals.readings[id]) / max(
                 float(np.ptp(signals.readings[id])) * float(np.ptp(predicted[run][id])), 1e-300
             )
-    lags = correlation_lags(signals.samples, signals.samples)
+    lags = np.arange(1 - signals.samples, signals.samples)
     return float(lags[int(np.argmax(total))]) * signals.interval_s * 1e6 if np.ndim(total) else 0.0
 
 

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from scipy import stats
 
 from sonicvacuum.discover import policy
+from sonicvacuum.discover.fit import tails
 from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.fit.smooth import width
 from sonicvacuum.discover.model.forward import Forward
@@ -126,7 +126,7 @@ def _chi2_of(value, size):
     size = max(size, 1)
     # By the spread of both: a χ² of fewer degrees of freedom that varies as much.
     spread = 1.0 / (1.0 + 2.0 * policy.SIGMA_REL**2 * size)
-    return float(stats.chi2.sf(value * spread, size * spread))
+    return tails.chi_squared(value * spread, size * spread)
 
 
 def _whiteness(r):
@@ -150,14 +150,14 @@ def _whiteness(r):
         forward, backward = ahead - reflection * behind, behind - reflection * ahead
         if lag > 1:
             ratio -= (count - lag - 1) * np.log1p(-(reflection**2))
-    return float(stats.chi2.sf(ratio, lags - 1))
+    return tails.chi_squared(ratio, lags - 1)
 
 
 def _outliers(r):
     """p of the largest sample and of the number of large ones."""
-    largest = -np.expm1(len(r) * np.log1p(-2.0 * stats.norm.sf(np.abs(r).max())))
-    expected = len(r) * 2.0 * stats.norm.sf(_FAR)
-    many = stats.poisson.sf(np.count_nonzero(np.abs(r) > _FAR) - 1, expected)
+    largest = -np.expm1(len(r) * np.log1p(-2.0 * tails.normal(np.abs(r).max())))
+    expected = len(r) * 2.0 * tails.normal(_FAR)
+    many = tails.poisson(int(np.count_nonzero(np.abs(r) > _FAR)), expected)
     return float(min(1.0, 2.0 * min(largest, many)))
 
 
@@ -239,4 +239,4 @@ def _together(own, s):
             total = sum(_bank(r[None], t, decay * wide)[0] for (_, r), t in zip(own, starts, strict=True))
             highest, count = max(highest, float(total.max())), count + len(total)
     # Neighbouring members of the bank are alike; counting each errs on the safe side.
-    return float(min(1.0, count * stats.chi2.sf(highest, 2 * len(own))))
+    return float(min(1.0, count * tails.chi_squared(highest, 2 * len(own))))

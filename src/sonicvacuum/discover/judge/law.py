@@ -3,8 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.integrate import cumulative_trapezoid
-from scipy.optimize import least_squares
 
 from sonicvacuum.discover.fit.evidence import Candidate
 from sonicvacuum.discover.fit.refit import Fit
@@ -79,6 +77,8 @@ def _stiffness(forward):
 
 def _visited(forward: Forward, fit: Fit):
     """Compressions in m and rates in m/s of the first contacts while they touch, in all runs."""
+    from scipy.integrate import cumulative_trapezoid
+
     depths, rates = [], []
     for batch in forward.experiment.batches:
         nominal = forward.nominal(batch, fit.nu[None])
@@ -147,6 +147,7 @@ def formula(seen: Surface) -> str:
 
 def _short(kinds, x, v, beside, error):
     """(score, text) of the best formula with terms of some kinds."""
+    from scipy.optimize import least_squares
 
     def value(p):
         return sum(_term(kind, p[3 * k : 3 * k + 3], x, v) for k, kind in enumerate(kinds))

@@ -3,10 +3,8 @@
 import math
 from dataclasses import dataclass
 
-from scipy import stats
-
 from sonicvacuum.discover import policy
-from sonicvacuum.discover.fit import goodness, smooth
+from sonicvacuum.discover.fit import goodness, smooth, tails
 from sonicvacuum.discover.fit.goodness import Goodness
 from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.model.forward import Forward
@@ -40,7 +38,7 @@ class Left:
         """p-value of what is left; goodness of fit, which asks for more, counts only where it fails."""
         found = [self.shapes.p, math.exp(-0.5 * self.behind)]
         found += [self.fit.p] if self.fit.failed else []
-        found += [float(0.5 * stats.chi2.sf(self.size.drop, 1))] if self.size.found else []
+        found += [0.5 * tails.chi_squared(self.size.drop, 1)] if self.size.found else []
         return min(found)
 
     @property

@@ -8,8 +8,8 @@ the whole table (Benjamini & Hochberg, J. R. Stat. Soc. B 57, 289, 1995).
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import stats
 
+from sonicvacuum.discover.fit import tails
 from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.search import screen, unknown
@@ -67,8 +67,8 @@ def locate(forward: Forward, fit: Fit) -> list[Place]:
     if not directions:
         return []
     seen = screen.from_columns(forward, fit, tuple(directions), base, slopes)
-    p = 2.0 * stats.norm.sf(np.abs(seen.z))
-    q = stats.false_discovery_control(p)
+    p = 2.0 * tails.normal(np.abs(seen.z))
+    q = tails.discovery_rate(p)
     sizes = np.divide(seen.z, seen.length, out=np.zeros_like(seen.z), where=seen.length > 0.0)
     return [
         Place(*_name(forward, d), float(z), float(a), float(b), float(s))

@@ -10,8 +10,8 @@ them they stay free, the gain's logarithm within `gauges.base.UNKNOWN_GAIN`, tim
 from dataclasses import replace
 
 import numpy as np
-from scipy.signal import correlate
 
+from sonicvacuum.discover.correlation import correlated
 from sonicvacuum.discover.model.experiment import Experiment
 
 # A run is shifted by what suits all runs, within so many widths of its pulse, if it resembles the predicted
@@ -88,7 +88,7 @@ def _alike(found):
     total = 0.0
     for measured, predicted in found:
         size = np.linalg.norm(measured) * np.linalg.norm(predicted)
-        total = total + correlate(measured, predicted) / (size or 1.0)
+        total = total + correlated(measured, predicted) / (size or 1.0)
     return len(found[0][1]) - 1, total
 
 
@@ -108,6 +108,6 @@ def _factor(pairs):
     product = power = 0.0
     for measured, predicted in pairs:
         if np.any(measured):
-            product += float(correlate(measured, predicted).max())
+            product += float(correlated(measured, predicted).max())
             power += float(predicted @ predicted)
     return product / power if product > 0.0 and power > 0.0 else 1.0

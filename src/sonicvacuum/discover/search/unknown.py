@@ -10,9 +10,9 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
-from scipy import stats
 
 from sonicvacuum.discover import policy
+from sonicvacuum.discover.fit import tails
 from sonicvacuum.discover.fit.normal import linearise
 from sonicvacuum.discover.fit.refit import Fit, polish
 from sonicvacuum.discover.model import flexible
@@ -152,15 +152,15 @@ def test(whole: screen.Screen, at: np.ndarray) -> tuple[float, int, float]:
     scores = whole.projected[0][at] / whole.length[at]
     parts = (vectors[:, kept].T @ scores) / np.sqrt(values[kept])
     chi2 = float(parts @ parts)
-    return chi2, int(kept.sum()), float(stats.chi2.sf(chi2, kept.sum()))
+    return chi2, int(kept.sum()), tails.chi_squared(chi2, float(kept.sum()))
 
 
 def _largest(catalogue):
     """The same for the largest single score of the catalogue, its p from simulated noise."""
     reference = catalogue.threshold(0.01)
-    trials = 0.01 / stats.chi2.sf(reference, 1)
+    trials = 0.01 / tails.chi_squared(reference, 1)
     largest = float(np.square(catalogue.z).max())
-    return largest, 1, min(1.0, float(trials * stats.chi2.sf(largest, 1)))
+    return largest, 1, min(1.0, trials * tails.chi_squared(largest, 1))
 
 
 def families(forward: Forward, fit: Fit) -> list[Family]:
