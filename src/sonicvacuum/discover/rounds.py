@@ -89,8 +89,8 @@ def nominal(forward: Forward) -> Fit:
     return replace(best, elsewhere=tried[-1].elsewhere)
 
 
-def investigate(experiment: Experiment, threads: int = 1) -> Investigation:
-    """Find what is missing from the nominal model of a data set."""
+def investigate(experiment: Experiment, threads: int = 1, null: Fit | None = None) -> Investigation:
+    """Find what is missing from the nominal model of a data set; `null` is its fit, where at hand."""
     known = smooth.blocks(experiment)
     if experiment.model_floor_rel:
         experiment = smooth.with_size(experiment, experiment.model_floor_rel, known)
@@ -98,7 +98,7 @@ def investigate(experiment: Experiment, threads: int = 1) -> Investigation:
         known = None  # stated, so that nothing is to be inferred
     forward = Forward(experiment, threads)
     stages.begin("nominal model")
-    null = nominal(forward)
+    null = null or nominal(forward)
     setup = singles.setup_of(forward)
     scores = screen.screen(forward, null, directions.catalogue(setup, experiment.excluded))
     threshold = scores.threshold(policy.FALSE_ALARM)

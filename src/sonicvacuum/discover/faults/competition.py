@@ -95,6 +95,7 @@ class Search:
     def __init__(self, bench: Bench, catalogue: Catalogue, threads: int, plain: list[Finding]):
         self.bench, self.catalogue, self.threads = bench, catalogue, threads
         self.findings, self.simulations = list(plain), 0
+        self._nominal: Model | None = None
 
     def make(self, bench: Bench) -> Experiment:
         """The data set of a record as far as it was put right."""
@@ -132,10 +133,13 @@ class Search:
         # Far from the data nuisances creep; a slip must not be asked to do what they would have done.
         found = found if found.settled else polish(forward, found)
         self.simulations += forward.chains
-        return Model(self.bench, forward, found)
+        self._nominal = Model(self.bench, forward, found)
+        return self._nominal
 
     def _investigate(self) -> Investigation:
-        return investigate(self.make(self.bench), self.threads)
+        one = self._nominal
+        null = one.fit if one is not None and one.bench is self.bench else None
+        return investigate(self.make(self.bench), self.threads, null)
 
     def ranked(self, model: Model) -> list[Judged]:
         """Slips that gain enough beside a model, fitted, the likeliest first."""
