@@ -10,6 +10,7 @@ import numpy as np
 
 from sonicvacuum.discover.search.directions import Direction, Family
 from sonicvacuum.effects import Effect, Parameter
+from sonicvacuum.physics.chain import Defect
 
 # Deviations along the chain, x from −1 at the striker to 1 at the wall, k counted from there.
 PROFILES = {
@@ -25,18 +26,24 @@ def family() -> Family:
     directions = tuple(Direction("profile", f"{what} {name}", two_sided=True) for what, name in kinds)
 
     def change(setup, index, strengths):
-        chain, beads = setup.chain, setup.chain.beads
+        beads, changed = setup.chain.beads, []
         for at in range(beads + 1):
             x = 2.0 * at / max(1, beads) - 1.0
             size = np.array([PROFILES[name](x, at) for _, name in kinds])[index]
             ratio = np.exp(np.clip(strengths * size, -1.0, 1.0))
             stiff = np.array([what == "stiffness" for what, _ in kinds])[index]
-            chain = chain.with_defect("stiffness", at, np.where(stiff, ratio, 1.0))
+            changed.append(Defect("stiffness", at, np.where(stiff, ratio, 1.0)))
             if at:
-                chain = chain.with_defect("mass", at, np.where(stiff, 1.0, ratio))
-        return replace(setup, chain=chain)
+                changed.append(Defect("mass", at, np.where(stiff, 1.0, ratio)))
+        return with_defects(setup, changed)
 
     return Family(directions, change, 0.01)
+
+
+def with_defects(setup, defects):
+    """A setup with these deviations as well."""
+    chain = setup.chain
+    return replace(setup, chain=replace(chain, defects=(*chain.defects, *defects)))
 
 
 def effects() -> tuple[Effect, ...]:
@@ -50,11 +57,11 @@ def _profile(what, name) -> Effect:
     )
 
     def change(setup, ratio):
-        chain, beads = setup.chain, setup.chain.beads
-        for at in range(what == "mass", beads + 1):
-            x = 2.0 * at / max(1, beads) - 1.0
-            chain = chain.with_defect(what, at, np.asarray(ratio) ** PROFILES[name](x, at))
-        return replace(setup, chain=chain)
+        beads = setup.chain.beads
+        at = range(what == "mass", beads + 1)
+        sizes = [PROFILES[name](2.0 * k / max(1, beads) - 1.0, k) for k in at]
+        ratio = np.asarray(ratio)
+        return with_defects(setup, [Defect(what, k, ratio**size) for k, size in zip(at, sizes, strict=True)])
 
     return Effect(
         id=f"{what} {name}",

@@ -21,6 +21,7 @@ from sonicvacuum.discover.model.hypothesis import FLEXIBLE, with_common_laws
 from sonicvacuum.discover.search import directions as ways
 from sonicvacuum.discover.search import profiles, screen
 from sonicvacuum.discover.search.directions import Direction, Family
+from sonicvacuum.physics.chain import Defect
 
 # Cosines between signatures that are resolved as different.
 _RANK = 1e-3
@@ -187,12 +188,13 @@ def _places(beads):
     places += [Direction("place", "mass", place=b, two_sided=True) for b in range(1, beads + 1)]
 
     def change(setup, index, strengths):
-        chain = setup.chain
-        for k, d in enumerate(places):
-            here = np.where(index == k, 1.0 + strengths, 1.0)
-            if np.any(here != 1.0):
-                chain = chain.with_defect(d.strength, d.place, here)
-        return replace(setup, chain=chain)
+        here = [np.where(index == k, 1.0 + strengths, 1.0) for k in range(len(places))]
+        changed = [
+            Defect(d.strength, d.place, ratio)
+            for d, ratio in zip(places, here, strict=True)
+            if np.any(ratio != 1.0)
+        ]
+        return profiles.with_defects(setup, changed)
 
     return Family(tuple(places), change, 0.02)
 
