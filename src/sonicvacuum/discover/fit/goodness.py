@@ -67,6 +67,10 @@ class Goodness:
 
 def goodness(forward: Forward, fit: Fit) -> Goodness:
     """All tests of a fitted model's residual."""
+    return forward.memory.recalled(fit.hypothesis, fit.u, fit.nu, "goodness", lambda: _tested(forward, fit))
+
+
+def _tested(forward, fit):
     left = residuals(forward, fit)
     found: dict[str, list[float]] = {"chi2": [], "whiteness": [], "outliers": [], "oscillation": []}
     cells = []

@@ -19,6 +19,11 @@ ITERATIONS = 30
 LAST = 2
 # A fit has settled when an accepted step gains less than this in χ².
 SETTLED = 1e-3
+# The same before slopes are taken to second order, where there are any: the last steps gain the rest.
+NEARLY = 0.02
+# A start is given up once so many times what its next step promises leaves it behind the best of those that
+# have settled, after so many steps: it could only settle elsewhere.
+BEHIND, TRIED = 10.0, 3
 # Longest step: in a coordinate of an effect, in a nuisance (standard errors).
 LONGEST_U, LONGEST_NU = 1.2, 6.0
 # In coordinates and in standard errors, how far a fit may move before slopes that were held are taken anew.
@@ -116,7 +121,8 @@ def fit(
         rough, _ = descend(forward.coarse, hypothesis, rough, places, coarse, columns)
         u, nu = rough.u, rough.nu
     now, columns = linearised(forward, hypothesis, u, nu, places)
-    now, settled = descend(forward, hypothesis, now, places, iterations, columns)
+    enough = NEARLY if now.free else SETTLED
+    now, settled = descend(forward, hypothesis, now, places, iterations, columns, enough=enough)
     order = np.argsort(now.objective, kind="stable")
     best = int(order[0])
     found = hypothesis if places is None else hypothesis.with_places(places[best])
@@ -126,7 +132,8 @@ def fit(
 
 def polish(forward: Forward, one: Fit, iterations: int = ITERATIONS) -> Fit:
     """The same fit, followed further."""
-    now, settled = descend(forward, one.hypothesis, one.normal.take([0]), None, iterations)
+    enough = NEARLY if one.normal.free else SETTLED
+    now, settled = descend(forward, one.hypothesis, one.normal.take([0]), None, iterations, enough=enough)
     last = _finished(forward, one.hypothesis, now)
     return Fit(one.hypothesis, last, bool(settled[0]), one.others, one.elsewhere)
 
@@ -150,11 +157,14 @@ def _promising(forward, hypothesis, u, nu, places, keep):
     return np.sort(np.argsort(chi2, kind="stable")[:keep])
 
 
-def descend(forward, hypothesis, now: Normal, places, iterations, columns=None, precise=False):
+def descend(
+    forward, hypothesis, now: Normal, places, iterations, columns=None, precise=False, enough=SETTLED
+):
     """Follow all lanes to their minimum; the normal equations there and which have settled.
 
     While a lane is far from the data, its nuisances are held by as much more as its χ² per datum exceeds 1:
-    they must not do the work of the effect. `columns` are those of `now`, where at hand.
+    they must not do the work of the effect. `columns` are those of `now`, where at hand; a lane has settled
+    once a step gains less than `enough`.
     """
     lanes = len(now.u)
     now = now.take(np.arange(lanes))
@@ -163,13 +173,17 @@ def descend(forward, hypothesis, now: Normal, places, iterations, columns=None, 
     settled = ~np.isfinite(now.objective)
     held = _Held(columns, lanes, np.minimum(FAR_NU, FAR_LOG / spread(forward)))
     longest = np.minimum(LONGEST_NU, LONGEST_LOG / spread(forward))
-    for _ in range(iterations):
+    for turn in range(iterations):
         part = now.take(~settled)
         weight = np.maximum(1.0, part.chi2.sum(axis=0) / (2.0 * size))
         gradient, hessian = part.total(weight)
         step = _step(part, hypothesis, gradient, hessian, damping[~settled], longest)
         # Where a step promises nothing it need not be tried.
-        goes_on = (_promise(gradient, hessian, step) >= SETTLED) | (weight > 1.0)
+        promise = _promise(gradient, hessian, step)
+        goes_on = (promise >= enough) | (weight > 1.0)
+        if turn >= TRIED and settled.any():
+            least = now.objective[settled].min()
+            goes_on &= (part.objective - BEHIND * promise <= least) | (weight > 1.0)
         at = np.flatnonzero(~settled)[goes_on]
         settled[~settled] = ~goes_on
         if not len(at):
@@ -184,8 +198,8 @@ def descend(forward, hypothesis, now: Normal, places, iterations, columns=None, 
         better = gained > 0.0
         held.noted(at, better, columns, known, np.abs(u - part.u), np.abs(nu - part.nu))
         now.replaced(at[better], new.take(better))
-        done = (better & (gained < SETTLED)) | (damping[at] > 1e7)
-        done |= ~better & (_promise(gradient, hessian, step) < SETTLED)
+        done = (better & (gained < enough)) | (damping[at] > 1e7)
+        done |= ~better & (promise[goes_on] < enough)
         settled[at] = done & ((weight == 1.0) | ~better)
         damping[at] = np.where(better, damping[at] * 0.1, damping[at] * 8.0).clip(1e-9, 1e9)
     return now, settled

@@ -14,6 +14,7 @@ import numpy as np
 from sonicvacuum.discover.model import accuracy, differences, gauges, scalars
 from sonicvacuum.discover.model.experiment import Experiment
 from sonicvacuum.discover.model.hypothesis import Hypothesis
+from sonicvacuum.discover.model.memory import Memory
 from sonicvacuum.discover.model.nuisances import Layout
 from sonicvacuum.effects import Setup
 from sonicvacuum.forward import Seen, see, virtual
@@ -28,12 +29,14 @@ class Forward:
     Attributes:
         simulations: chains simulated so far.
         strengths: directions of a family → strengths at which its slopes were taken last.
+        memory: columns, slopes and tests at the points asked for last.
     """
 
     def __init__(self, experiment: Experiment, threads: int = 1):
         self.experiment, self.threads, self.simulations = experiment, threads, 0
         self.layout = Layout(len(experiment.runs), len(experiment.gauges), experiment.shared)
         self.strengths: dict[tuple, np.ndarray] = {}
+        self.memory = Memory()
         self._coarse = None
         self._tiled: dict[tuple, Chain] = {}
 
@@ -104,6 +107,18 @@ class Forward:
             For each run (L, c, M): prediction, p derivatives to u, those to nuisances as in `Layout.local`.
         """
         u, nu = np.atleast_2d(u), np.atleast_2d(nu)
+        if len(u) == 1 and steps is None and places is None and held is None:
+            return self.memory.recalled(
+                hypothesis,
+                u,
+                nu,
+                ("columns", precise),
+                lambda: self._taken(hypothesis, u, nu, precise=precise),
+            )
+        return self._taken(hypothesis, u, nu, places, precise, steps, held)
+
+    def _taken(self, hypothesis, u, nu, places=None, precise=False, steps=None, held=None):
+        """The columns, taken afresh."""
         lanes, p = u.shape
         if steps is None:
             steps = np.broadcast_to([c.step for c in hypothesis.coordinates], u.shape)
@@ -275,7 +290,9 @@ class Forward:
         timing = np.zeros((len(value[:: rate_of or lanes]), times, *value.shape[1:]))
         if data.has_signals:
             shift = data.shift + nu[:, layout.trigger(run)] * sigma[layout.trigger(run)]
-            value, timing = self._at_record(batch, data, signals, shift, nu, rate_of or lanes)
+            value, timing = gauges.at_record(
+                layout, sigma, batch.interval, data.time, signals, shift, nu, rate_of or lanes
+            )
         flat = e.whiten(run, value, measured)
         parts = timing.reshape(len(timing) * times, *value.shape[1:])
         rates = e.whiten(run, parts, np.zeros((len(parts), measured.shape[1])))
@@ -286,29 +303,6 @@ class Forward:
         sigma, layout = self.nuisance_sigma, self.layout
         common = sum((nu[:, k] * sigma[k] for k in layout.other("gain-common")), start=np.zeros(len(nu)))
         return np.exp(nu[:, layout.gains] * sigma[layout.gains] + common[:, None])
-
-    def _at_record(self, batch, data, signals, shift, nu, rate_of):
-        """(L, S, T) readings at recorded times and (·, n, S, T) slopes to time zero, clock and delays.
-
-        The clock's error is taken to first order: it moves no sample by more than a part of a pulse.
-        """
-        layout, sigma = self.layout, self.nuisance_sigma
-        clock, delays = layout.other("clock"), layout.other("delay")
-        late = np.zeros((len(nu), signals.shape[1]))
-        gauges_ = [layout.others[k - layout.modulus - 1].gauge for k in delays]
-        late[:, gauges_] = nu[:, delays] * sigma[delays]
-        parts = [
-            gauges.shifted(signals[:, own], batch.interval, data.time, shift + delay, 1 if clock else rate_of)
-            for own, delay in ([(slice(None), late[:, 0])] if not delays else _by_gauge(late))
-        ]
-        value, rate = (np.concatenate(p, axis=1) for p in zip(*parts, strict=True))
-        slopes = [-rate]
-        for k in clock:
-            slopes.append(-rate * (data.time - shift[:, None])[:, None])
-            value = value + (nu[:, k] * sigma[k])[:, None, None] * slopes[1]
-            slopes = [s[::rate_of] for s in slopes]
-        slopes += [slopes[0] * (np.arange(signals.shape[1]) == s)[:, None] for s in gauges_]
-        return value, np.stack(slopes, axis=1)
 
     def nominal(self, batch, nu) -> Setup:
         """Setup of all lanes of a batch (lane-major, run-minor) with the nuisances in force."""
@@ -343,8 +337,3 @@ class Forward:
             threads=self.threads,
             forgiving=True,
         )
-
-
-def _by_gauge(late):
-    """(slice, (L,) delay) of each gauge."""
-    return [(slice(s, s + 1), late[:, s]) for s in range(late.shape[1])]

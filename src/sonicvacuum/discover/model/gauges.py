@@ -1,4 +1,4 @@
-"""Readings between the samples of a simulation."""
+"""Readings between the samples of a simulation, at the times of a recorder whose clock and channels err."""
 
 import numpy as np
 
@@ -52,3 +52,43 @@ def shifted(simulated: np.ndarray, interval: float, time: np.ndarray, shift: np.
     rate = resampled(simulated[rated], whole[rated], slopes[rated], stride, len(time))
     rate /= interval
     return value, rate
+
+
+def at_record(layout, sigma, interval: float, time: np.ndarray, signals, shift, nu, rate_of: int):
+    """Readings at recorded times and their slopes to time zero, clock and delays.
+
+    The clock's error is taken to first order: it moves no sample by more than a part of a pulse.
+
+    Args:
+        layout: of the nuisances, whose standard errors are `sigma`.
+        interval: between simulated samples in s.
+        time: (T,) recorded times in s.
+        signals: (L, S, T') simulated readings.
+        shift: (L,) trigger shift in s.
+        nu: (L, q) nuisances over their standard errors.
+        rate_of: slopes of every so many lanes.
+
+    Returns:
+        (L, S, T) readings and (·, n, S, T) slopes.
+    """
+    clock, delays = layout.other("clock"), layout.other("delay")
+    late = np.zeros((len(nu), signals.shape[1]))
+    channels = [layout.others[k - layout.modulus - 1].gauge for k in delays]
+    late[:, channels] = nu[:, delays] * sigma[delays]
+    parts = [
+        shifted(signals[:, own], interval, time, shift + delay, 1 if clock else rate_of)
+        for own, delay in ([(slice(None), late[:, 0])] if not delays else _by_gauge(late))
+    ]
+    value, rate = (np.concatenate(p, axis=1) for p in zip(*parts, strict=True))
+    slopes = [-rate]
+    for k in clock:
+        slopes.append(-rate * (time - shift[:, None])[:, None])
+        value = value + (nu[:, k] * sigma[k])[:, None, None] * slopes[1]
+        slopes = [s[::rate_of] for s in slopes]
+    slopes += [slopes[0] * (np.arange(signals.shape[1]) == s)[:, None] for s in channels]
+    return value, np.stack(slopes, axis=1)
+
+
+def _by_gauge(late):
+    """(slice, (L,) delay) of each gauge."""
+    return [(slice(s, s + 1), late[:, s]) for s in range(late.shape[1])]

@@ -55,6 +55,15 @@ class Hypothesis:
         return tuple(c for component in self.components for c in component.free)
 
     @property
+    def key(self) -> tuple:
+        """What tells this hypothesis from others of the same catalogue."""
+        parts = [
+            (c.effect.id, c.place, tuple(x.parameter.name for x in c.free), tuple(sorted(c.fixed.items())))
+            for c in self.components
+        ]
+        return (self.common, *parts)
+
+    @property
     def columns(self) -> tuple[slice, ...]:
         """Where the free parameters of each effect stand among the coordinates."""
         ends = np.cumsum([0, *(len(c.free) for c in self.components)]).tolist()

@@ -168,11 +168,17 @@ def believed(trace: np.ndarray, sigma: float) -> np.ndarray:
 @lru_cache(maxsize=512)
 def _believed(samples: bytes, sigma):
     """The same, remembered: each hypothesis of a slip asks again of traces that it leaves as they are."""
-    trace = np.frombuffer(samples)
-    noise_ = max(sigma, flicker(trace))
-    found = ~(spikes(trace, noise_) | cut(trace, noise_))
+    found = ~np.logical_or(*_doubtful(samples, sigma))
     found.flags.writeable = False
     return found
+
+
+@lru_cache(maxsize=512)
+def _doubtful(samples: bytes, sigma):
+    """Which samples of a trace are spikes, and which are cut off."""
+    trace = np.frombuffer(samples)
+    noise_ = max(sigma, flicker(trace))
+    return spikes(trace, noise_), cut(trace, noise_)
 
 
 def _notes(record, runs):
@@ -182,10 +188,10 @@ def _notes(record, runs):
         counts = {"spikes": 0, "samples cut off at the end of the range": 0}
         for run in record.runs:
             if run.signals and gauge.id in run.signals.readings:
-                trace = run.signals.readings[gauge.id]
-                noise_ = max(gauge.sigma, flicker(trace))
-                for what, find in zip(counts, (spikes, cut), strict=True):
-                    counts[what] += int(np.count_nonzero(find(trace, noise_)))
+                trace = np.asarray(run.signals.readings[gauge.id], dtype=float)
+                found = _doubtful(trace.tobytes(), float(gauge.sigma))
+                for what, at in zip(counts, found, strict=True):
+                    counts[what] += int(np.count_nonzero(at))
         notes += [f"{gauge.id}: {n} {what} left out" for what, n in counts.items() if n]
     return tuple(notes)
 

@@ -143,6 +143,14 @@ def simulate(forward: Forward, hypothesis: Hypothesis, u, nu, family: Family, ro
     `rough`: from one difference instead of two, enough for a ranking. Strengths that served a family before
     are where it starts.
     """
+    what = ("slopes", family.directions, family.common, rough)
+    return forward.memory.recalled(
+        hypothesis, u, nu, what, lambda: _simulated(forward, hypothesis, u, nu, family, rough)
+    )
+
+
+def _simulated(forward, hypothesis, u, nu, family, rough):
+    """The same, simulated."""
     count = len(family.directions)
     if family.common:
         hypothesis = replace(hypothesis, common=False)
