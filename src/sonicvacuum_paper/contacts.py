@@ -33,7 +33,8 @@ class Loaded:
         pulse: its main pulse, dynamic part.
         force: total in N.
         depth: approach in m, by the law of the run.
-        radius: √(R* depth) in m: that of the touching area by Hertz's law.
+        radius: of the touching area in m, by the law of the run.
+        concentration: pressure at its centre over the mean one, by that law.
         coatings: how many share the approach.
     """
 
@@ -43,6 +44,7 @@ class Loaded:
     force: float
     depth: float
     radius: float
+    concentration: float
     coatings: int
 
     @classmethod
@@ -51,8 +53,14 @@ class Loaded:
         pulse = main_pulse(run.contact(contact))
         force = pulse.force + run.static_force(contact)
         depth = float(run.depth_at(contact, [force])[0])
-        radius = float(contact_radius(depth, run.reduced_radius(contact)))
-        return cls(run, contact, pulse, force, depth, radius, 1 if contact == run.card.beads else 2)
+        coatings = 1 if contact == run.card.beads else 2
+        return cls(run, contact, pulse, force, depth, *run.touched(contact, depth), coatings)
+
+    @property
+    def chi(self) -> float:
+        """√(R* depth) over the coating's thickness."""
+        hertz = contact_radius(self.depth, self.run.reduced_radius(self.contact))
+        return float(hertz) / self.bead.coating_m
 
     @property
     def bead(self):
@@ -113,11 +121,11 @@ def _coated(c, lasting):
         yield (
             "peak_pressure_over_onset",
             "1",
-            Measured(float(peak_pressure(c.force, c.radius)) / onset_pressure),
+            Measured(float(peak_pressure(c.force, c.radius, c.concentration)) / onset_pressure),
         )
     if c.coatings == 2:
         yield "core_compliance_fraction", "1", Measured(core_compliance(c))
-        yield "half_space_correction", "1", Measured(half_space_correction(c.radius / layer, c.bead))
+        yield "half_space_correction", "1", Measured(half_space_correction(c.chi, c.bead))
         hertz = c.run.stiffness(c.contact) * c.depth**1.5
         yield "thin_layer_over_hertz", "1", Measured(thin_layer_force(c) / hertz)
         yield from _strain_rates(c)

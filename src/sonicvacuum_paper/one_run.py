@@ -14,6 +14,7 @@ from sonicvacuum.gauges.base import Recorded
 from sonicvacuum.observe import quantities
 from sonicvacuum.observe.run import Geometry, Run
 from sonicvacuum.observe.trace import Measured, Trace
+from sonicvacuum.physics.touching import touched
 from sonicvacuum.simulation import Simulation
 
 # Gauges of the paper, counted from the bottom; virtual ones take their place in chains without.
@@ -117,6 +118,12 @@ class OneRun:
         """(n,) compression in m of a contact that bears `force` (n,) in N, by the law of the run."""
         chain = self.simulation.chain.take(np.array([self.lane]))
         return chain.depth_at(contact, np.asarray(force)[:, None])[:, 0]
+
+    def touched(self, contact: int, depth: float) -> tuple[float, float]:
+        """Radius in m of what a contact touches at an approach in m, and central over mean pressure."""
+        chain = self.simulation.chain.take(np.array([self.lane]))
+        radius, concentration = touched(chain, contact, np.array([[depth]]))
+        return float(radius[0, 0]), float(concentration[0, 0])
 
     def stiffness(self, contact: int) -> float:
         """Hertz constant in N/m^(3/2)."""

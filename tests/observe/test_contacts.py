@@ -14,16 +14,23 @@ from sonicvacuum.observe.contacts import (
     restitution,
     strain_rate,
 )
+from sonicvacuum.physics.bodies import Body, Elastic
+from sonicvacuum.physics.chain import Chain
 
 # Two coated beads of 4.86 mm at the 15 GPa that match the speeds of Daraio & Nesterenko (2006).
 RADIUS = 4.86e-3 / 4
 MODULUS = 15e9 / (2 * (1 - 0.388**2))
 STIFFNESS = 4 / 3 * MODULUS * math.sqrt(RADIUS)
+COATING = Elastic("coating", 15e9, 0.388)
+CHAIN = Chain(
+    beads=21, bodies=Body(COATING, 0.44e-3, 2.43e-3), striker=COATING, wall=COATING, striker_radius=math.inf,
+    striker_mass=0.47e-3, speed=0.44,
+)  # fmt: skip
 
 
 def test_hertz_relations():
     force = np.array([0.25, 4.8, 12.9])
-    depth = max_compression(force, STIFFNESS)
+    depth = max_compression(force, CHAIN, 12)
     radius = contact_radius(depth, RADIUS)
     # Johnson, Contact Mechanics (1985), Eqs. (4.22), (4.24): a³ = 3 F R/(4 E*), p₀ = (6 F E*²/(π³ R²))^(1/3).
     np.testing.assert_allclose(radius**3, 3 * force * RADIUS / (4 * MODULUS), rtol=1e-13)  # rounding
@@ -33,7 +40,7 @@ def test_hertz_relations():
 
 
 def test_contact_of_the_paper_is_deeper_wider_and_more_strained_than_its_coating_allows():
-    depth = max_compression(4.8, STIFFNESS)
+    depth = max_compression(4.8, CHAIN, 12)
     radius = contact_radius(depth, RADIUS)
     assert depth == pytest.approx(5.2e-6, rel=0.02)  # two digits, worked out by hand
     assert radius == pytest.approx(79e-6, rel=0.01)  # above the coating's 50 µm
@@ -41,7 +48,7 @@ def test_contact_of_the_paper_is_deeper_wider_and_more_strained_than_its_coating
 
 
 def test_open_contact_is_not_compressed():
-    assert max_compression(-1.0, STIFFNESS) == 0.0
+    assert max_compression(-1.0, CHAIN, 12) == 0.0
     assert contact_radius(-1e-6, RADIUS) == 0.0
 
 

@@ -251,7 +251,7 @@ def test_depth_is_that_of_the_law_of_the_run(cases):
 def test_thin_layer_force_of_the_hand_estimate(cases):
     handbook = config.card(cases, "fig3a", "handbook")
     run = run_of(handbook, np.ones((10, handbook.beads + 1)))
-    contact = contacts.Loaded(run, 14, None, 1.0, 5e-6, 1.0, 2)
+    contact = contacts.Loaded(run, 14, None, 1.0, 5e-6, 1.0, 1.5, 2)
     assert contacts.thin_layer_force(contact) == pytest.approx(5.2, abs=0.05)  # printed with two digits
 
 

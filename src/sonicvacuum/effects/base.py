@@ -60,6 +60,8 @@ class Parameter:
         tried_at_once: whether slopes at off mislead, so that finite values are tried as well; so it always is
             for effects at one bead or contact.
         linear: whether a positive parameter that is off at 0 is searched evenly, not by its logarithm.
+        known: value, and its relative standard error, that a record states: where the effect acts the value
+            lies within two of them. None: anything between low and high.
     """
 
     name: str
@@ -76,6 +78,7 @@ class Parameter:
     least_strength: float = 0.0
     tried_at_once: bool = False
     linear: bool = False
+    known: tuple[float, float] | None = None
 
     @property
     def switches(self) -> bool:
@@ -152,6 +155,8 @@ class Effect:
         choices: (setup) → possible places, in order.
         lacks: (setup) → what the setup lacks for the effect, a few words ("no coating is stated"), or None
             where the effect may act; not given: it may act everywhere.
+        stated: (chain, tolerances of a record) → parameter → `Parameter.known`, what the record itself says
+            of the parameters; not given: nothing.
         of_material: whether it belongs to the contact material, so that beads of another size have it too.
         depends_on_orientation: whether its off value is the chain's recorded orientation, so that records
             that hang differently cannot be asked about it together.
@@ -174,6 +179,7 @@ class Effect:
     places: str | None = None
     choices: Callable[[Setup], tuple[int, ...]] | None = field(default=None, repr=False)
     lacks: Callable[[Setup], str | None] | None = field(default=None, repr=False)
+    stated: Callable | None = field(default=None, repr=False)
     of_material: bool = False
     depends_on_orientation: bool = False
     slow: bool = False
@@ -182,6 +188,13 @@ class Effect:
     def parameter(self, name: str) -> Parameter:
         """The continuous parameter of that name (KeyError if there is none)."""
         return {p.name: p for p in self.parameters}[name]
+
+    def informed(self, chain: Chain, tolerances) -> "Effect":
+        """The effect with what a record states of its parameters; the same where it states nothing."""
+        known = self.stated(chain, tolerances) if self.stated else {}
+        if not known:
+            return self
+        return replace(self, parameters=tuple(replace(p, known=known.get(p.name)) for p in self.parameters))
 
     def candidates(self, setup: Setup) -> tuple[int, ...]:
         """Places at which the effect can sit in this setup; empty for an effect without place."""

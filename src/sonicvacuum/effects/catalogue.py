@@ -68,6 +68,10 @@ class Catalogue:
             result = (*result, one)
         return Catalogue(result, self.besides)
 
+    def informed(self, chain, tolerances) -> Catalogue:
+        """The catalogue with what a record states of the effects' parameters, see `Effect.stated`."""
+        return Catalogue(tuple(e.informed(chain, tolerances) for e in self.effects), self.besides)
+
     def candidates(self, setup: Setup, without: Iterable[str] = ()) -> tuple[Effect, ...]:
         """The effects that can act in a setup, but for the ids `without`."""
         left = set(without)

@@ -33,7 +33,9 @@ def layer_factor(delta, width, deep, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a1
     return y4 * y4 * y4 / (((deep * y4 + high) * y4 + middle) * y4 + low)
 
 
-TERM = Term("bonded-layer", "factor", layer_factor, 2 + layer_law.POWERS)
+# Least relative error with which a thickness is known.
+EXACT = 1e-3
+TERM = Term(layer_law.NAME, "factor", layer_factor, 2 + layer_law.POWERS)
 
 
 def coefficients(chain, stiffness, mass, thickness):
@@ -96,6 +98,14 @@ def no_coating(setup: Setup) -> str | None:
     return None if coated else "no coating is stated"
 
 
+def printed(chain, tolerances) -> dict[str, tuple[float, float]]:
+    """The thickness that the record gives the coating, where it says how well that is known."""
+    coatings = {float(t) for body in chain.solids for t in np.ravel(body.coating) if np.isfinite(t)}
+    if tolerances.coating_rel is None or len(coatings) != 1:
+        return {}
+    return {"layer_thickness_um": (coatings.pop() / MICRO, max(tolerances.coating_rel, EXACT))}
+
+
 EFFECT = Effect(
     id="coating-thickness",
     title="Bonded coating on its core",
@@ -128,5 +138,6 @@ EFFECT = Effect(
     dissipative=False,
     change=change,
     lacks=no_coating,
+    stated=printed,
     of_material=True,
 )

@@ -1,6 +1,8 @@
-"""What one Hertz contact bears: compression, radius and pressure of the touching area, rate of strain.
+"""What one contact bears: compression, radius and pressure of the touching area, rate of strain.
 
-The force is the whole one, static part included. Daraio & Nesterenko, PRE 73, 026612 (2006) take the bead's
+The force is the whole one, static part included; compression, radius and the pressure's shape are those of
+the law in force (`physics.chain.Chain.depth_at`, `physics.touching.touched`), else Hertz's.
+Daraio & Nesterenko, PRE 73, 026612 (2006) take the bead's
 core as rigid, so that the compression of a contact is that of its coatings.
 """
 
@@ -12,14 +14,21 @@ from numpy.typing import ArrayLike
 from sonicvacuum.observe.trace import Measured, Trace, missing
 
 
-def max_compression(force_peak: ArrayLike, stiffness: ArrayLike) -> np.ndarray:
-    """Compression in m at the force peak (N): (F/K)^{2/3}, K in N/m^{3/2} (Johnson 1985, Eq. 4.23)."""
-    return np.cbrt(np.square(np.maximum(force_peak, 0.0) / np.asarray(stiffness)))
+def max_compression(force_peak: ArrayLike, chain, contact: int) -> np.ndarray:
+    """Compression in m at the force peak in N (any shape), by the law in force.
+
+    `chain` is of one lane and has `depth_at`, as `physics.chain.Chain` has.
+    """
+    force = np.asarray(force_peak, dtype=float)
+    return chain.depth_at(contact, force.reshape(-1, 1)).reshape(force.shape)
 
 
-def contact_radius(compression: ArrayLike, reduced_radius: float) -> np.ndarray:
-    """Radius in m of the touching area: √(R* δ) (Johnson, Contact Mechanics, 1985, Eq. 4.22 and 4.23)."""
-    return np.sqrt(reduced_radius * np.maximum(compression, 0.0))
+def contact_radius(compression: ArrayLike, reduced_radius: float, wider: ArrayLike = 1.0) -> np.ndarray:
+    """Radius in m of the touching area: √(R* δ) (Johnson, Contact Mechanics, 1985, Eq. 4.22 and 4.23).
+
+    `wider` is what the law in force multiplies it by (`physics.touching.relative`).
+    """
+    return np.sqrt(reduced_radius * np.maximum(compression, 0.0)) * wider
 
 
 def mean_pressure(force: ArrayLike, radius: ArrayLike) -> np.ndarray:
@@ -27,9 +36,12 @@ def mean_pressure(force: ArrayLike, radius: ArrayLike) -> np.ndarray:
     return np.asarray(force) / (math.pi * np.square(radius))
 
 
-def peak_pressure(force: ArrayLike, radius: ArrayLike) -> np.ndarray:
-    """Hertz pressure in Pa at the centre of the touching area: 3/2 of the mean (Johnson 1985, Eq. 4.24)."""
-    return 1.5 * mean_pressure(force, radius)
+def peak_pressure(force: ArrayLike, radius: ArrayLike, concentration: ArrayLike = 1.5) -> np.ndarray:
+    """Pressure in Pa at the centre of the touching area: 3/2 of the mean by Hertz (Johnson 1985, Eq. 4.24).
+
+    `concentration` is that ratio by the law in force (`physics.touching.relative`).
+    """
+    return np.asarray(concentration) * mean_pressure(force, radius)
 
 
 def strain_rate(compression_rate: ArrayLike, coating: float, coatings: int = 2) -> np.ndarray:
@@ -60,7 +72,7 @@ def contact_duration(time: np.ndarray, force: np.ndarray) -> Measured:
     last = first + int((~borne[first:]).argmax()) - 1
     if last < first:
         return missing("truncated: the record ends before the contact opens")
-    depth = max_compression(trace.force, 1.0)
+    depth = np.cbrt(np.square(np.maximum(trace.force, 0.0)))
     opened = last + _overhang(depth, last, -1)
     closed = first - _overhang(depth, first, 1) if first > 0 else 0.0
     return Measured(trace.interval * (opened - closed))

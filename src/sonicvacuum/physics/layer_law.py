@@ -25,6 +25,8 @@ import numpy as np
 
 from sonicvacuum.physics.layered import Layer, solve
 
+# The term of the force law that it is.
+NAME = "bonded-layer"
 SCALE, POWERS = 0.8, 12
 # Contact radii in thicknesses of the least squares; those beyond WIDEST only guide the way to the limit.
 RADII, WIDEST, GUIDING = np.geomspace(0.01, 30.0, 44), 12.0, 0.1

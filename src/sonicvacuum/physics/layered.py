@@ -102,12 +102,14 @@ class Solution:
         force: in E* a³/R, 4/3 for Hertz.
         flat: force on a flat punch over that on a half-space at the same depth (the factor kappa of Hayes et
             al., J. Biomech. 5, 541 (1972)).
+        peak: pressure at the centre in E* a/R, 2/π for Hertz.
     """
 
     radius: np.ndarray
     depth: np.ndarray
     force: np.ndarray
     flat: np.ndarray
+    peak: np.ndarray
 
     @property
     def width(self) -> np.ndarray:
@@ -118,6 +120,11 @@ class Solution:
     def factor(self) -> np.ndarray:
         """Force over Hertz force at the same indentation."""
         return self.force / (4.0 / 3.0 * self.depth**1.5)
+
+    @property
+    def concentration(self) -> np.ndarray:
+        """Pressure at the centre over the mean one: 3/2 for Hertz, 2 for a thin compressible layer."""
+        return np.pi * self.peak / self.force
 
 
 def solve(layer: Layer, radius, refine: float = 1.0) -> Solution:
@@ -133,13 +140,20 @@ def solve(layer: Layer, radius, refine: float = 1.0) -> Solution:
 
 
 def _contact(layer, radius, refine):
-    """Depth, force and flat-punch factor of one contact."""
+    """Depth, force, flat-punch factor and central pressure of one contact.
+
+    The pressure at the centre is minus half the integral of phi'(s)/s, phi' following from the equation.
+    """
     s, weight, x, step, waves = _rules(radius, refine)
     kernel = (waves * (radius * step * (1.0 - layer.compliance(x)))) @ waves[:-1].T * weight
     matrix = 0.5 * np.pi * np.eye(len(s)) - kernel[:-1]
     flat, bowl = np.linalg.solve(matrix, np.stack([np.ones(len(s)), s * s], axis=1)).T
     depth = (1.0 + kernel[-1] @ bowl) / (1.0 + kernel[-1] @ flat)
-    return depth, np.pi * (weight @ (depth * flat - bowl)), 0.5 * np.pi * (weight @ flat)
+    phi = depth * flat - bowl
+    bend = np.sinc(radius * np.outer(s, x) / np.pi) * (radius * x) ** 2  # of cos(x s a/t) over −s
+    less = (bend * (radius * step * (1.0 - layer.compliance(x)))) @ (waves[:-1].T @ (weight * phi))
+    peak = weight @ (2.0 + less) / np.pi
+    return depth, np.pi * (weight @ phi), 0.5 * np.pi * (weight @ flat), peak
 
 
 @lru_cache(maxsize=64)

@@ -10,6 +10,7 @@ import numpy as np
 
 from sonicvacuum.physics.chain import Chain
 from sonicvacuum.physics.history import History
+from sonicvacuum.physics.touching import touched
 
 # Hertz: the contact radius √(R* δ) is small against R*. At δ = R*/10 it is a third of it, and exact solutions
 # for spheres differ by several per cent (Johnson, Contact Mechanics, 1985, Sec. 4.2 and 5.5).
@@ -130,13 +131,14 @@ def energy(chain: Chain, history: History) -> str:
 
 
 def pressure(chain: Chain, history: History, force: np.ndarray, depth: np.ndarray, yields: Mapping) -> str:
-    """Contacts that would yield: Hertz' largest pressure 3 F/(2 π R* δ) against the beads' yield strength."""
+    """Contacts that would yield: the pressure at their centre against the beads' yield strength."""
     known = [s for s in (yields.get(b.surface.name) for b in chain.solids) if s]
     if not known or any(a.term.slot == "path" for a in chain.actions):
         return ""
-    radii = chain.reduced_radii(max(history.contacts) + 1)[list(history.contacts)]
+    seen = [touched(chain, contact, depth[k][None]) for k, contact in enumerate(history.contacts)]
+    radius, steeper = (np.concatenate(part) for part in zip(*seen, strict=True))
     with np.errstate(invalid="ignore", divide="ignore"):
-        largest = np.nanmax(np.where(depth > 0.0, 1.5 * force / (np.pi * radii * depth), 0.0))
+        largest = np.nanmax(np.where(depth > 0.0, steeper * force / (np.pi * radius**2), 0.0))
     if not largest > YIELD * min(known):
         return ""
     return (

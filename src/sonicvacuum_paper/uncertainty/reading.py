@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from sonicvacuum.card import Card
-from sonicvacuum.observe.contacts import contact_radius
+from sonicvacuum.physics.touching import touched
 from sonicvacuum_paper import gauges, trains
 from sonicvacuum_paper.contacts import RISE_LEVEL
 from sonicvacuum_paper.one_run import LOWER, UPPER
@@ -111,13 +111,13 @@ def of_contacts(batch: Batch) -> Values:
     rise = history.time[1] * (top - risen)
     middle = contacts.start + len(contacts) // 2  # contacts between the gauges differ by their load only
     depth, at_rest = chain.depth_at(middle, np.array([peak + rest, rest]))
-    radius = contact_radius(depth, bead.diameter_m / 4.0)
+    (radius,), (concentration,) = touched(chain, middle, depth[None])
     found = {("peak_force", BETWEEN): peak + rest, ("static", BETWEEN): static[list(contacts)].mean(axis=0)}
     if bead.coating_m is None:
         return found
     pressure = (peak + rest) / (np.pi * radius**2) / bead.surface.yield_Pa
     return found | {
         ("mean_pressure_over_yield", BETWEEN): pressure,
-        ("peak_pressure_over_onset", BETWEEN): 1.5 * pressure / ASSUMED.yield_onset,
+        ("peak_pressure_over_onset", BETWEEN): concentration * pressure / ASSUMED.yield_onset,
         ("strain_rate", BETWEEN): (depth - at_rest) / rise / (2.0 * PRINTED.coating),
     }
