@@ -18,7 +18,8 @@ SPHERE = STRIKER | {"shape": "sphere", "diameter_mm": 4.76}
 WRONG_KEYS = [
     ({"colour": "red"}, ["colour", "unknown key"]),
     ({"chain__bead__radius_mm": 2.4}, ["chain.bead.radius_mm", "unknown key"]),
-    ({"sensors__0__droop_us": 1000.0}, ["sensors[0].droop_us", "unknown key"]),
+    ({"sensors__0__rc_us": 1000.0}, ["sensors[0].rc_us", "unknown key"]),
+    ({"sensors__0__droop_us": 1e-3}, ["sensors[0].droop_us", "0.001", "convert it to us"]),
     ({"runs__1__observables__0__sensor": "near"}, ["runs[1].observables[0].sensor", "unknown key"]),
     ({"format": None}, ["format", "missing"]),
     ({"format": 2}, ["format", "2", "format: 1"]),
@@ -57,6 +58,12 @@ WRONG_OBSERVABLES = [
     ({"to": None}, ["to", "missing"]),
     ({"quantity": None}, ["quantity", "missing"]),
     ({"unit": "km/h"}, ["unit", "'km/h'", "given in m/s"]),
+    ({"bound": "below"}, ["bound", "'below'"]),
+    ({"shared": {"places": 4.1}}, ["shared.places", "4.1", "fraction"]),
+    (
+        SCALARS[4] | {"from": None, "to": None, "shared": {"places": 0.1}},
+        ["shared", "a count has no relative error"],
+    ),
     ({"from": "nowhere"}, ["from", "'nowhere'", "near, far, wall"]),
     ({"to": "near"}, ["to", "same place"]),
     ({"sigma": 0.0}, ["sigma", "standard error"]),

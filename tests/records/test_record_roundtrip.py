@@ -29,6 +29,14 @@ CASES = {
             "speed_m_s": 0.3,
         }
     },
+    "told fully": {
+        "tolerances": {"coating_rel": 0.1},
+        "sensors__0__droop_us": 1000.0,
+        "runs__1__observables": [
+            SCALARS[0] | {"shared": {"places": 0.041}},
+            SCALARS[1] | {"bound": "at_most"},
+        ],
+    },
     "no source": {"source": None, "materials": None, "trigger_sigma_us": None},
 }
 

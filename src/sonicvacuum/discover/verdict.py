@@ -187,7 +187,7 @@ def nuisances(forward: Forward, fit: Fit) -> dict[str, Known] | UnsetType:
             found[f"gain {gauge.id}"] = Known(value=ratio, sigma=float(error[at]), prior=None)
     for at, one in enumerate(layout.others, start=layout.modulus + 1):
         scale = 1e6 if one.kind == "delay" else 1.0
-        here = value[at] * scale if one.kind in ("delay", "clock") else np.exp(value[at])
+        here = value[at] * scale if one.kind in ("delay", "clock", "shared") else np.exp(value[at])
         name = f"{one.kind} {one.of}".strip()
         found[name] = Known(value=float(here), sigma=float(error[at]) * scale, prior=one.sigma * scale)
     return found or UNSET

@@ -77,6 +77,7 @@ SPEED = Range("m/s", 1e-5, 100.0, {"mm/s": 1e3, "cm/s": 1e2, "km/s": 1e-3})
 STATIC_FORCE = Range("N", 0.0, 1e4, {"mN": 1e3})
 RELATIVE = Range("(a fraction)", 0.0, 2.0, {"%": 1e2})
 TRIGGER = Range("us", 0.0, 1e4, {"ns": 1e3})
+DROOP = Range("us", 1.0, 1e9, {"s": 1e-6, "ms": 1e-3})
 # A quartz clock is good to 1e-4, a badly set time base to a few per cent.
 CLOCK = Range("(a fraction)", 0.0, 0.2, {"%": 1e2, "ppm": 1e6})
 TOLERANCE = Range("(a fraction)", 0.0, 1.0, {"%": 1e2})

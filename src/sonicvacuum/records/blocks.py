@@ -52,6 +52,7 @@ class _SensorBlock(_Block, kw_only=True):
     bead: Annotated[int, Meta(ge=1)] | None = None
     gain_rel_sigma: NonNegative | Unknown = 0.0
     delay_sigma_us: NonNegative = 0.0
+    droop_us: Positive | None = None
 
 
 # Keys whose unit is that of the gauge's kind: white noise of one sample (left out: estimated from the quiet
@@ -63,7 +64,7 @@ RecordSensorBlock = msgspec.defstruct(
     [(f"{key}_{suffix}", NonNegative | None, None) for suffix in SUFFIXES for key in SCALED],
     bases=(_SensorBlock,),
     module=__name__,
-    namespace={"__doc__": "A gauge: its kind and place, its noise, and how well its channel is known."},
+    namespace={"__doc__": "A gauge: kind, place, RC time of its discharge if known, noise, errors."},
     frozen=True,
     kw_only=True,
     forbid_unknown_fields=True,
@@ -72,10 +73,15 @@ RecordSensorBlock = msgspec.defstruct(
 
 
 class TolerancesBlock(_Block, kw_only=True):
-    """One standard error each, relative, of what all bodies, all runs or all gauges share; 0: exact."""
+    """One standard error each, relative, of what all bodies, all runs or all gauges share; 0: exact.
+
+    With `coating_rel` the thickness that `coating_um` states is that of the layer, if it acts as one; without
+    it the layer's thickness is searched for.
+    """
 
     bead_mass_rel: NonNegative | None = None
     bead_diameter_rel: NonNegative | None = None
+    coating_rel: NonNegative | None = None
     striker_mass_rel: NonNegative | None = None
     speed_common_rel: NonNegative | None = None
     gain_common_rel: NonNegative | None = None
@@ -103,10 +109,18 @@ class RecordStrikerBlock(StrikerBlock, kw_only=True):
 
 
 class _Observable(_Block, tag_field="quantity", kw_only=True):
-    """One measured scalar with its standard error."""
+    """One measured scalar with its standard error.
+
+    Attributes:
+        bound: `at_most` or `at_least`, where the value is a bound: the data then ask for no more than that.
+        shared: source of error → relative standard error that the value has in common with every other one
+            that names this source (a distance that several speeds were worked out with); not in `sigma`.
+    """
 
     value: float
     sigma: NonNegative
+    bound: Literal["at_most", "at_least"] | None = None
+    shared: dict[Id, NonNegative] = field(default_factory=dict)
 
 
 class SpeedBlock(_Observable, tag="speed", kw_only=True):

@@ -83,4 +83,6 @@ def _run(record: Record, run: Run, block: RunBlock):
             yield f"    {g.id}: peak {peak:.4g} {g.unit}, {noise}"
     for o, given in zip(run.observables, block.observables, strict=True):
         unit = "" if str(given.unit) == "1" else f" {given.unit}"
-        yield f"    {o.label} = {given.value:g} ± {given.sigma:g}{unit}"
+        sign = {None: "=", "at_most": "≤", "at_least": "≥"}[given.bound]
+        common = "".join(f", and {100.0 * size:g} % shared: {name}" for name, size in given.shared.items())
+        yield f"    {o.label} {sign} {given.value:g} ± {given.sigma:g}{unit}{common}"

@@ -34,6 +34,7 @@ class Tolerances:
 
     bead_mass_rel: float | None = None
     bead_diameter_rel: float | None = None
+    coating_rel: float | None = None
     striker_mass_rel: float | None = None
     speed_common_rel: float | None = None
     gain_common_rel: float | None = None
@@ -47,20 +48,25 @@ class Observable:
         quantity: key of `observe.quantities.QUANTITIES`.
         value, sigma: with its standard error; an amplitude in the unit of its gauge.
         options: what the quantity needs or takes: from, to, sensor, level, threshold, amplitude (N).
+        bound: `at_most` or `at_least`; None where the value is one.
+        shared: source → relative standard error in common with others that name it.
     """
 
     quantity: str
     value: float
     sigma: float
     options: Mapping[str, str | float]
+    bound: str | None = None
+    shared: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def label(self) -> str:
-        """`speed g9-g5`, for tables and messages."""
+        """`speed g9-g5`, `pulse_count wall at 0.08`, for tables and messages."""
         o = self.options
         where = "-".join(str(o[k]) for k in ("from", "to") if k in o)
         force = f"{o['amplitude']:g} N" if "amplitude" in o else ""
-        return " ".join(p for p in (self.quantity, where, str(o.get("sensor", "")), force) if p)
+        level = next((f"at {o[k]:g}" for k in ("level", "threshold") if k in o), "")
+        return " ".join(p for p in (self.quantity, where, str(o.get("sensor", "")), force, level) if p)
 
 
 @dataclass(frozen=True, eq=False)
@@ -183,8 +189,9 @@ def _gauge(block) -> Gauge:
     suffix = KINDS[block.kind].suffix
     scaled = {key: getattr(block, f"{key}_{suffix}") or 0.0 for key in SCALED}
     gain = math.inf if block.gain_rel_sigma == "unknown" else block.gain_rel_sigma
-    delay = block.delay_sigma_us / 1e6
-    return Gauge(block.id, block.kind, block.bead, gain_rel_sigma=gain, delay_sigma_s=delay, **scaled)
+    errors = {"gain_rel_sigma": gain, "delay_sigma_s": block.delay_sigma_us / 1e6}
+    droop = math.inf if block.droop_us is None else block.droop_us / 1e6
+    return Gauge(block.id, block.kind, block.bead, droop_s=droop, **errors, **scaled)
 
 
 def observable(block) -> Observable:
@@ -196,4 +203,4 @@ def observable(block) -> Observable:
     if hasattr(block, "amplitude_N"):
         options["amplitude"] = block.amplitude_N
     sigma = block.sigma or (COUNT_SIGMA if quantity == "pulse_count" else 0.0)
-    return Observable(quantity, block.value * scale, sigma * scale, options)
+    return Observable(quantity, block.value * scale, sigma * scale, options, block.bound, dict(block.shared))

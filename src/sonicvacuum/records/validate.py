@@ -82,6 +82,8 @@ def _check_sensors(block):
         if s.gain_rel_sigma != "unknown":
             ranges.RELATIVE.check(f"{key}.gain_rel_sigma", s.gain_rel_sigma)
         ranges.TRIGGER.check(f"{key}.delay_sigma_us", s.delay_sigma_us)
+        if s.droop_us is not None:
+            ranges.DROOP.check(f"{key}.droop_us", s.droop_us)
         _check_units(s, key)
 
 
@@ -203,6 +205,10 @@ def _check_observable(block, observable, key):
             )
     _check_pair(block, observable, key)
     _check_unit_of(block, observable, key)
+    for source, size in observable.shared.items():
+        ranges.TOLERANCE.check(f"{key}.shared.{source}", size)
+    if observable.shared and quantity == "pulse_count":
+        raise LaboratoryError(f"{key}.shared", "a count has no relative error; leave the key out")
     if observable.sigma == 0.0 and quantity != "pulse_count":
         raise LaboratoryError(f"{key}.sigma", "is 0; give the standard error of the value")
 

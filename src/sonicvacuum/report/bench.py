@@ -109,7 +109,7 @@ def _others(verdict):
     """What else the record leaves open."""
     for name, known in (verdict.nuisances or {}).items():
         if known.prior:
-            away = known.value if name.startswith(("delay", "clock")) else math.log(known.value)
+            away = known.value if name.startswith(("delay", "clock", "shared")) else math.log(known.value)
             yield from _far(
                 away, known.prior, f"Check {name.replace('_', ' ')}: the data ask for {known.value:.4g}"
             )

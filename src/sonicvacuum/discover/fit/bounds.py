@@ -76,7 +76,9 @@ def _wider(c: Coordinate) -> Coordinate:
 
 
 def _ends(c: Coordinate) -> tuple[float, float]:
-    """Coordinates between which a parameter has a meaning."""
+    """Coordinates between which a parameter has a meaning, or which the record states."""
+    if c.parameter.known:
+        return c.low, c.high
     ends = [_place(c, value) for value in (c.parameter.least, c.parameter.most)]
     return min(ends), max(ends)
 

@@ -3,8 +3,8 @@
 Priors. `none` and `unknown` have the weights below, the effects share the rest alike. The strength of an
 effect is given a prior flat in log d′, the same for all effects (d′ its size in the data, in standard
 errors): ranges of physical parameters are arbitrary, and would otherwise decide between effects that fit
-alike. Parameters that shape an effect are flat over their bounds, places are equally likely. Each enters as
-an Occam factor, never above 1.
+alike. Parameters that shape an effect, or that the record states, are flat over their bounds, places are
+equally likely. Each enters as an Occam factor, never above 1.
 
 Unknown. A model that leaves a residual with p-value p is worth at most 1/(−e p ln p) of what fits
 (Sellke, Bayarri & Berger, Am. Stat. 55, 62, 2001); that bound is the weight of `unknown` against the best of
@@ -84,7 +84,9 @@ def occam(fit: Fit, gain: float, shapes: bool = True) -> float:
     """Log of the product of the Occam factors of all parameters of a fit; places aside."""
     total = 0.0
     for k, c in enumerate(fit.hypothesis.coordinates):
-        if c.parameter.switches:
+        if c.parameter.known:
+            total += occam_shape(fit, k)
+        elif c.parameter.switches:
             total += occam_strength(gain, c.two_sided)
         elif shapes:
             total += occam_shape(fit, k)

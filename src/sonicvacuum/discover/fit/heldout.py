@@ -47,7 +47,7 @@ def _seen_without(fit: Fit, run: int) -> bool:
     known = np.diag(others[:free, :free] - cross @ np.linalg.solve(rest, cross.T)) if free else np.zeros(0)
     for component, own in zip(fit.hypothesis.components, fit.hypothesis.columns, strict=True):
         sizes = [
-            precision * (1.0 if c.kind in ("log", "inverse") else u**2)
+            precision * (1.0 if c.kind in ("log", "inverse") else u**2) if not c.parameter.known else np.inf
             for precision, u, c in zip(known[own], fit.u[own], component.free, strict=True)
             if c.parameter.switches
         ]

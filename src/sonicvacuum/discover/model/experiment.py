@@ -20,12 +20,17 @@ from sonicvacuum.physics.chain import Chain
 
 @dataclass(frozen=True)
 class Scalar:
-    """One observable of a run: SI value and standard error; `options` as `observe.quantities` takes them."""
+    """One observable of a run: SI value and standard error; `options` as `observe.quantities` takes them.
+
+    `bound` and `shared` are those of `records.record.Observable`.
+    """
 
     quantity: str
     value: float
     sigma: float
     options: Mapping[str, object] = field(default_factory=dict)
+    bound: str | None = None
+    shared: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

@@ -192,6 +192,7 @@ class Forward:
         own |= dict.fromkeys(layout.other("gain-common"), gains.sum(axis=1))
         timed = [*layout.other("clock"), *layout.other("delay")]
         own |= {place: timing[:, 1 + k] for k, place in enumerate(timed)}
+        own |= {place: self._shared_column(run, value, place) for place in layout.other("shared")}
         places = layout.local(run)
         result = np.empty((len(value), len(places), value.shape[1]))
         for k, place in enumerate(places):
@@ -251,7 +252,23 @@ class Forward:
             for k, one in enumerate(data.scalars):
                 at = gauges_ * samples + k
                 columns[:, s, at] = value[:, at] * scalars.gain_power(one, e.gauges[s].id)
+        if data.scalars:
+            own = slice(gauges_ * samples, None)
+            columns[:, :, own] *= ~scalars.held(data.scalars, value[:, own])[:, None]
         return columns
+
+    def _shared_column(self, run, value, place):
+        """(L, M) change of the data of a run with an error that its observables share."""
+        source, wanted = self.layout.others[place - self.layout.modulus - 1].of, self._scalars(run)
+        columns = np.zeros_like(value)
+        if wanted:
+            sizes = np.array([one.shared.get(source, 0.0) for one in wanted])
+            own = value[:, -len(wanted) :]
+            columns[:, -len(wanted) :] = np.where(scalars.held(wanted, own), 0.0, own * sizes)
+        return columns
+
+    def _scalars(self, run):
+        return self.experiment.runs[run].scalars
 
     def sampled(self, hypothesis, u, nu, places=None, rate_of: int = 0, change=None):
         """For each run whitened predictions (L, M) and, for every `rate_of`-th lane, slopes (·, n, M) to time
@@ -284,6 +301,8 @@ class Forward:
         e, data, layout = self.experiment, self.experiment.runs[run], self.layout
         signals = seen.readings[k::runs] * self._gain(nu)[..., None]
         measured = scalars.predict(e, run, slice(k, None, runs), seen, signals)
+        errors = {layout.others[p - layout.modulus - 1].of: nu[:, p] for p in layout.other("shared")}
+        measured = scalars.read(data.scalars, measured, errors)
         lanes, sigma = len(nu), self.nuisance_sigma
         value = np.zeros((lanes, len(e.gauges), 0))
         times = 1 + len(layout.other("clock")) + len(layout.other("delay"))

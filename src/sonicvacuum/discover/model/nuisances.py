@@ -3,9 +3,10 @@
 Every run has the speed of its striker and its time zero, every gauge its gain, the beads their modulus; these
 always have a place. Besides, a record may leave open what all runs share (`Shared`): the modulus of every
 other material, masses and sizes of all beads or of the striker, the speed of all runs and the gain of all
-gauges together, the recorder's clock, the delay of a channel. A nuisance is a natural logarithm of a ratio,
-or a time, in units of its standard error, so that its Gaussian prior is N(0, 1); an error of 0 means exact,
-and costs nothing. Baseline and drift act linearly on the readings, and are marginalised as noise (`slow`).
+gauges together, the recorder's clock, the delay of a channel, an error that several observables have in
+common. A nuisance is a natural logarithm of a ratio, or a time, in units of its standard error, so that its
+Gaussian prior is N(0, 1); an error of 0 means exact, and costs nothing. Baseline and drift act linearly on
+the readings, and are marginalised as noise (`slow`).
 """
 
 from collections.abc import Callable
@@ -40,10 +41,11 @@ class Shared:
 
     Attributes:
         kind: "modulus", "bead-mass", "bead-diameter", "striker-mass", "speed-common", "gain-common",
-            "clock", "delay" or "law".
+            "clock", "delay", "shared" or "law".
         sigma: standard error: of the natural logarithm, of the clock's relative error, in s for delays; of a
-            coefficient of the free-form law its prior width.
-        of: the material of a modulus, the gauge of a delay, the name of a coefficient.
+            coefficient of the free-form law its prior width; 1 for an error that observables share, whose
+            size stands with each of them.
+        of: the material of a modulus, the gauge of a delay, the name of a shared error or of a coefficient.
         gauge: index of that gauge.
     """
 
@@ -161,9 +163,16 @@ def shared(record: Record, chain: Chain) -> tuple[Shared, ...]:
         Shared("gain-common", tolerance("gain_common_rel")),
         Shared("clock", record.clock_rel_sigma),
         *(Shared("delay", g.delay_sigma_s, g.id, k) for k, g in enumerate(record.gauges)),
+        *(Shared("shared", 1.0, source) for source in _sources(record)),
     ]
     ball = ("bead-mass", "bead-diameter") if record.beads == 0 else ()
     return tuple(one for one in found if one.sigma > 0.0 and one.kind not in ball)
+
+
+def _sources(record: Record) -> list[str]:
+    """Errors that observables share, in the order of the record; one of size 0 is none."""
+    observables = [o for run in record.runs for o in run.observables]
+    return list(dict.fromkeys(s for o in observables for s, size in o.shared.items() if size > 0.0))
 
 
 _BODIES = ("bead-mass", "bead-diameter", "striker-mass")

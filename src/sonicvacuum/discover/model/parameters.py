@@ -13,6 +13,8 @@ from sonicvacuum.effects import Effect, Parameter, Setup
 
 # Strength below which an effect counts as off, and the fraction of it at which slopes at off are taken.
 SMALL = 1e-3
+# A value that the record states is searched within so many of its standard errors.
+WITHIN = 2.0
 # A bound towards off bounds nothing: precise data see an effect that is weaker by as much.
 TOWARDS_OFF = 100.0
 
@@ -65,6 +67,8 @@ class Coordinate:
 
     def starts(self) -> np.ndarray:
         """Values of u at which a search may start, over the whole range."""
+        if self.parameter.known:
+            return np.linspace(self.low, self.high, 5)[1:-1]
         if self.kind in ("log", "inverse"):
             weakest = self.low + (math.log(TOWARDS_OFF) if self.parameter.switches else 0.0)
             return np.linspace(weakest, self.high, 14)[1:-1]
@@ -83,6 +87,9 @@ def coordinate(parameter: Parameter, setup: Setup) -> Coordinate:
     if off is None:
         return _shape(parameter)
     off = float(np.ravel(off)[0])
+    if parameter.known:
+        value, error = parameter.known
+        return Coordinate(parameter, "inverse", value, off, -WITHIN * error, WITHIN * error, False)
     if math.isinf(off):
         weakest, strongest = math.log(scale / high / TOWARDS_OFF), math.log(scale / low)
         return Coordinate(parameter, "inverse", scale, off, weakest, strongest, False)

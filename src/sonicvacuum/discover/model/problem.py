@@ -74,7 +74,7 @@ def _experiment(record, catalogue):
         modulus_rel_sigma=MODULUS_REL_SIGMA if named is None else named,
         diameter=record.specimen.diameters,
         record=record,
-        catalogue=catalogue,
+        catalogue=catalogue.informed(parts[0].chain, record.tolerances),
         excluded=tuple(name for name, odds in record.priors.items() if odds == 0.0),
         prior_odds=_priors(record, catalogue),
         model_floor_rel=record.model_floor_rel,
@@ -155,7 +155,9 @@ def _run(record, run):
         if signals and gauge.id in signals.readings:
             readings[s] = signals.readings[gauge.id]
             present[s] = believed(readings[s], gauge.sigma)
-    scalars = tuple(Scalar(o.quantity, o.value, _error(o), o.options) for o in run.observables)
+    scalars = tuple(
+        Scalar(o.quantity, o.value, _error(o), o.options, o.bound, o.shared) for o in run.observables
+    )
     there = None if present.all() else present
     return RunData(run.id, time, readings, scalars, run.striker.speed_rel_sigma, there)
 

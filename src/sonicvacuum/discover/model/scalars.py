@@ -1,4 +1,4 @@
-"""Observables of a run predicted from simulated readings, and what a gain does to them."""
+"""Observables of a run predicted from simulated readings, and what gains and shared errors do to them."""
 
 import numpy as np
 
@@ -18,6 +18,30 @@ def gain_power(scalar, gauge: str) -> float:
     if scalar.quantity == "speed_at_amplitude" and options["sensor"] == gauge:
         return _SPEED_POWER
     return 0.0
+
+
+def read(scalars, predicted: np.ndarray, errors) -> np.ndarray:
+    """(L, n) predictions as they are compared: with shared errors in them, and no further than a bound.
+
+    Args:
+        scalars: the n scalars of a run.
+        predicted: (L, n) values in SI.
+        errors: source → (L,) how large the error of that source is, in its standard errors.
+    """
+    values = predicted.copy()
+    for k, one in enumerate(scalars):
+        for source, size in one.shared.items():
+            values[:, k] *= np.exp(size * errors.get(source, 0.0))
+        if one.bound:
+            nearest = np.maximum if one.bound == "at_most" else np.minimum
+            values[:, k] = nearest(values[:, k], one.value)
+    return values
+
+
+def held(scalars, values: np.ndarray) -> np.ndarray:
+    """(L, n) whether a bound holds, of values over their standard errors: there nothing moves them."""
+    at = np.array([one.value / one.sigma if one.bound else np.nan for one in scalars])
+    return values == at
 
 
 def predict(experiment, run: int, lanes: slice, seen, signals: np.ndarray) -> np.ndarray:
