@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from made_records import block
 
+from sonicvacuum.discover import quantities
 from sonicvacuum.discover.fit.evidence import occam_shape
 from sonicvacuum.discover.fit.refit import fit
 from sonicvacuum.discover.model.forward import Forward
@@ -61,6 +62,25 @@ def test_an_error_that_two_speeds_share_counts_once(nominal):
     assert pair == pytest.approx(2 * off**2 / (0.01**2 + 2 * common), rel=0.1)
     alone = SPEED | {"value": speed * math.exp(off), "sigma": math.hypot(0.01, 0.04) * speed}
     assert chi2(alone, alone) > 1.7 * pair
+
+
+def test_what_is_left_out_is_predicted_by_the_others(nominal):
+    # Two speeds of one shared error s, each 3 % off, own error o: the other one alone says off s²/(s² + o²).
+    speed, force, off = *map(float, nominal), 0.03
+    one = SPEED | {"value": speed * (1.0 + off), "sigma": 0.01 * speed, "shared": SHARED}
+    held = FORCE | {"value": 1.5 * force, "sigma": 0.1 * force, "bound": "at_most"}
+    exact = {"parylene-c": {"modulus_rel_sigma": 0.0}}
+    forward = Forward(experiment(record(one, one, held, materials=exact)))
+    found = fit(forward, Hypothesis(), np.zeros((1, 0)), np.zeros((1, forward.layout.size)))
+    first, _, bound = (
+        dict(zip(quantities.HEADER, row, strict=True))
+        for row in quantities.rows((forward, found), (forward, found))
+    )
+    share = 0.04**2 / (0.04**2 + 0.01**2)
+    assert first["held_out"] == pytest.approx(speed * (1.0 + share * off), rel=2e-3)  # exp, and the striker
+    assert (first["quantity"], first["unit"]) == ("speed g4-g7", "m/s")
+    assert bound["extended"] == pytest.approx(force, rel=0.02) == bound["held_out"]
+    assert (bound["bound"], bound["measured"]) == ("at_most", pytest.approx(1.5 * force))
 
 
 def test_a_bound_asks_for_no_more(nominal):

@@ -12,6 +12,7 @@ HEADERS = {
     "candidates": "effects,delta_chi2,log10_bayes,probability,parameters,flags",
     "gap": "run,data,before,after,held_out_before,held_out_after,floor",
     "limits": "effect,parameter,limit_95,estimate,testable,place",
+    "quantities": "run,quantity,bound,unit,measured,sigma,nominal,extended,held_out",
     "traces": "run,sensor,time_us,measured_N,nominal_N,extended_N,sigma_N",
 }
 CELL = Where(run="fast", sensor="g1", feature="amplitude", z=-12.0, p=1e-30)
@@ -114,6 +115,11 @@ def write(folder: Path, kind: str) -> Path:
         "limits": [("viscous-drag", "rate_per_s", 15.0, 1.0, 1, ""), ("gravity", "fraction", 0, 1, 0, "")],
         "traces": [] if kind in WITHOUT_TRACES else list(_traces()),
     }
+    if kind in WITHOUT_TRACES:
+        tables["quantities"] = [
+            ("slow", "restitution", "", "1", 0.9, 0.01, 0.99, 0.91, 0.92),
+            ("fast", "restitution", "at_most", "1", 0.85, 0.01, 0.99, 0.84, ""),
+        ]
     for name, rows in tables.items():
         with open(folder / f"{name}.csv", "w", newline="") as stream:
             csv.writer(stream, lineterminator="\n").writerows([HEADERS[name].split(","), *rows])

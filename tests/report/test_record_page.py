@@ -89,6 +89,8 @@ SENTENCES = {
     "scalars": (
         "In 1 of 2 comparisons (run and measured quantity)",
         "run fast: the data show a smaller restitution than predicted",
+        "restitution at most 0.85 ± 0.01 0.99 0.84 –",
+        "Only the last column predicts",
         "There is one run only",
         "this record has none",
     ),

@@ -10,7 +10,7 @@ from msgspec import UNSET
 
 from sonicvacuum import stages
 from sonicvacuum.blas import one_thread
-from sonicvacuum.discover import given, law, next_experiment, verdict
+from sonicvacuum.discover import given, law, next_experiment, quantities, verdict
 from sonicvacuum.discover.faults import competition
 from sonicvacuum.discover.fit import goodness, heldout
 from sonicvacuum.discover.fit.refit import Fit
@@ -219,6 +219,9 @@ def write(result: Result, folder: Path) -> None:
             for p in result.places
         ),
     )
+    if any(run.scalars for run in result.found.forward.experiment.runs):
+        told = quantities.rows((result.found.forward, result.found.null), result.extended)
+        verdict.write_table(folder / quantities.FILE, quantities.HEADER, told)
     verdict.write_table(folder / "candidates.csv", *candidates(result))
     verdict.write_table(folder / "gap.csv", *gap_rows(result))
     verdict.write_table(

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import msgspec
 
-from sonicvacuum.discover import given
+from sonicvacuum.discover import given, quantities
 from sonicvacuum.discover.compare import check_source
 from sonicvacuum.discover.verdict import Model, Verdict
 from sonicvacuum.effects import CATALOGUE, Catalogue
@@ -43,6 +43,7 @@ _COLUMNS = {
     "candidates": ("effects", "delta_chi2", "log10_bayes", "probability", "parameters"),
     "gap": ("run", "data", "before", "after", "held_out_before", "held_out_after"),
     "limits": ("effect", "parameter", "limit_95", "testable", "place"),
+    "quantities": quantities.HEADER,
 }
 
 
@@ -100,9 +101,9 @@ def _told(folder, verdict, model, tables, catalogue):
         "corrected": bench.corrected(verdict),
         "where": words.where(verdict, tables["where"]),
         "grid": rows.grid(tables["where"]),
-        "scalars": rows.scalars(tables["where"]),
+        "quantities": rows.quantities(_quantities(folder)),
         "effects": rows.effects(verdict, catalogue),
-        "odds": rows.odds(verdict, catalogue),
+        "odds": rows.odds(verdict, catalogue, tables["candidates"]),
         "nuisances": bench.nuisances(model),
         "law": words.law(verdict, catalogue),
         "alternatives": words.alternatives(verdict, catalogue),
@@ -129,6 +130,12 @@ def _json(path, kind):
         return msgspec.json.decode(read_text(path), type=kind)
     except (msgspec.DecodeError, msgspec.ValidationError) as error:
         raise InputError(f"{path}: not what sonicvacuum discover writes ({error}); run it again") from None
+
+
+def _quantities(folder):
+    """Rows of the quantities measured without traces; none where there are only traces."""
+    path = folder / quantities.FILE
+    return _rows(path) if path.exists() else []
 
 
 def _rows(path):

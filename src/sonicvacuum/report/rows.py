@@ -49,28 +49,52 @@ def _cell(c):
     }
 
 
-def scalars(cells: list[dict]) -> list[dict]:
-    """What was measured without traces: distance from the nominal and from the extended model."""
+_BOUNDS = {"": "", "at_most": "at most ", "at_least": "at least "}
+
+
+def quantities(table: list[dict]) -> list[dict]:
+    """What was measured without traces: what both models give, and what the fit would say without it."""
     return [
         {
-            "run": c["run"],
-            "quantity": c["feature"].replace("_", " "),
-            "before": number(c["z_before"], 3),
-            "after": number(c.get("z_after") or "", 3),
+            "run": r["run"],
+            "quantity": r["quantity"],
+            "unit": _UNITS.get(r["unit"], r["unit"]),
+            "measured": f"{_BOUNDS[r['bound']]}{number(r['measured'], 4)} ± {number(r['sigma'], 2)}",
+            **{name: number(r[name], 4) for name in ("nominal", "extended", "held_out")},
         }
-        for c in cells
-        if not c["sensor"]
+        for r in table
     ]
 
 
-def odds(verdict, catalogue) -> list[dict]:
-    """The most probable explanations, with plain names, ids and shares."""
+def odds(verdict, catalogue, singles=()) -> list[dict]:
+    """The most probable explanations, with plain names, ids, shares and the numbers that they need.
+
+    `singles` are rows of candidates.csv.
+    """
+    fitted = {r["effects"].replace("+", " + "): r["parameters"] for r in singles}
     best = sorted(verdict.probabilities.items(), key=lambda item: -item[1])[:MOST]
     return [
-        {"name": plain(k, catalogue), "id": k, "share": share(p), "percent": f"{100.0 * p:.1f}"}
+        {
+            "name": plain(k, catalogue),
+            "id": k,
+            "share": share(p),
+            "percent": f"{100.0 * p:.1f}",
+            "with": _with(fitted.get(k, ""), catalogue),
+        }
         for place, (k, p) in enumerate(best)
         if place < FEWEST or p >= LEAST
     ]
+
+
+def _with(parameters, catalogue):
+    """`dynamic-modulus modulus_ratio 3.87` of candidates.csv in words: `modulus over handbook value 3.9`."""
+    told = []
+    for part in filter(None, (p.strip() for p in parameters.split(";"))):
+        effect, name, value = part.rsplit(" ", 2)
+        if effect in catalogue and name in {p.name for p in catalogue.effect(effect).parameters}:
+            p = catalogue.effect(effect).parameter(name)
+            told.append(f"{p.help} {number(value, 2)}{unit_of(p.unit)}")
+    return ", ".join(told)
 
 
 def rounds(table: list[dict], catalogue) -> list[dict]:

@@ -182,7 +182,7 @@ class Forward:
             timing: (L, 1 + clock + delays, M) slopes to time zero, clock and delays.
         """
         layout, sigma = self.layout, self.nuisance_sigma
-        gains = self._gain_columns(run, value)
+        gains = scalars.gain_columns(self.experiment, run, value)
         if changes is None:
             changes = np.zeros((len(value), 1 + len(layout.simulated), 1))
         own = {place: changes[:, k] for k, place in enumerate(layout.simulated)}
@@ -192,7 +192,8 @@ class Forward:
         own |= dict.fromkeys(layout.other("gain-common"), gains.sum(axis=1))
         timed = [*layout.other("clock"), *layout.other("delay")]
         own |= {place: timing[:, 1 + k] for k, place in enumerate(timed)}
-        own |= {place: self._shared_column(run, value, place) for place in layout.other("shared")}
+        for place in layout.other("shared"):
+            own[place] = scalars.shared_column(self.experiment, run, value, layout.named(place))
         places = layout.local(run)
         result = np.empty((len(value), len(places), value.shape[1]))
         for k, place in enumerate(places):
@@ -242,34 +243,6 @@ class Forward:
                 if like and (found := self.nuisance_column(like, run, place)):
                     slopes[:, column] = nuisances[lanes, found[0]] / found[1]
 
-    def _gain_columns(self, run, value):
-        """(L, S, M) change of the data of a run with the logarithm of the gain of each gauge."""
-        e, data = self.experiment, self.experiment.runs[run]
-        gauges_, samples = len(e.gauges), len(data.time)
-        columns = np.zeros((len(value), gauges_, value.shape[1]))
-        for s in range(gauges_):
-            columns[:, s, s * samples : (s + 1) * samples] = value[:, s * samples : (s + 1) * samples]
-            for k, one in enumerate(data.scalars):
-                at = gauges_ * samples + k
-                columns[:, s, at] = value[:, at] * scalars.gain_power(one, e.gauges[s].id)
-        if data.scalars:
-            own = slice(gauges_ * samples, None)
-            columns[:, :, own] *= ~scalars.held(data.scalars, value[:, own])[:, None]
-        return columns
-
-    def _shared_column(self, run, value, place):
-        """(L, M) change of the data of a run with an error that its observables share."""
-        source, wanted = self.layout.others[place - self.layout.modulus - 1].of, self._scalars(run)
-        columns = np.zeros_like(value)
-        if wanted:
-            sizes = np.array([one.shared.get(source, 0.0) for one in wanted])
-            own = value[:, -len(wanted) :]
-            columns[:, -len(wanted) :] = np.where(scalars.held(wanted, own), 0.0, own * sizes)
-        return columns
-
-    def _scalars(self, run):
-        return self.experiment.runs[run].scalars
-
     def sampled(self, hypothesis, u, nu, places=None, rate_of: int = 0, change=None):
         """For each run whitened predictions (L, M) and, for every `rate_of`-th lane, slopes (·, n, M) to time
         zero, clock and delays.
@@ -301,7 +274,7 @@ class Forward:
         e, data, layout = self.experiment, self.experiment.runs[run], self.layout
         signals = seen.readings[k::runs] * self._gain(nu)[..., None]
         measured = scalars.predict(e, run, slice(k, None, runs), seen, signals)
-        errors = {layout.others[p - layout.modulus - 1].of: nu[:, p] for p in layout.other("shared")}
+        errors = {layout.named(p): nu[:, p] for p in layout.other("shared")}
         measured = scalars.read(data.scalars, measured, errors)
         lanes, sigma = len(nu), self.nuisance_sigma
         value = np.zeros((lanes, len(e.gauges), 0))

@@ -126,6 +126,10 @@ class Layout:
         """Places of the other shared ones of a kind."""
         return [self.modulus + 1 + k for k, one in enumerate(self.others) if one.kind == kind]
 
+    def named(self, place: int) -> str:
+        """What the other shared one at a place is of."""
+        return self.others[place - self.modulus - 1].of
+
     @property
     def simulated(self) -> list[int]:
         """Places of those that take a simulation of their own each: moduli, masses, sizes."""

@@ -44,6 +44,35 @@ def held(scalars, values: np.ndarray) -> np.ndarray:
     return values == at
 
 
+def gain_columns(experiment, run: int, value: np.ndarray) -> np.ndarray:
+    """(L, S, M) change of the data of a run, (L, M) over their noise, with the logarithm of each gauge's
+    gain.
+    """
+    data, gauges = experiment.runs[run], experiment.gauges
+    samples = len(data.time)
+    columns = np.zeros((len(value), len(gauges), value.shape[1]))
+    for s in range(len(gauges)):
+        columns[:, s, s * samples : (s + 1) * samples] = value[:, s * samples : (s + 1) * samples]
+        for k, one in enumerate(data.scalars):
+            at = len(gauges) * samples + k
+            columns[:, s, at] = value[:, at] * gain_power(one, gauges[s].id)
+    if data.scalars:
+        own = slice(len(gauges) * samples, None)
+        columns[:, :, own] *= ~held(data.scalars, value[:, own])[:, None]
+    return columns
+
+
+def shared_column(experiment, run: int, value: np.ndarray, source: str) -> np.ndarray:
+    """(L, M) change of the data of a run, (L, M) over their noise, with an error that its scalars share."""
+    wanted = experiment.runs[run].scalars
+    columns = np.zeros_like(value)
+    if wanted:
+        sizes = np.array([one.shared.get(source, 0.0) for one in wanted])
+        own = value[:, -len(wanted) :]
+        columns[:, -len(wanted) :] = np.where(held(wanted, own), 0.0, own * sizes)
+    return columns
+
+
 def predict(experiment, run: int, lanes: slice, seen, signals: np.ndarray) -> np.ndarray:
     """(L, n) values of the scalars of a run in SI, 0 where the readings show no such thing.
 
