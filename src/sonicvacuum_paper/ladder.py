@@ -39,6 +39,7 @@ MODELS = {
     "named": Model("as discovered", "as many as named"),
     "ideal": Model("layer, ideal gauges", "0", counted=False),
 }
+NAMED = "named"
 COLUMNS = tuple(MODELS)
 # The first of these that has a number decides: the printed layer, to which nothing is fitted.
 DECIDING = ("layer", "matched", "handbook", "layer_membrane", "layer_loss", "matched_loss", "named")

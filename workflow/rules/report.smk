@@ -69,6 +69,7 @@ rule page:
         contours_picture="results/identifiability.svg",
         experiments="results/experiments.csv",
         relaxation="results/relaxation.csv",
+        losses="results/losses.csv",
         blind_full=sorted(Path(STUDY_TABLES).glob("*.csv")),
         animations=expand("results/animations/{name}.svg", name=ANIMATIONS),
         linked=["results/runs.html", "results/blind.html"],
@@ -100,7 +101,7 @@ rule page:
         " {params.cards:q} {params.locks:q} {params.discoveries:q} --blind-full {params.blind_full:q}"
         " {params.histories:q} {params.animations:q} {params.linked:q}"
         " --map {input.contours:q} --map-picture {input.contours_picture:q} --experiments {input.experiments:q}"
-        " --relaxation {input.relaxation:q} --out {output:q} 2> {log:q}"
+        " --relaxation {input.relaxation:q} --losses {input.losses:q} --out {output:q} 2> {log:q}"
 
 
 rule runs:

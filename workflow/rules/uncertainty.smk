@@ -4,6 +4,7 @@
 rule uncertainty:
     input:
         claims=home("workflow/resources/claims.csv"),
+        named=expand("results/cards/{card}.json", card=[c for c in CARDS if c.endswith(".named")]),
     output:
         report("results/uncertainty.csv", category="Tables", caption="../report/uncertainty.rst"),
     log:
@@ -17,10 +18,12 @@ rule uncertainty:
         config=CONFIG_FILE,
         # An edit of a case or of the models makes it anew.
         cases=lambda wildcards: msgspec.json.encode([CONFIG.cases, CONFIG.ledger]).decode(),
+        named=lambda wildcards, input: repeated("--named", input.named),
     message:
         "Drawing what the paper leaves open"
     shell:
-        "sonicvacuum paper uncertainty --claims {input.claims:q} --config {params.config:q} --out {output:q} 2> {log:q}"
+        "sonicvacuum paper uncertainty --claims {input.claims:q} --config {params.config:q}"
+        " {params.named:q} --out {output:q} 2> {log:q}"
 
 
 rule rivals:
@@ -29,6 +32,7 @@ rule rivals:
         picture=report("results/identifiability.svg", category="Figures", caption="../report/rivals.rst"),
         experiments=report("results/experiments.csv", category="Tables", caption="../report/rivals.rst"),
         relaxation=report("results/relaxation.csv", category="Tables", caption="../report/rivals.rst"),
+        losses=report("results/losses.csv", category="Tables", caption="../report/rivals.rst"),
     log:
         "results/logs/rivals.log",
     benchmark:
@@ -38,9 +42,11 @@ rule rivals:
     params:
         sources=sources("paper rivals"),
         config=CONFIG_FILE,
-        cases=lambda wildcards: msgspec.json.encode([CONFIG.cases.get("fig3a"), CONFIG.ledger]).decode(),
+        cases=lambda wildcards: msgspec.json.encode(
+            [*(CONFIG.cases.get(case) for case in ("fig3a", "fig5a", "fig6b")), CONFIG.ledger]
+        ).decode(),
     message:
         "Comparing the rival models of the coating"
     shell:
         "sonicvacuum paper rivals --config {params.config:q} --map {output.contours:q} --picture {output.picture:q}"
-        " --experiments {output.experiments:q} --relaxation {output.relaxation:q} 2> {log:q}"
+        " --experiments {output.experiments:q} --relaxation {output.relaxation:q} --losses {output.losses:q} 2> {log:q}"

@@ -15,15 +15,16 @@ _FILE = existing()
 @click.option("--picture", required=True, type=click.Path(dir_okay=False), help="Its picture (SVG) to write.")
 @click.option("--experiments", required=True, type=click.Path(dir_okay=False), help="Series (CSV) to write.")
 @click.option("--relaxation", required=True, type=click.Path(dir_okay=False), help="Solids (CSV) to write.")
-def rivals(path, contours, picture, experiments, relaxation):
-    """Compare the layer with a loss, Hertz at 15 GPa with a loss, and a relaxing solid."""
+@click.option("--losses", required=True, type=click.Path(dir_okay=False), help="Laws of loss (CSV) to write.")
+def rivals(path, contours, picture, experiments, relaxation, losses):
+    """Compare the layer with a loss, Hertz at 15 GPa with a loss, laws of loss, and a relaxing solid."""
     import pandas
 
     from sonicvacuum.figures import style
     from sonicvacuum_paper.uncertainty import picture as drawing
     from sonicvacuum_paper.uncertainty.stage import write_rivals
 
-    out = {"map": contours, "experiments": experiments, "relaxation": relaxation}
+    out = {"map": contours, "experiments": experiments, "relaxation": relaxation, "losses": losses}
     check_apart([*out.values(), picture], [path])
     write_rivals(configuration.read(path), out)
     style.save(drawing.draw(pandas.read_csv(contours)), picture)

@@ -4,6 +4,7 @@ import click
 
 from sonicvacuum import config as configuration
 from sonicvacuum.cli import existing
+from sonicvacuum.cli.cards import read_card
 from sonicvacuum.outputs import check_apart
 
 _FILE = existing()
@@ -13,11 +14,12 @@ _FILE = existing()
 @click.option("--claims", required=True, type=_FILE, help="Table of the paper's claims.")
 @click.option("--config", "path", default="config.yaml", show_default=True, type=_FILE)
 @click.option("--draws", type=click.IntRange(min=2), help="Number of draws; default as in the report.")
+@click.option("--named", multiple=True, type=_FILE, help="Card with the model that discover names; repeat.")
 @click.option("--out", required=True, type=click.Path(dir_okay=False), help="Probabilities (CSV) to write.")
-def uncertainty(claims, path, draws, out):
+def uncertainty(claims, path, draws, named, out):
     """Find how probable each statement of the paper is under each model."""
     from sonicvacuum_paper.uncertainty.inputs import DRAWS
     from sonicvacuum_paper.uncertainty.stage import write_uncertainty
 
-    check_apart([out], [claims, path])
-    write_uncertainty(claims, configuration.read(path), out, draws or DRAWS)
+    check_apart([out], [claims, path, *named])
+    write_uncertainty(claims, configuration.read(path), out, draws or DRAWS, map(read_card, named))

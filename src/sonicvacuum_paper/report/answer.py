@@ -6,12 +6,13 @@ from sonicvacuum.report.tables import number
 from sonicvacuum_paper.ladder import members
 
 
-def sentences(ledger: pd.DataFrame, metrics: pd.DataFrame) -> list[str]:
+def sentences(ledger: pd.DataFrame, metrics: pd.DataFrame, by_law: dict | None = None) -> list[str]:
     """Five sentences; none where a number is missing.
 
     Args:
         ledger: rows of the ledger, as text.
         metrics: `results/metrics.csv`, as text.
+        by_law: what laws of loss say together, `rivals.of_laws`; None where none were compared.
     """
     rows = {r["claim"]: r for r in ledger.to_dict("records")}
     value = metrics.set_index(["case", "quantity"])["value"].to_dict()
@@ -36,10 +37,21 @@ def sentences(ledger: pd.DataFrame, metrics: pd.DataFrame) -> list[str]:
         f"{low['layer_loss']} m/s, ratio {ratio['layer_loss']} ({ratio_} printed), and {force['layer_loss']} "
         f"N; the same on 15 GPa gives {speed['matched_loss']} and {low['matched_loss']} m/s, ratio "
         f"{ratio['matched_loss']}.",
-        f"Not settled: the loss's law, the base level of the {lasting_} µs, the film's thickness and its "
+        f"{_laws(by_law)} the base level of the {lasting_} µs, the film's thickness and its "
         "modulus at impact, of which no tolerance is printed; films of other thickness on the same balls "
         "would decide.",
     ]
+
+
+def _laws(found):
+    """What changes with the law of the loss, and the start of what is not settled."""
+    if not found:
+        return "Not settled: the loss's law,"
+    layer, hertz = found["ratios"]
+    return (
+        f"So it is with {found['speaks']} of {found['of']} laws of loss (ratio {layer} on the layer, {hertz} "
+        "on Hertz). Not settled:"
+    )
 
 
 def _verdict(rows):

@@ -31,7 +31,7 @@ class Sources:
         own: simulated cards of cases that a user added.
         animations: SVG files that move, named by `shown.ANIMATIONS`.
         linked: names of the pages beside this one, of `runs.html` and `blind.html`.
-        contours, experiments, relaxation: tables of `sonicvacuum paper rivals`, None where there are none.
+        contours, experiments, relaxation, losses: tables of `sonicvacuum paper rivals`, None where missing.
         map_picture: the picture of the first of them (SVG).
     """
 
@@ -51,6 +51,7 @@ class Sources:
     map_picture: Path | None = None
     experiments: Path | None = None
     relaxation: Path | None = None
+    losses: Path | None = None
 
 
 def build(given: Sources) -> str:
@@ -61,6 +62,7 @@ def build(given: Sources) -> str:
     """
     ledger = _ledger(given)
     metrics = tables.read(given.metrics, tables.METRICS)
+    compared = rivals.context(given.contours, given.experiments, given.relaxation, given.losses)
     template = inline.environment("sonicvacuum_paper.report").get_template("page.html.j2")
     return template.render(
         ledger=[_claim_row(row) for row in ledger.to_dict("records")],
@@ -70,11 +72,11 @@ def build(given: Sources) -> str:
         assumptions=tables.read(given.assumptions, tables.ASSUMPTIONS).to_dict("records"),
         audited=[(c, ladder.title(c)) for c in AUDITED],
         headline=tables.headline(ledger),
-        answer=answer.sentences(ledger, metrics),
+        answer=answer.sentences(ledger, metrics, compared.get("by_law")),
         models=[(c, m.title, m.free) for c, m in ladder.MODELS.items() if m.counted],
         first=tables.first(ledger),
         **uncertain.context(ledger),
-        **rivals.context(given.contours, given.experiments, given.relaxation),
+        **compared,
         map_picture=given.map_picture and _figure(Path(given.map_picture), picture.CAPTION),
         totals={t.model: t for t in ladder.totals(ledger.to_dict("records"))},
         figures=[_figure(Path(svg)) for svg in given.figures],

@@ -6,7 +6,9 @@ All numbers come from the tables of `sonicvacuum paper rivals`; the sentences ar
 
 import pandas as pd
 
+from sonicvacuum.effects import CATALOGUE
 from sonicvacuum.report.tables import number
+from sonicvacuum_paper.ladder import title
 from sonicvacuum_paper.printed import PRINTED
 from sonicvacuum_paper.uncertainty import formats
 from sonicvacuum_paper.verdict import BOUND
@@ -17,9 +19,9 @@ DURATION, LOW = 14.0, 7.35
 CELLS = ("speed_m_s", "half_duration_us", "decay")
 
 
-def context(contours, experiments, relaxation) -> dict:
-    """What the template asks for, from the paths of the three tables; empty where they have not been made."""
-    if not (contours and experiments and relaxation):
+def context(contours, experiments, relaxation, losses) -> dict:
+    """What the template asks for, from the paths of the four tables; empty where they have not been made."""
+    if not (contours and experiments and relaxation and losses):
         return {"allowed": None}
     series = pd.read_csv(experiments)[formats.EXPERIMENTS]
     if series.empty:  # a configuration without a ledger
@@ -30,6 +32,7 @@ def context(contours, experiments, relaxation) -> dict:
         "series": _series(series),
         "apart": [(name, number(r.speeds_sigma, 2), number(r.all_sigma, 2)) for name, r in apart.iterrows()],
         "decisive": apart.speeds_sigma.idxmax(),
+        **of_laws(pd.read_csv(losses)[formats.LOSSES]),
         "relaxing": relaxing(pd.read_csv(relaxation)[formats.RELAXATION]),
     }
 
@@ -62,6 +65,39 @@ def _series(table):
     return rows
 
 
+def of_laws(table: pd.DataFrame) -> dict:
+    """Rows of the laws of loss (`laws`), and with how many of them the conclusion holds (`by_law`).
+
+    A law speaks for the layer where the layer with it meets both printed speeds and Hertz with it does not.
+    """
+    fast = (table.speed_m_s - PRINTED.speed_coated).abs() <= PRINTED.speed_error * PRINTED.speed_coated
+    slow = (table.low_speed_m_s - PRINTED.speed_low).abs() <= BOUND * LOW
+    meets = (fast & slow).groupby(table.law, sort=False)
+    layer, hertz = meets.nth(0), meets.nth(1)
+    speaks = layer.to_numpy() & ~hertz.to_numpy()
+    of_layer = table[table.contact == "layer"]
+    of_hertz = table[table.contact == "matched"]
+    ratios = [_span(part.speed_m_s / part.low_speed_m_s, 3) for part in (of_layer, of_hertz)]
+    rows = [
+        [title(r.contact), CATALOGUE.effect(r.law).title, f"{number(r.value, 2)}", *_cells(r)]
+        for r in table.itertuples()
+    ]
+    words = {
+        "speaks": int(speaks.sum()),
+        "of": len(speaks),
+        "ratios": ratios,
+        "forces": _span(of_layer.gauge_N, 2),
+    }
+    return {"laws": rows, "by_law": words}
+
+
+def _cells(row):
+    """Numbers of a law, in the order of the report's table."""
+    ratio = row.speed_m_s / row.low_speed_m_s
+    shown = (row.speed_m_s, row.low_speed_m_s, ratio, row.gauge_N, row.decay, row.split_g9)
+    return [*(number(v, 3) for v in shown), number(row.pulses_fig6b, 1)]
+
+
 def relaxing(table: pd.DataFrame) -> dict:
     """What solids that relax from a static modulus to 15 GPa show, and how many show what is printed."""
     broad, single = (table[table.solid == name] for name in (formats.BROAD, formats.SINGLE))
@@ -82,7 +118,8 @@ def relaxing(table: pd.DataFrame) -> dict:
 
 
 def _span(values, digits):
-    return f"{number(values.min(), digits)} to {number(values.max(), digits)}"
+    ends = dict.fromkeys((number(values.min(), digits), number(values.max(), digits)))
+    return " to ".join(ends)
 
 
 def _longitudinal(modulus):

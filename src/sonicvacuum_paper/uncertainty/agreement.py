@@ -12,12 +12,12 @@ from collections.abc import Iterable, Mapping
 
 import numpy as np
 
-from sonicvacuum.config import Config
+from sonicvacuum.card import Card
+from sonicvacuum.effects import CATALOGUE
 from sonicvacuum_paper.claims import Claim
-from sonicvacuum_paper.columns import TWINS, column_cards
+from sonicvacuum_paper.columns import TWINS
 from sonicvacuum_paper.compare import COMPARISONS, SPLIT_MARGIN, interpolated
 from sonicvacuum_paper.ladder import LOSS, MODELS, SIMULATION
-from sonicvacuum_paper.uncertainty.batch import LOSS as LOSS_EFFECT
 from sonicvacuum_paper.uncertainty.inputs import SEED
 from sonicvacuum_paper.uncertainty.sample import Found
 from sonicvacuum_paper.uncertainty.table import Agreement
@@ -27,12 +27,15 @@ from sonicvacuum_paper.verdict import BOUND, REPRODUCED, Target, judge
 ENOUGH = 0.5
 
 
-def build(config: Config, sampled: Mapping[str, Found], claims: Iterable[Claim]) -> list[Agreement]:
-    """All statements that a simulation of the draws can tell, under all models."""
-    moduli = {
-        c: card.bead.surface.modulus_Pa for c, card in column_cards(config, "fig3a").items() if c in sampled
-    }
-    lossy = {c for c, card in column_cards(config, "fig3a").items() if LOSS_EFFECT in card.effects}
+def build(
+    cards: Mapping[str, Card], sampled: Mapping[str, Found], claims: Iterable[Claim]
+) -> list[Agreement]:
+    """All statements that a simulation of the draws can tell, under all models.
+
+    `cards`: column → its card of fig3a.
+    """
+    moduli = {c: card.bead.surface.modulus_Pa for c, card in cards.items() if c in sampled}
+    lossy = {c for c, card in cards.items() if any(CATALOGUE.effect(e).dissipative for e in card.effects)}
     found = []
     for place, claim in enumerate(claims):
         if claim.kind != SIMULATION:

@@ -28,3 +28,17 @@ RELAXATION = [
     "duration_us",
     "low_speed_m_s",
 ]
+LOSSES = [
+    "contact",
+    "law",
+    "parameter",
+    "value",
+    "speed_m_s",
+    "low_speed_m_s",
+    "duration_us",
+    "gauge_N",
+    "decay",
+    "split_g9",
+    "pulses_fig6b",
+]
+HEADERS = {"map": MAP, "experiments": EXPERIMENTS, "relaxation": RELAXATION, "losses": LOSSES}

@@ -1,6 +1,6 @@
 """Every case of the paper under every model of the ladder, simulated with the same draws."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 
 import numpy as np
 
@@ -8,7 +8,7 @@ from sonicvacuum.blas import one_thread
 from sonicvacuum.card import Card
 from sonicvacuum.config import Config
 from sonicvacuum_paper.columns import column_cards
-from sonicvacuum_paper.ladder import MODELS
+from sonicvacuum_paper.ladder import MODELS, NAMED
 from sonicvacuum_paper.uncertainty import loss, reading, sweeps
 from sonicvacuum_paper.uncertainty.batch import LOSS, Batch, Draws, set_up
 from sonicvacuum_paper.uncertainty.inputs import neutral
@@ -55,25 +55,42 @@ Found = dict[tuple[str, str, str], np.ndarray]
 
 
 @one_thread
-def sample(config: Config, draws: Draws) -> dict[str, Found]:
+def sample(cards: Mapping[str, Mapping[str, Card]], draws: Draws) -> dict[str, Found]:
     """Column of the ledger → (case, quantity, sensor) → (draws,) values, NaN where there is none.
 
-    Models that `discover` names are left out: they are fitted anew for other numbers.
+    Args:
+        cards: case → column → card, see `cards_of`. The model that `discover` names keeps the numbers that it
+            was fitted with: fitted anew in each draw it would agree more often, not less.
+        draws: from `inputs.draws`.
     """
-    cards = {case: column_cards(config, case) for case in (*CASES, "fig4a", "fig4b")}
-    columns = [c for c, m in MODELS.items() if m.counted and c != "named" and c in cards["fig3a"]]
+    columns = [c for c, m in MODELS.items() if m.counted and c in cards["fig3a"]]
     bare = _of_cards({case: found["handbook"] for case, found in cards.items() if case in BARE}, draws)
     sampled = {}
     for column in columns:
-        own = {case: found[column] for case, found in cards.items() if case not in BARE and column in found}
-        sampled[column] = {**bare, **_of_cards(own, draws)}
+        apart = () if column == NAMED else BARE
+        own = {case: found[column] for case, found in cards.items() if case not in apart and column in found}
+        sampled[column] = {**bare, **_of_cards(own, draws, calibrated=column != NAMED)}
     return sampled
 
 
-def _of_cards(cards: dict[str, Card], draws: Draws) -> Found:
+def cards_of(config: Config, named: Iterable[Card] = ()) -> dict[str, dict[str, Card]]:
+    """Case → column → card, of all cases that are drawn.
+
+    `named` are the cards with the model that `discover` names in them; without them that column is left out.
+    """
+    found = {case: column_cards(config, case) for case in (*CASES, "fig4a", "fig4b")}
+    for of_case in found.values():
+        of_case.pop(NAMED, None)
+    for card in named:
+        if card.case in found:
+            found[card.case][NAMED] = card
+    return found
+
+
+def _of_cards(cards: Mapping[str, Card], draws: Draws, calibrated: bool = True) -> Found:
     """The values of the cases of one model; its loss is calibrated in each draw as it was for the ladder."""
     times = None
-    if "fig3a" in cards and LOSS in cards["fig3a"].effects:
+    if calibrated and "fig3a" in cards and LOSS in cards["fig3a"].effects:
         times = loss.calibrated(cards["fig3a"], draws, lasting(cards["fig3a"]))
     found = {}
     for case, card in cards.items():

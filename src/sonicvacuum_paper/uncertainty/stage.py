@@ -1,26 +1,40 @@
 """The stages of the pipeline that draw and compare rivals: read configuration and claims, write tables."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 from sonicvacuum.blas import one_thread
+from sonicvacuum.card import Card
 from sonicvacuum.config import Config
 from sonicvacuum.files import InputError, replacing
 from sonicvacuum_paper.claims import Claim, read_table
 from sonicvacuum_paper.columns import column_cards
-from sonicvacuum_paper.uncertainty import agreement, decide, identify, inputs, sample, table, viscoelastic
-from sonicvacuum_paper.uncertainty.formats import EXPERIMENTS, MAP, RELAXATION
+from sonicvacuum_paper.uncertainty import (
+    agreement,
+    decide,
+    identify,
+    inputs,
+    losses,
+    sample,
+    table,
+    viscoelastic,
+)
+from sonicvacuum_paper.uncertainty.formats import HEADERS
 
 
 @one_thread
-def write_uncertainty(claims_path, config: Config, out, count: int = inputs.DRAWS) -> None:
+def write_uncertainty(
+    claims_path, config: Config, out, count: int = inputs.DRAWS, named: Iterable[Card] = ()
+) -> None:
     """Draw what the paper leaves open, simulate, write how probable each statement is under each model.
 
-    A configuration without a ledger holds no statement against its cases: the table is then empty.
+    A configuration without a ledger holds no statement against its cases: the table is then empty. `named`
+    are the cards with the model that `discover` names.
     """
     rows = []
     if config.ledger:
-        sampled = sample.sample(config, inputs.draws(count))
-        rows = agreement.build(config, sampled, read_table(claims_path, Claim))
+        cards = sample.cards_of(config, named)
+        sampled = sample.sample(cards, inputs.draws(count))
+        rows = agreement.build(cards["fig3a"], sampled, read_table(claims_path, Claim))
     table.write(rows, out)
 
 
@@ -30,10 +44,10 @@ def write_rivals(config: Config, out: Mapping[str, str]) -> None:
 
     Args:
         config: must have the case fig3a under the models compared; without a ledger the tables are empty.
-        out: `map`, `experiments` and `relaxation` → file.
+        out: `map`, `experiments`, `relaxation` and `losses` → file.
     """
     if not config.ledger:
-        for name, header in (("map", MAP), ("experiments", EXPERIMENTS), ("relaxation", RELAXATION)):
+        for name, header in HEADERS.items():
             with replacing(out[name]) as stream:
                 stream.write(",".join(header) + "\n")
         return
@@ -45,6 +59,7 @@ def write_rivals(config: Config, out: Mapping[str, str]) -> None:
         "map": lambda: identify.table(cards["layer_loss"]),
         "experiments": lambda: decide.table(cards),
         "relaxation": lambda: viscoelastic.table(cards["matched"]),
+        "losses": lambda: losses.table({case: column_cards(config, case) for case in losses.CASES}),
     }
     for name, made in tables.items():
         with replacing(out[name]) as stream:
