@@ -28,30 +28,27 @@ def sentences(ledger: pd.DataFrame, metrics: pd.DataFrame, by_law: dict | None =
     return [
         f"{_verdict(rows)} the 50 µm layer that is printed, with the handbook's 2.76 GPa and nothing fitted, "
         f"runs like a Hertz contact of {fast:.1f} GPa at 0.44 m/s and of {slow:.1f} GPa at 0.25 N.",
-        f"It gives {speed['layer']} and {low['layer']} m/s where {speed_} and {low_} are printed; Hertz with "
-        f"the fitted 15 GPa gives {speed['matched']} and {low['matched']}.",
-        f"Against the bare layer stand its speed at 0.44 m/s ({_by(rows['fig3a-speed'], 'layer')}), a pulse "
-        f"of {lasting['layer']} µs and {wide['layer']} diameters ({lasting_} and {wide_} printed) and "
-        f"{force['layer']} N on the gauge (about {force_}).",
+        f"It gives {speed['layer']} and {low['layer']} m/s ({speed_} and {low_} printed); Hertz with the "
+        f"fitted 15 GPa gives {speed['matched']} and {low['matched']}.",
+        f"Against the bare layer stand its speed ({_by(rows['fig3a-speed'], 'layer')}), {lasting['layer']} "
+        f"µs ({lasting_} printed), {wide['layer']} diameters ({wide_}) and {force['layer']} N (about "
+        f"{force_}).",
         f"One loss, calibrated on the {lasting_} µs alone, gives {speed['layer_loss']} and "
-        f"{low['layer_loss']} m/s, ratio {ratio['layer_loss']} ({ratio_} printed), and {force['layer_loss']} "
-        f"N; the same on 15 GPa gives {speed['matched_loss']} and {low['matched_loss']} m/s, ratio "
-        f"{ratio['matched_loss']}.",
-        f"{_laws(by_law)} the base level of the {lasting_} µs, the film's thickness and its "
-        "modulus at impact, of which no tolerance is printed; films of other thickness on the same balls "
-        "would decide.",
+        f"{low['layer_loss']} m/s, ratio {ratio['layer_loss']} ({ratio_}), and {force['layer_loss']} N; with "
+        f"it 15 GPa gives {speed['matched_loss']} and {low['matched_loss']} m/s, ratio "
+        f"{ratio['matched_loss']}{_laws(by_law)}.",
+        f"Not settled: the base level of the {lasting_} µs, thickness and modulus of the film at impact, "
+        "printed without tolerance; films of other thickness on the same balls would decide.",
     ]
 
 
 def _laws(found):
-    """What changes with the law of the loss, and the start of what is not settled."""
+    """What changes with the law of the loss; nothing where no other was tried."""
     if not found:
-        return "Not settled: the loss's law,"
+        return ""
     layer, hertz = found["ratios"]
-    return (
-        f"So it is with {found['speaks']} of {found['of']} laws of loss (ratio {layer} on the layer, {hertz} "
-        "on Hertz). Not settled:"
-    )
+    with_ = f"with {found['speaks']} of {found['of']} laws of loss"
+    return f"; so it is {with_} ({layer} on the layer, {hertz} on Hertz)"
 
 
 def _verdict(rows):
