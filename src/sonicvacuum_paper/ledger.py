@@ -115,7 +115,9 @@ def _row(metrics, claim, where):
     target = Target.parse(claim.test, claim.value, claim.sigma, where)
     rows = {} if claim.test in UNTESTED else found_in_columns(metrics, claim.metric, where)
     values = {c: rows[c].value if c in rows else math.nan for c in COLUMNS}
-    column = next((c for c in DECIDING if c in rows and rows[c].known), None)
+    # A model does not decide on what it was fitted to.
+    deciding = (c for c in DECIDING if c not in claim.fitted.split())
+    column = next((c for c in deciding if c in rows and rows[c].known), None)
     error, outcome = math.nan, Judged(NOT_TESTABLE)
     if column:
         error = rows[column].numerical_error
@@ -170,6 +172,8 @@ def _models(metrics, claim, target, rows):
 def _reason(metrics, claim, target, rows, column):
     if claim.test in UNTESTED:
         return claim.note or "No metric tests this statement."
+    if column is None and any(rows[c].known for c in DECIDING if c in rows):
+        return "Not testable: every model that gives it was fitted to it."
     if column is None:
         return wording.absence(metrics, claim.metric, [rows[c] for c in DECIDING if c in rows])
     return wording.comparison(metrics, claim, target, {c: rows[c] for c in COLUMNS if c in rows}, column)

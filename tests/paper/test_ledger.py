@@ -11,6 +11,7 @@ from sonicvacuum_paper import assumptions, ladder, ledger
 from sonicvacuum_paper.assumptions import Assumption
 from sonicvacuum_paper.columns import Metrics
 from sonicvacuum_paper.ledger import Claim
+from sonicvacuum_paper.report import steps
 from sonicvacuum_paper.rows import Row, absent
 
 COLUMNS = {"handbook": ["handbook", "nominal"], "matched": ["matched", "nominal"]}
@@ -54,6 +55,10 @@ def test_the_layer_decides_where_there_is_one():
 def test_no_model_is_credited_with_what_it_was_fitted_to():
     row = one(speeds(113.1, 219.7), replace(claim(), fitted="matched handbook"))
     assert (row.agrees, row.fitted, row.excluded) == ("", "matched", "handbook -4.3")
+    assert row.verdict == "not testable" and "every model that gives it was fitted" in row.reason
+    # The next of the ladder decides instead.
+    other = one(speeds(113.1, 219.7), replace(claim(), fitted="matched"))
+    assert other.verdict == "disagrees" and other.difference_sigma == pytest.approx(-83.9 / 19.7)
 
 
 def test_what_needs_a_loss_is_outside_a_model_without():
@@ -247,3 +252,15 @@ def test_probabilities_stand_beside_the_models():
     (row,) = ledger.build(found, [claim()], probable={claim().claim: {"handbook": 0.0104, "matched": 0.5}})
     assert row.probability == "handbook 0.01; matched 0.5"
     assert ledger.build(found, [claim()])[0].probability == ""
+
+
+def test_steps_tell_what_turns_and_leave_out_what_was_fitted():
+    cells = {"kind": "simulation", "fitted": "", **dict.fromkeys(ladder.COLUMNS, "1")}
+    rows = [
+        {**cells, "claim": "speed", "agrees": "layer_loss"},
+        {**cells, "claim": "force", "agrees": "layer"},
+        {**cells, "claim": "time", "agrees": "", "fitted": "layer_loss"},
+        {**cells, "claim": "slope", "agrees": "layer", "layer_loss": ""},
+    ]
+    loss = next(s for s in steps.steps(rows) if s["models"].endswith("layer, 2.76 GPa, loss"))
+    assert (loss["won"], loss["lost"]) == (["speed"], ["force"])

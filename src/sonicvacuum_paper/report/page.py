@@ -13,6 +13,7 @@ from sonicvacuum_paper import ladder
 from sonicvacuum_paper.assumptions import AUDITED
 from sonicvacuum_paper.figures import caption
 from sonicvacuum_paper.report import answer, cursor, provenance, rivals, runs, tables, uncertain
+from sonicvacuum_paper.report.steps import steps
 from sonicvacuum_paper.shown import ANIMATIONS
 from sonicvacuum_paper.uncertainty import picture
 
@@ -73,6 +74,7 @@ def build(given: Sources) -> str:
         audited=[(c, ladder.title(c)) for c in AUDITED],
         headline=tables.headline(ledger),
         answer=answer.sentences(ledger, metrics, compared.get("by_law")),
+        steps=steps(ledger.to_dict("records")),
         models=[(c, m.title, m.free) for c, m in ladder.MODELS.items() if m.counted],
         first=tables.first(ledger),
         **uncertain.context(ledger),
