@@ -4,13 +4,10 @@ import json
 
 import click
 
-from sonicvacuum import config as configuration
-from sonicvacuum.card import dump
 from sonicvacuum.cli import existing
 from sonicvacuum.cli.helped import examples
 from sonicvacuum.cli.own_effects import catalogue, own_effects
 from sonicvacuum.files import InputError, replacing
-from sonicvacuum.materials import MATERIALS
 from sonicvacuum.outputs import check_apart
 
 
@@ -27,6 +24,9 @@ from sonicvacuum.outputs import check_apart
 @own_effects
 def card(path, case, variant, model, out, own):
     """Resolve one case of the configuration into a card (JSON, SI units)."""
+    from sonicvacuum import config as configuration
+    from sonicvacuum.card import dump
+
     check_apart([out], [path, model, *own])
     config = configuration.read(path)
     if case is None:
@@ -65,6 +65,8 @@ def _cure(wanted):
 )
 def materials():
     """Print the built-in table of materials with its sources."""
+    from sonicvacuum.materials import MATERIALS
+
     click.echo(f"{'name':18} {'E/GPa':>7} {'nu':>6} {'kg/m3':>7} {'yield/MPa':>9}  source")
     for name, m in MATERIALS.items():
         strength = "" if m.yield_strength is None else f"{m.yield_strength / 1e6:g}"
@@ -118,6 +120,8 @@ def effects(name, own):
 @click.option("--out", type=click.Path(dir_okay=False), help="File to write; default: standard output.")
 def schema(out):
     """JSON schema of the configuration, for editors that complete and check while typing."""
+    from sonicvacuum import config as configuration
+
     text = json.dumps(configuration.schema(), indent=1, sort_keys=True) + "\n"
     if out is None:
         click.echo(text, nl=False)

@@ -1,14 +1,21 @@
 """Cards as files: what the verbs that take one read it with."""
 
+from typing import TYPE_CHECKING
+
 import msgspec
 
-from sonicvacuum.card import Card, check, load
 from sonicvacuum.files import InputError, explain, read_text
-from sonicvacuum.laboratory.ranges import LaboratoryError
+
+if TYPE_CHECKING:
+    from sonicvacuum.card import Card
 
 
-def read_card(path) -> Card:
+def read_card(path) -> "Card":
     """The card in a JSON file; InputError where it is not one."""
+    # Here: a verb that only explains itself does not wait for numpy.
+    from sonicvacuum.card import Card, check, load
+    from sonicvacuum.laboratory.ranges import LaboratoryError
+
     text = read_text(path).encode()
     try:
         found = load(text)

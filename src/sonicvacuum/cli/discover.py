@@ -2,7 +2,7 @@
 
 import sys
 from contextlib import contextmanager
-from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 
 import click
@@ -44,16 +44,15 @@ def discover(records, out, together, figures, threads, own, quiet, no_limits):
     before the first is searched. On a terminal, a line shows how far the search is.
     """
     from sonicvacuum.cli.page import illustrate, page_files
-    from sonicvacuum.discover import session
     from sonicvacuum.outputs import renewed
     from sonicvacuum.physics.run import available_threads
     from sonicvacuum.records import read
     from sonicvacuum.records.extent import check_extent
     from sonicvacuum.records.guard import check_out
 
-    if figures:
-        # Where matplotlib is missing, that is said before the search and not after it.
-        import_module("sonicvacuum.figures.style")
+    if figures and find_spec("matplotlib") is None:
+        # Said before the search and not after it.
+        raise ModuleNotFoundError("No module named 'matplotlib'", name="matplotlib")
     known = catalogue(own)
     groups = {Path(out): records} if together else {f: (p,) for p, f in _folders(records, Path(out)).items()}
     for folder in groups:
@@ -62,6 +61,8 @@ def discover(records, out, together, figures, threads, own, quiet, no_limits):
         record = read(path)
         if not no_limits:
             check_extent(record)
+    from sonicvacuum.discover import session  # long to load: what is wrong with a record is said before
+
     for folder, paths in groups.items():
         with stages_shown(", ".join(paths), quiet):
             result = session.discover(

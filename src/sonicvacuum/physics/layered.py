@@ -23,7 +23,6 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from scipy.special import roots_legendre
 
 # In 1/t: 1 − L, which falls as x² exp(−2x), is below rounding beyond.
 HIGHEST = 22.0
@@ -167,6 +166,8 @@ def _rules(radius, refine):
 
 def _gauss(points, end):
     """Points and weights of Gauss's rule on 0 to `end`."""
+    from scipy.special import roots_legendre
+
     x, w = roots_legendre(points)
     return 0.5 * end * (x + 1.0), 0.5 * end * w
 

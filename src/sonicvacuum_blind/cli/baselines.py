@@ -4,13 +4,18 @@ from pathlib import Path
 
 import click
 
+from sonicvacuum.cli.helped import examples
 from sonicvacuum.outputs import check_apart
 from sonicvacuum_blind.cli.options import present
 
 _RULES = ("best-chi2", "bic", "nearest-shape", "forest", "state")
 
 
-@click.command()
+@click.command(
+    epilog=examples(
+        "sonicvacuum blind baselines --records records --truth truth --verdicts found --out rules.csv",
+    )
+)
 @click.option("--records", required=True, type=present, help="Folder of the cases' records.")
 @click.option("--truth", required=True, type=present, help="Folder of truths.")
 @click.option("--verdicts", required=True, type=present, help="Folder of verdicts.")

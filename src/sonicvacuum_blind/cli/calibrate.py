@@ -2,11 +2,16 @@
 
 import click
 
+from sonicvacuum.cli.helped import examples
 from sonicvacuum.outputs import check_apart
 from sonicvacuum_blind.cli.options import present
 
 
-@click.command()
+@click.command(
+    epilog=examples(
+        "sonicvacuum blind calibrate --truth truth --verdicts found --out calibration.json",
+    )
+)
 @click.option("--truth", required=True, type=present, help="Folder of truths.")
 @click.option("--verdicts", required=True, type=present, help="Folder of verdicts.")
 @click.option("--out", required=True, type=click.Path(dir_okay=False), help="Calibration (JSON) to write.")

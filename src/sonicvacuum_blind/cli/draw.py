@@ -4,10 +4,15 @@ from pathlib import Path
 
 import click
 
+from sonicvacuum.cli.helped import examples
 from sonicvacuum_blind.cli.options import present
 
 
-@click.command()
+@click.command(
+    epilog=examples(
+        "sonicvacuum blind draw figures/blind --picture accuracy --out pictures",
+    )
+)
 @click.argument("folder", type=present)
 @click.option(
     "--picture",

@@ -5,12 +5,16 @@ from pathlib import Path
 import click
 
 from sonicvacuum.cli import existing
+from sonicvacuum.cli.helped import examples
 from sonicvacuum.files import InputError
-from sonicvacuum.records.guard import check_collection
 from sonicvacuum_blind.cli.options import STUDIES, batch_of, folder, present
 
 
-@click.command()
+@click.command(
+    epilog=examples(
+        "sonicvacuum blind follow --study small --verdicts found --choice proposed --records further",
+    )
+)
 @click.option("--study", type=STUDIES, help="A fixed list of cases.")
 @click.option("--cases", "path", type=existing(), help="List of cases (CSV), instead of --study.")
 @click.option("--verdicts", required=True, type=present, help="Folder of the verdicts on their records.")
@@ -28,6 +32,7 @@ def follow(study, path, verdicts, out, choice, batch):
     Ambiguous: one effect is hidden, one is named, others could not be told from it, and the hidden one is
     among them. Take the record of a case and OUT/<id> together with sonicvacuum discover --together.
     """
+    from sonicvacuum.records.guard import check_collection
     from sonicvacuum_blind import followup
     from sonicvacuum_blind import study as studies
 

@@ -5,13 +5,18 @@ from pathlib import Path
 import click
 
 from sonicvacuum.cli import existing
+from sonicvacuum.cli.helped import examples
 from sonicvacuum.files import InputError
 from sonicvacuum.outputs import check_apart
-from sonicvacuum.records.guard import check_collection, check_out
 from sonicvacuum_blind.cli.options import STUDIES, batch_of, folder
 
 
-@click.command()
+@click.command(
+    epilog=examples(
+        "sonicvacuum blind hide --study small --list cases.csv",
+        "sonicvacuum blind hide --study small --batch 0/4 --records records --truth truth",
+    )
+)
 @click.option("--study", type=STUDIES, help="A fixed list of cases.")
 @click.option("--cases", "path", type=existing(), help="List of cases (CSV), instead of --study.")
 @click.option(
@@ -24,6 +29,7 @@ from sonicvacuum_blind.cli.options import STUDIES, batch_of, folder
 )
 def hide(study, path, listing, batch, records_folder, truth_folder):
     """Make records in which an effect is hidden, and keep the truth elsewhere."""
+    from sonicvacuum.records.guard import check_collection
     from sonicvacuum_blind import study as studies
 
     if (study is None) == (path is None):
@@ -50,6 +56,8 @@ def hide(study, path, listing, batch, records_folder, truth_folder):
 
 def check_truth(truth_folder, records_folder):
     """InputError where the truth would lie among the records that `discover` is given, or they in it."""
+    from sonicvacuum.records.guard import check_out
+
     check_out(truth_folder)
     truth, records = (Path(folder).resolve() for folder in (truth_folder, records_folder))
     if truth.is_relative_to(records) or records.is_relative_to(truth):

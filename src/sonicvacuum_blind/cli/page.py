@@ -5,10 +5,15 @@ from pathlib import Path
 import click
 
 from sonicvacuum.cli import existing
+from sonicvacuum.cli.helped import examples
 from sonicvacuum.files import replacing
 
 
-@click.command()
+@click.command(
+    epilog=examples(
+        "sonicvacuum blind page --small results/blind/small/summary.csv --out blind.html",
+    )
+)
 @click.option("--small", type=existing(), help="Summary of the small study.")
 @click.option(
     "--full", type=click.Path(exists=True, file_okay=False), help="Folder of the full one's tables."

@@ -5,11 +5,16 @@ from pathlib import Path
 import click
 
 from sonicvacuum.cli import existing
+from sonicvacuum.cli.helped import examples
 from sonicvacuum.outputs import check_apart
 from sonicvacuum_blind.cli.options import present
 
 
-@click.command()
+@click.command(
+    epilog=examples(
+        "sonicvacuum blind publish results/blind/full --page docs/study.md --keep figures/blind",
+    )
+)
 @click.argument("folder", type=present)
 @click.option("--page", required=True, type=existing(), help="Page (Markdown) whose tables are renewed.")
 @click.option("--keep", required=True, type=click.Path(file_okay=False), help="Where the tables are kept.")

@@ -2,11 +2,17 @@
 
 import click
 
+from sonicvacuum.cli.helped import examples
 from sonicvacuum.outputs import check_apart
 from sonicvacuum_blind.cli.options import present
 
 
-@click.command()
+@click.command(
+    epilog=examples(
+        "sonicvacuum blind resolved --truth truth --verdicts found --proposed further joint \\",
+        "    --random drawn joint-drawn --out resolved.csv --summary summary.csv",
+    )
+)
 @click.option("--truth", required=True, type=present, help="Folder of truths.")
 @click.option("--verdicts", required=True, type=present, help="Folder of verdicts on the first records.")
 @click.option(

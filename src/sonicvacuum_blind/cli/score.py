@@ -4,11 +4,16 @@ from pathlib import Path
 
 import click
 
+from sonicvacuum.cli.helped import examples
 from sonicvacuum.outputs import check_apart
 from sonicvacuum_blind.cli.options import folder, present
 
 
-@click.command()
+@click.command(
+    epilog=examples(
+        "sonicvacuum blind score --truth truth --verdicts found --out scores.csv --summary summary.csv",
+    )
+)
 @click.option("--truth", required=True, type=present, help="Folder of truths.")
 @click.option("--verdicts", required=True, type=present, help="Folder of verdicts.")
 @click.option(

@@ -2,10 +2,15 @@
 
 import click
 
+from sonicvacuum.cli.helped import examples
 from sonicvacuum.files import replacing
 
 
-@click.command()
+@click.command(
+    epilog=examples(
+        "sonicvacuum paper animate solitary --out solitary.svg",
+    )
+)
 @click.argument("name")
 @click.option("--out", required=True, type=click.Path(dir_okay=False), help="Moving picture (SVG) to write.")
 def animate(name, out):

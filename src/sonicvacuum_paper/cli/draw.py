@@ -6,12 +6,17 @@ import click
 
 from sonicvacuum.cli import existing
 from sonicvacuum.cli.cards import read_card
+from sonicvacuum.cli.helped import examples
 from sonicvacuum.outputs import check_apart
 
 _FOLDER = click.Path(exists=True, file_okay=False)
 
 
-@click.command()
+@click.command(
+    epilog=examples(
+        "sonicvacuum paper draw fig3 --cards results/cards --histories results/histories --out figures",
+    )
+)
 @click.argument("figure")
 @click.option("--cards", required=True, type=_FOLDER, help="Folder of resolved cards.")
 @click.option("--histories", required=True, type=_FOLDER, help="Folder of their simulations.")
@@ -32,7 +37,11 @@ def draw(figure, cards, histories, points, out):
     figures.make(figure, simulations, out, [digitised.read(path) for path in points])
 
 
-@click.command()
+@click.command(
+    epilog=examples(
+        "sonicvacuum paper digitised fig4-points.yaml --figure results/figures/fig4.csv",
+    )
+)
 @click.argument("points", type=existing())
 @click.option("--figure", required=True, type=existing(), help="Numbers of its figure (CSV).")
 def digitised(points, figure):

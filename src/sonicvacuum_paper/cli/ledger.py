@@ -2,15 +2,19 @@
 
 import click
 
-from sonicvacuum import config as configuration
 from sonicvacuum.cli import existing
+from sonicvacuum.cli.helped import examples
 from sonicvacuum.outputs import check_apart
 
 _FILE = existing()
 _CONFIG = click.option("--config", "path", default="config.yaml", show_default=True, type=_FILE)
 
 
-@click.command()
+@click.command(
+    epilog=examples(
+        "sonicvacuum paper ledger metrics.csv --claims workflow/resources/claims.csv --out ledger.csv",
+    )
+)
 @click.argument("metrics", type=_FILE)
 @click.option("--claims", required=True, type=_FILE, help="Table of the paper's claims.")
 @_CONFIG
@@ -18,19 +22,25 @@ _CONFIG = click.option("--config", "path", default="config.yaml", show_default=T
 @click.option("--out", required=True, type=click.Path(dir_okay=False), help="Ledger (CSV) to write.")
 def ledger(metrics, claims, path, probable, out):
     """Hold the claims against METRICS."""
+    from sonicvacuum import config as configuration
     from sonicvacuum_paper.stages import write_ledger
 
     check_apart([out], [metrics, claims, path, *([probable] if probable else [])])
     write_ledger(metrics, claims, configuration.read(path), out, probable)
 
 
-@click.command()
+@click.command(
+    epilog=examples(
+        "sonicvacuum paper audit metrics.csv --assumptions assumptions.csv --out audit.csv",
+    )
+)
 @click.argument("metrics", type=_FILE)
 @click.option("--assumptions", required=True, type=_FILE, help="Table of the assumptions.")
 @_CONFIG
 @click.option("--out", required=True, type=click.Path(dir_okay=False), help="Audit (CSV) to write.")
 def audit(metrics, assumptions, path, out):
     """Hold the assumptions against METRICS."""
+    from sonicvacuum import config as configuration
     from sonicvacuum_paper.stages import write_assumptions
 
     check_apart([out], [metrics, assumptions, path])

@@ -3,10 +3,15 @@
 import click
 
 from sonicvacuum.cli import existing
+from sonicvacuum.cli.helped import examples
 from sonicvacuum.outputs import check_apart
 
 
-@click.command()
+@click.command(
+    epilog=examples(
+        "sonicvacuum paper metrics results/metrics/*.csv --out metrics.csv",
+    )
+)
 @click.argument("files", nargs=-1, required=True, type=existing())
 @click.option("--config", "path", default="config.yaml", show_default=True, type=existing())
 @click.option("--out", required=True, type=click.Path(dir_okay=False), help="All metrics (CSV) to write.")

@@ -1,16 +1,20 @@
 """`sonicvacuum paper observe`: what the gauges of a card read, and the numbers derived from it."""
 
 import click
-import numpy as np
 
 from sonicvacuum.cli import existing
 from sonicvacuum.cli.cards import read_card
+from sonicvacuum.cli.helped import examples
 from sonicvacuum.cli.own_effects import catalogue, own_effects
 from sonicvacuum.files import replacing
 from sonicvacuum.outputs import check_apart
 
 
-@click.command()
+@click.command(
+    epilog=examples(
+        "sonicvacuum paper observe card.json history.npz --signals signals.csv --metrics metrics.csv",
+    )
+)
 @click.argument("card", type=existing())
 @click.argument("history", type=existing())
 @click.option(
@@ -32,6 +36,8 @@ def observe(card, history, signals, metrics, own):
 
 def write_signals(simulated, path):
     """CSV with the columns run, speed_m_s, time_us and one per gauge (N, without the static part)."""
+    import numpy as np
+
     readings = simulated.readings()
     time = simulated.time * 1e6
     with replacing(path) as stream:

@@ -3,13 +3,19 @@
 import click
 
 from sonicvacuum.cli import existing
+from sonicvacuum.cli.helped import examples
 from sonicvacuum.files import InputError, replacing
 from sonicvacuum.outputs import check_apart
 
 _FILE = existing()
 
 
-@click.command()
+@click.command(
+    epilog=examples(
+        "sonicvacuum paper publish --ledger results/ledger.csv --claims workflow/resources/claims.csv \\",
+        "    --readme README.md --guide figures/README.md --reference ledger.csv",
+    )
+)
 @click.option("--ledger", required=True, type=_FILE)
 @click.option("--claims", required=True, type=_FILE, help="Table of the paper's claims.")
 @click.option("--readme", required=True, type=_FILE, help="README whose result table is renewed.")

@@ -6,6 +6,7 @@ import click
 
 from sonicvacuum.cli import existing
 from sonicvacuum.cli.cards import read_card
+from sonicvacuum.cli.helped import examples
 from sonicvacuum.files import replacing
 from sonicvacuum.outputs import check_apart
 from sonicvacuum_paper.cli.studies import loaded
@@ -15,7 +16,12 @@ _FOLDER = click.Path(exists=True, file_okay=False)
 _OUT = click.Path(dir_okay=False)
 
 
-@click.command()
+@click.command(
+    epilog=examples(
+        "sonicvacuum paper report --ledger ledger.csv --assumptions audit.csv --metrics metrics.csv \\",
+        "    --claims workflow/resources/claims.csv --figure figures/fig3.svg --out report.html",
+    )
+)
 @click.option("--ledger", required=True, type=_FILE)
 @click.option("--assumptions", required=True, type=_FILE)
 @click.option("--metrics", required=True, type=_FILE)

@@ -2,14 +2,19 @@
 
 import click
 
-from sonicvacuum import config as configuration
 from sonicvacuum.cli import existing
+from sonicvacuum.cli.helped import examples
 from sonicvacuum.outputs import check_apart
 
 _FILE = existing()
 
 
-@click.command()
+@click.command(
+    epilog=examples(
+        "sonicvacuum paper rivals --map map.csv --picture map.svg --experiments runs.csv \\",
+        "    --relaxation solids.csv",
+    )
+)
 @click.option("--config", "path", default="config.yaml", show_default=True, type=_FILE)
 @click.option("--map", "contours", required=True, type=click.Path(dir_okay=False), help="Map (CSV) to write.")
 @click.option("--picture", required=True, type=click.Path(dir_okay=False), help="Its picture (SVG) to write.")
@@ -20,6 +25,7 @@ def rivals(path, contours, picture, experiments, relaxation, losses):
     """Compare the layer with a loss, Hertz at 15 GPa with a loss, laws of loss, and a relaxing solid."""
     import pandas
 
+    from sonicvacuum import config as configuration
     from sonicvacuum.figures import style
     from sonicvacuum_paper.uncertainty import picture as drawing
     from sonicvacuum_paper.uncertainty.stage import write_rivals

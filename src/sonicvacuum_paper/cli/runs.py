@@ -3,11 +3,16 @@
 import click
 
 from sonicvacuum.cli import existing
+from sonicvacuum.cli.helped import examples
 from sonicvacuum.files import replacing
 from sonicvacuum_paper.cli.studies import loaded
 
 
-@click.command()
+@click.command(
+    epilog=examples(
+        "sonicvacuum paper runs card.json --histories histories --metrics metrics.csv --out runs.html",
+    )
+)
 @click.argument("cards", nargs=-1, required=True, type=existing())
 @click.option(
     "--histories",

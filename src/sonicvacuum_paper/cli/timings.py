@@ -2,8 +2,14 @@
 
 import click
 
+from sonicvacuum.cli.helped import examples
 
-@click.command()
+
+@click.command(
+    epilog=examples(
+        "sonicvacuum paper timings results/benchmarks --out timings.csv",
+    )
+)
 @click.argument("folder", type=click.Path(exists=True, file_okay=False))
 @click.option("--out", required=True, type=click.Path(dir_okay=False), help="Summary (CSV) to write.")
 def timings(folder, out):

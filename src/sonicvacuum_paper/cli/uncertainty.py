@@ -2,15 +2,18 @@
 
 import click
 
-from sonicvacuum import config as configuration
 from sonicvacuum.cli import existing
-from sonicvacuum.cli.cards import read_card
+from sonicvacuum.cli.helped import examples
 from sonicvacuum.outputs import check_apart
 
 _FILE = existing()
 
 
-@click.command()
+@click.command(
+    epilog=examples(
+        "sonicvacuum paper uncertainty --claims workflow/resources/claims.csv --draws 50 --out probable.csv",
+    )
+)
 @click.option("--claims", required=True, type=_FILE, help="Table of the paper's claims.")
 @click.option("--config", "path", default="config.yaml", show_default=True, type=_FILE)
 @click.option("--draws", type=click.IntRange(min=2), help="Number of draws; default as in the report.")
@@ -18,6 +21,8 @@ _FILE = existing()
 @click.option("--out", required=True, type=click.Path(dir_okay=False), help="Probabilities (CSV) to write.")
 def uncertainty(claims, path, draws, named, out):
     """Find how probable each statement of the paper is under each model."""
+    from sonicvacuum import config as configuration
+    from sonicvacuum.cli.cards import read_card
     from sonicvacuum_paper.uncertainty.inputs import DRAWS
     from sonicvacuum_paper.uncertainty.stage import write_uncertainty
 
