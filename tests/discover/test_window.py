@@ -7,6 +7,8 @@ from made_records import block
 from sonicvacuum.discover.model.window import ENOUGH, fitted
 from sonicvacuum.records import Record, Signals
 from sonicvacuum.records.reader import parse
+from sonicvacuum.records.review import content, lines
+from sonicvacuum.report.checked import looked_through
 from sonicvacuum.scope import thin
 
 # us: when the pulse passes each gauge, its width, and of the echo.
@@ -75,3 +77,14 @@ def test_traces_without_a_pulse_are_kept_whole():
     less, notes = fitted(flat)
     assert less.signals["v0"].samples == flat.signals["v0"].samples
     assert notes == ()
+
+
+def test_the_check_tells_beforehand_what_is_cut_and_thinned():
+    long = looked_through(recorded(0.02, -5000.0, 15000.0))
+    assert [note.split()[2] for note in long.treatment] == ["cut", "by"]
+    assert all(f"  for the search: {note}" in lines(long) for note in long.treatment)
+    assert content(long)["treatment"] == list(long.treatment)
+    # A million samples cost as many as are left of them: three gauges of no more than that.
+    short = looked_through(recorded(1.0, -100.0, 600.0))
+    assert short.treatment == ()
+    assert long.discover_s < short.discover_s * ENOUGH / 700.0

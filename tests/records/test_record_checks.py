@@ -12,10 +12,11 @@ from sonicvacuum.files import InputError
 from sonicvacuum.records import Record, Signals, read
 from sonicvacuum.records.blocks import OBSERVABLES, UNITS
 from sonicvacuum.records.checks import check, noise_at_rest, warnings
-from sonicvacuum.records.commands import check as check_many
 from sonicvacuum.records.commands import new, schema_text, summary, template
 from sonicvacuum.records.predict import predict
 from sonicvacuum.records.reader import parse
+from sonicvacuum.records.review import review
+from sonicvacuum.report.checked import check as check_many
 
 MEASURED = Path(__file__).parents[2] / "workflow" / "resources" / "measured"
 PAPER = sorted(p.parent.name for p in MEASURED.glob("*/record.yaml"))
@@ -124,7 +125,7 @@ def test_summary_tells_runs_gauges_sampling_and_signal_to_noise(tmp_path):
     ):
         assert said in text
     noisy = Record(parse(content()), TRACES, "x")
-    assert "nothing suspicious" in summary(noisy)
+    assert "nothing suspicious" in summary(noisy, review(noisy))
 
 
 def test_check_stops_at_the_first_bad_record(tmp_path):

@@ -17,6 +17,7 @@ from sonicvacuum.records.commands import summary
 from sonicvacuum.records.predict import predict
 from sonicvacuum.records.reader import parse
 from sonicvacuum.records.record import Tolerances
+from sonicvacuum.records.review import review
 
 LASER = {"id": "laser", "kind": "velocity", "bead": 5, "sigma_m_s": 0.002, "gain_rel_sigma": "unknown"}
 BALL = {"id": "ball", "kind": "acceleration", "bead": 7, "sigma_m_s2": 40.0, "drift_sigma_m_s2": 2.0}
@@ -91,7 +92,7 @@ def test_what_is_not_said_is_not_written(tmp_path):
 
 def test_check_and_summary_know_the_units():
     record = simulated()
-    text = summary(record)
+    text = summary(record, review(record))
     assert "laser: peak 0." in text
     assert " m/s, " in text
     assert "ball: peak" in text
@@ -108,7 +109,7 @@ def test_a_run_may_lack_a_gauge_and_have_its_own_times(tmp_path):
     assert list(record.signals["slow"].readings) == ["near", "far"]
     assert list(record.signals["fast"].readings) == ["near", "far", "wall"]
     assert record.signals["slow"].interval_s == pytest.approx(2.0 * record.signals["fast"].interval_s)
-    assert "wall: not recorded in this run" in summary(record)
+    assert "wall: not recorded in this run" in summary(record, review(record))
     write(record, tmp_path / "again")
     assert read(tmp_path / "again").signals["slow"].equals(record.signals["slow"])
 

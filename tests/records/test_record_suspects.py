@@ -8,11 +8,12 @@ import pytest
 from record_cases import BALL, CONTENT, STRIKER, TRACES, content, made, put
 
 from sonicvacuum.records import Record, Signals
-from sonicvacuum.records.commands import check, summary
+from sonicvacuum.records.commands import summary
 from sonicvacuum.records.expected import expected
 from sonicvacuum.records.reader import parse
 from sonicvacuum.records.review import review
 from sonicvacuum.records.suspects import suspects
+from sonicvacuum.report.checked import check
 
 
 def slip(traces=TRACES, change=None, **changes):
@@ -100,7 +101,7 @@ def test_text_and_json_say_the_same(tmp_path):
     assert set(told) == {"format", "records"}
     (found,) = told["records"]
     assert set(found) == {
-        "record", "title", "features", "windows_s", "warnings", "suspects", "discover_s"
+        "record", "title", "features", "windows_s", "warnings", "suspects", "treatment", "discover_s"
     }  # fmt: skip
     assert set(found["features"][0]) == {
         "run", "gauge", "start", "quantity", "unit", "expected", "measured"
@@ -118,4 +119,4 @@ def test_a_gauge_without_a_pulse_has_no_number():
     record = Record(parse(content()), dict(TRACES) | {"fast": still}, "still")
     missing = [f for f in review(record).expected.features if f.measured is None]
     assert {(f.run, "far" in (f.gauge, f.start)) for f in missing} == {("fast", True)}
-    assert "far: peak at – us" in summary(record)
+    assert "far: peak at – us" in summary(record, review(record))

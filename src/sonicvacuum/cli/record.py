@@ -29,24 +29,12 @@ def check(folders, as_json):
     """Say what is in the records in FOLDERS, what the nominal model expects, what looks suspicious.
 
     Arrival, amplitude, speed and width of each gauge and run stand beside those of the nominal model; slips
-    of the set-up that they betray are named, the window to record and the time of a search estimated.
+    of the set-up that they betray are named. The window to record, what discover cuts off and thins of long
+    traces, and the time that it will take, are told beforehand.
     """
-    from sonicvacuum.records import commands
+    from sonicvacuum.report import checked
 
-    click.echo(commands.check(folders, as_json))
-    if not as_json:
-        _echo_slips(folders)
-
-
-def _echo_slips(folders):
-    """What the traces alone betray, as `discover` would say it."""
-    from sonicvacuum.discover.faults.examine import examine
-    from sonicvacuum.records import read
-    from sonicvacuum.report.bench import slip
-
-    for folder in folders:
-        for found in examine(read(folder))[1]:
-            click.echo(f"{folder}: check first: {slip(found)}")
+    click.echo(checked.check(folders, as_json))
 
 
 record.add_command(import_)

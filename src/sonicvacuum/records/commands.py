@@ -1,4 +1,4 @@
-"""What the command line does with records: start one from a template, check some and say what is in them."""
+"""What the command line does with records: start one from a template, say what is in one."""
 
 import json
 from importlib.resources import files
@@ -7,9 +7,9 @@ from pathlib import Path
 from sonicvacuum.files import InputError, replacing
 from sonicvacuum.records.blocks import RunBlock, schema
 from sonicvacuum.records.described import chain_of
-from sonicvacuum.records.reader import FILE, read
+from sonicvacuum.records.reader import FILE
 from sonicvacuum.records.record import Record, Run
-from sonicvacuum.records.review import content, lines, review
+from sonicvacuum.records.review import Review, lines
 
 
 def template() -> str:
@@ -39,17 +39,8 @@ def new(folder) -> Path:
     return file
 
 
-def check(folders, as_json: bool = False) -> str:
-    """Summaries of records, one after the other, or as JSON; InputError for the first that cannot be read."""
-    records = [read(folder) for folder in folders]
-    if as_json:
-        found = [content(review(record)) for record in records]
-        return json.dumps({"format": 1, "records": found}, indent=1, ensure_ascii=False, allow_nan=False)
-    return "\n".join(map(summary, records))
-
-
-def summary(record: Record) -> str:
-    """What is in a record, and what in it looks suspicious."""
+def summary(record: Record, seen: Review) -> str:
+    """What is in a record, and what its review says of it."""
     gauges = ", ".join(f"{g.id} ({'wall' if g.bead is None else f'bead {g.bead}'})" for g in record.gauges)
     said = [
         f"{record.name}: {record.title}",
@@ -60,7 +51,7 @@ def summary(record: Record) -> str:
             for line in _run(record, run, block)
         ),
     ]
-    return "\n".join([*said, *lines(review(record))])
+    return "\n".join([*said, *lines(seen)])
 
 
 def _run(record: Record, run: Run, block: RunBlock):

@@ -28,7 +28,8 @@ class Review:
         title: its title.
         expected: each number that the nominal model expects beside the measured one.
         warnings: what in the files looks suspicious by itself.
-        suspects: what looks so against the nominal model.
+        suspects: what looks so against the nominal model, and slips that the traces show by themselves.
+        treatment: what is done to long traces before the search; empty where they are taken as they are.
         discover_s: rough time of `discover` on one core.
     """
 
@@ -37,19 +38,28 @@ class Review:
     expected: Expected
     warnings: tuple[str, ...]
     suspects: tuple[str, ...]
+    treatment: tuple[str, ...]
     discover_s: float
 
 
-def review(record: Record) -> Review:
-    """Look at a record that can be read."""
+def review(record: Record, searched: Record | None = None, treatment=(), slips=()) -> Review:
+    """Look at a record that can be read.
+
+    Args:
+        record: as read.
+        searched: the record as the search takes it, long traces cut and thinned; None: as it is.
+        treatment: what was done to it for that, a sentence each.
+        slips: of the laboratory, as its traces show them by themselves, a sentence each.
+    """
     seen = expected(record)
     return Review(
         record=record.name,
         title=record.title,
         expected=seen,
         warnings=tuple(warnings(record)),
-        suspects=tuple(suspects(record, seen)),
-        discover_s=max(LEAST_SECONDS, SECONDS_PER_VALUE * _values(record)),
+        suspects=(*suspects(record, seen), *slips),
+        treatment=tuple(treatment),
+        discover_s=max(LEAST_SECONDS, SECONDS_PER_VALUE * _values(searched or record)),
     )
 
 
@@ -68,6 +78,7 @@ def content(found: Review) -> dict[str, Any]:
         "windows_s": [asdict(w) for w in found.expected.windows],
         "warnings": list(found.warnings),
         "suspects": list(found.suspects),
+        "treatment": list(found.treatment),
         "discover_s": {
             "estimate": found.discover_s,
             "low": found.discover_s / UNCERTAIN,
@@ -92,6 +103,7 @@ def lines(found: Review) -> list[str]:
     said += [f"  warning: {w}" for w in found.warnings]
     said += [f"  check your set-up: {s}" for s in found.suspects]
     said += [] if found.warnings or found.suspects else ["  nothing suspicious"]
+    said += [f"  for the search: {t}" for t in found.treatment]
     low, high = found.discover_s / UNCERTAIN, found.discover_s * UNCERTAIN
     return [*said, f"  discover will take some {low:.2g} to {high:.2g} s on one core (a rough estimate)"]
 
