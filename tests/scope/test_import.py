@@ -120,6 +120,18 @@ def test_files_of_one_channel_each_are_one_run(tmp_path):
     assert (tmp_path / "s" / "v1.csv").read_text().startswith("time_us,g9,g5\n")
 
 
+def test_a_run_has_the_name_of_its_file_and_that_of_the_given_record_is_missed(tmp_path):
+    # Rohde & Schwarz call a file of samples shot1.Wfm.csv.
+    file = tmp_path / "shot1.Wfm.csv"
+    file.write_bytes(one_channel(PULSE))
+    given = tmp_path / "chain.yaml"
+    for id, missed in (("shot1", False), ("v044", True)):
+        given.write_text(f"runs: [{{id: {id}, striker: {{speed_m_s: 0.44}}}}]\n")
+        said = import_files([file], tmp_path / id, options(), record=given)
+        assert (tmp_path / id / "shot1.csv").exists()
+        assert any("no file is called like v044" in line and "--run v044=" in line for line in said) == missed
+
+
 def test_lost_and_clipped_samples(tmp_path):
     volts = [f"{v}" for v in PULSE]
     volts[30], volts[118:123] = "NaN", ["overrange"] * 5

@@ -116,6 +116,19 @@ def _run(run, given, options):
     return {"id": run.id, "striker": striker, "signals": f"{run.id}.csv"}
 
 
+def unused(given: dict, runs: list[CleanRun]) -> list[str]:
+    """That runs of a given record got no file, which mostly means that a file has another name."""
+    ids = [e["id"] for e in _listed(given, "runs") if "id" in e]
+    found = [r.id for r in runs]
+    missing = [i for i in ids if i not in found]
+    if not missing or set(found) <= set(ids):
+        return []
+    cure = f"--run {missing[0]}=FILE says which it is"
+    return [
+        f"no file is called like {', '.join(missing)} of the record; there are {', '.join(found)}: {cure}"
+    ]
+
+
 def _listed(given, key):
     entries = given.get(key)
     return [e for e in entries if isinstance(e, dict)] if isinstance(entries, list) else []

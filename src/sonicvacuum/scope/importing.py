@@ -28,7 +28,7 @@ def import_files(
     _spare(folder, runs, {f.resolve() for g in (files, *options.runs.values()) for f in g}, force)
     content = draft.content(runs, given, options, title)
     _write(folder, draft.text(content, runs, options), runs)
-    return [*_report(runs), *_checked(folder)]
+    return [*_report(runs), *(draft.unused(given, runs) if record else ()), *_checked(folder)]
 
 
 def _spare(folder, runs, raw, force):

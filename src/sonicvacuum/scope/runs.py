@@ -46,12 +46,18 @@ def _grouped(recordings):
     groups = {}
     for r in recordings:
         single = len({c.name for c in r.channels}) == 1
-        stem = _MARK.sub("", r.file.stem, count=1) if single and _MARK.search(r.file.stem) else None
+        name = _name(r.file)
+        stem = _MARK.sub("", name, count=1) if single and _MARK.search(name) else None
         groups.setdefault((r.file.parent, stem) if stem is not None else (r.file, None), []).append(r)
     return [
-        (_id(stem if stem is not None and len(group) > 1 else group[0].file.stem), group)
+        (_id(stem if stem is not None and len(group) > 1 else _name(group[0].file)), group)
         for (_, stem), group in groups.items()
     ]
+
+
+def _name(file):
+    """What a file is called without its ending, which at Rohde & Schwarz is `.Wfm.csv`."""
+    return re.sub(r"\.wfm$", "", file.stem, flags=re.IGNORECASE)
 
 
 def _id(text):
