@@ -7,7 +7,7 @@ import numpy as np
 
 from sonicvacuum import stages
 from sonicvacuum.discover import policy
-from sonicvacuum.discover.fit import bounds, evidence, places, smooth, wide
+from sonicvacuum.discover.fit import bounds, enough, evidence, places, smooth, wide
 from sonicvacuum.discover.fit.evidence import Candidate, Combination
 from sonicvacuum.discover.fit.refit import Fit, fit, polish
 from sonicvacuum.discover.judge import explanations
@@ -104,16 +104,22 @@ def investigate(experiment: Experiment, threads: int = 1, null: Fit | None = Non
     threshold = scores.threshold(policy.FALSE_ALARM)
     found = _polished(forward, null, singles.fit_all(forward, null, scores))
     prior = experiment.prior_odds
-    passes = bool(found) and significant(found[0], threshold, prior) and _likelier_than_none(found, prior)
+    few = enough.told(forward, (c for c in found if significant(c, threshold, prior)))
+    passes = (
+        bool(found)
+        and enough.suffice(forward, found[0].fit)
+        and significant(found[0], threshold, prior)
+        and _likelier_than_none(found, prior)
+    )
     if passes:
         # Only now: other places are more tries, for which the threshold does not allow.
         found = _along(forward, null, found)
     stages.begin("sets of effects" if passes else "verdict")
     case = Case(forward, null, scores, found, known, setup)
-    decision = case.decide() if passes else case.nothing()
+    decision = case.decide() if passes else case.nothing(few)
     alike = explanations.aliases(forward, null, found) if passes else []
     odds, more = _odds(found, decision, alike, prior)
-    reasons = [*decision.reasons, *more, *experiment.notes]
+    reasons = [*decision.reasons, *(few if passes else ()), *more, *experiment.notes]
     given = {**vars(decision), "reasons": reasons}
     del given["beside"], given["left"]
     return Investigation(forward, null, scores, threshold, found, odds, alike=alike, **given)
@@ -204,7 +210,7 @@ def _polished(forward, null, found):
         if c.gain > least and wide.wide(forward):
             c = _moved(c, null, wide.again(forward, c.fit), c.places, c.flags)
         result.append(_beyond(forward, null, c) if c.gain > least else c)
-    return evidence.ranked(result, forward.experiment.prior_odds)
+    return enough.first(forward, evidence.ranked(result, forward.experiment.prior_odds))
 
 
 def _beyond(forward, null, c):
@@ -224,7 +230,7 @@ def _along(forward, null, found):
             better = places.settled(forward, c.fit, setup)
             if better is not c.fit:
                 result[k] = _moved(c, null, better, ((better.hypothesis.components[0].place, 1.0),), c.flags)
-    return evidence.ranked(result, forward.experiment.prior_odds)
+    return enough.first(forward, evidence.ranked(result, forward.experiment.prior_odds))
 
 
 def _moved(c, null, better, where, flags):

@@ -1,11 +1,12 @@
 """What is named, once single effects are fitted: one, several, or unknown, by what each leaves."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from sonicvacuum.discover import policy
-from sonicvacuum.discover.fit import evidence, heldout, smooth
+from sonicvacuum.discover.fit import enough, evidence, heldout, smooth
 from sonicvacuum.discover.fit.evidence import Candidate, Combination
 from sonicvacuum.discover.fit.normal import linearise
 from sonicvacuum.discover.fit.refit import Fit, polish
@@ -60,10 +61,13 @@ class Case:
     known: tuple | None
     setup: Setup
 
-    def nothing(self) -> Decision:
-        """No effect can be named: none, or unknown where the nominal model leaves a sure misfit."""
+    def nothing(self, few: Sequence[str] = ()) -> Decision:
+        """No effect can be named: none, or unknown where the nominal model leaves a sure misfit.
+
+        `few` says for which effects the data do not suffice, see `enough`.
+        """
         seen = left(self.forward, self.null, self.known)
-        reasons = ["no single effect passes the threshold"]
+        reasons = list(few) or ["no single effect passes the threshold"]
         if not sure(seen):
             return Decision([], self.null, {"none": seen.p}, reasons, seen.p)
         return self._unknown({"none": seen.p}, [*reasons, f"{seen.where} is left"], seen)
@@ -123,7 +127,7 @@ class Case:
         rival = best.log_bayes + seen.size.log_odds
         start, lowest = best.fit, seen
         for pair in tried[:ASKED]:
-            if pair.gain - single <= needed:
+            if pair.gain - single <= needed or not enough.suffice(self.forward, pair.fit):
                 continue
             after = left(self.forward, pair.fit, self.known, behind=_behind(pair.gain, most))
             alarms.setdefault("pair", after.p)

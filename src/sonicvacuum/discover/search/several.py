@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from sonicvacuum.discover import policy
-from sonicvacuum.discover.fit import heldout, places, smooth
+from sonicvacuum.discover.fit import enough, heldout, places, smooth
 from sonicvacuum.discover.fit.evidence import Combination
 from sonicvacuum.discover.fit.normal import linearise
 from sonicvacuum.discover.fit.refit import Fit, polish
@@ -140,6 +140,7 @@ class Turns:
         return (
             gain > self.needed
             and ratio > policy.LEAST_LOG10_BAYES * np.log(10.0)
+            and enough.suffice(self.forward, after)
             and heldout.better(before, after)
         )
 
