@@ -5,7 +5,7 @@ from collections.abc import Iterable, Sequence
 from os import PathLike
 from typing import Any
 
-from sonicvacuum.files import InputError, replacing
+from sonicvacuum.files import check_file, reading, replacing
 
 
 def write_csv(path: str | PathLike, columns: Sequence[str], rows: Iterable[Iterable[Any]]) -> None:
@@ -22,8 +22,6 @@ def read_csv(path: str | PathLike, cure: str = "give the path of a table") -> li
     Raises:
         InputError: for a file that cannot be read; it names `cure`.
     """
-    try:
-        with open(path, encoding="utf-8", newline="") as stream:
-            return list(csv.DictReader(stream))
-    except (OSError, ValueError, csv.Error) as error:
-        raise InputError(f"{path}: {getattr(error, 'strerror', None) or error}; {cure}") from None
+    check_file(path)
+    with reading(path, cure), open(path, encoding="utf-8", newline="") as stream:
+        return list(csv.DictReader(stream))

@@ -11,7 +11,7 @@ import pandas
 from matplotlib.figure import Figure
 
 from sonicvacuum.figures import style
-from sonicvacuum.files import InputError
+from sonicvacuum.files import InputError, reading
 from sonicvacuum_blind.baselines.names import DESIGNS, PANELS, RULES
 
 BLUE, ORANGE, GREEN = "#0072B2", "#D55E00", "#009E73"
@@ -75,7 +75,8 @@ def draw(folder: Path, wanted=(), out: Path | None = None, prefix: str = "") -> 
 
 def _read(path):
     # "none" is a name here; numbers that do not exist are written nan.
-    return pandas.read_csv(path, keep_default_na=False, na_values=["", "nan"])
+    with reading(path, "make it with sonicvacuum blind score --tables, or blind baselines --out"):
+        return pandas.read_csv(path, keep_default_na=False, na_values=["", "nan"])
 
 
 def confusion(table: pandas.DataFrame) -> Figure:

@@ -22,7 +22,7 @@ def build(small_path=None, full_folder=None, pictures: Iterable = ()) -> str:
     template = inline.environment("sonicvacuum_blind").get_template("study.html.j2")
     return template.render(
         full=full_folder and _full(report.read(full_folder)),
-        small=small_path and report.findings(read(small_path, report.SUMMARY)),
+        small=small_path and report.findings(read(small_path, report.SUMMARY, report.NUMBERS)),
         pictures=[_picture(svg, caption) for svg, caption in pictures],
         script=interactive.script(),
     )

@@ -20,6 +20,8 @@ from sonicvacuum_blind.score import Line
 
 SUMMARY = [f.name for f in fields(Line)]
 BASELINES = [f.name for f in fields(Baseline)]
+# Columns of both that hold numbers.
+NUMBERS = ("value", "low", "high")
 BEGIN = "<!-- study: made by `snakemake publish_study`, do not edit -->"
 END = "<!-- end of study -->"
 # What is kept of a study: what must be there, and what may.
@@ -84,11 +86,11 @@ def read(folder) -> Study:
     """The tables in a folder; InputError where there is no summary.csv or one has other columns."""
     folder = Path(folder)
     found = {
-        name: tables.read(folder / f"{name}.csv", columns)
+        name: tables.read(folder / f"{name}.csv", columns, NUMBERS)
         for name, columns in (("baselines", BASELINES), ("resolved_summary", SUMMARY))
         if (folder / f"{name}.csv").exists()
     }
-    summary = tables.read(folder / "summary.csv", SUMMARY)
+    summary = tables.read(folder / "summary.csv", SUMMARY, NUMBERS)
     return Study(summary, found.get("baselines"), found.get("resolved_summary"))
 
 

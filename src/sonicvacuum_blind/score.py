@@ -5,7 +5,7 @@ import math
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 
-from sonicvacuum.files import InputError
+from sonicvacuum.files import InputError, read_text, reading
 from sonicvacuum.tables import write_csv
 
 CONFIDENT = 0.9
@@ -80,7 +80,10 @@ def score(truth_folder, verdict_folder) -> list[Row]:
             f"{verdict_folder}: no verdict for {len(missing)} of {len(truths)} cases, first {missing[0]}; "
             "run sonicvacuum discover on their records"
         )
-    return [row(load(truths[id]), load(verdicts[id]), verdicts[id]) for id in sorted(truths)]
+    return [
+        row(load(truths[id]), load(verdicts[id]), f"{verdicts[id]} (truth: {truths[id]})")
+        for id in sorted(truths)
+    ]
 
 
 def found_in(folder, name: str) -> dict[str, Path]:
@@ -89,23 +92,28 @@ def found_in(folder, name: str) -> dict[str, Path]:
 
 
 def load(path: Path) -> dict:
-    """A truth, verdict or change; InputError where it is not JSON."""
+    """A truth, verdict or change; InputError where it is no JSON object."""
     try:
-        return json.loads(path.read_text(encoding="utf-8"))
-    except json.JSONDecodeError as error:
+        content = json.loads(read_text(path))
+    except (ValueError, RecursionError) as error:
         raise InputError(f"{path}: not valid JSON ({error})") from None
+    if not isinstance(content, dict):
+        raise InputError(f"{path}: expected keys and values at the top level, found {type(content).__name__}")
+    return content
 
 
 def row(truth: dict, verdict: dict, path="verdict.json") -> Row:
     """One case.
 
     Raises:
-        InputError: where the verdict lacks a key that is needed; the message names it.
+        InputError: where the verdict lacks a key that is needed, which the message names, or one of the two
+            holds what does not belong there.
     """
-    try:
-        return _row(truth, verdict)
-    except KeyError as error:
-        raise InputError(f"{path}: {error.args[0]}: missing; this key is required") from None
+    with reading(path, "run sonicvacuum discover again, or hide"):
+        try:
+            return _row(truth, verdict)
+        except KeyError as error:
+            raise InputError(f"{path}: {error.args[0]}: missing; this key is required") from None
 
 
 def _row(truth, verdict):

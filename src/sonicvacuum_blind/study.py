@@ -9,7 +9,7 @@ from dataclasses import asdict, fields
 
 import numpy as np
 
-from sonicvacuum.files import InputError
+from sonicvacuum.files import InputError, read_text, reading
 from sonicvacuum.tables import write_csv
 from sonicvacuum_blind import catalogue, foreign
 from sonicvacuum_blind.hide import Spec
@@ -132,9 +132,9 @@ def read_cases(path) -> list[Spec]:
     Raises:
         InputError: naming file and line of what is wrong.
     """
-    with open(path, newline="", encoding="utf-8") as stream:
-        reader = csv.DictReader(stream)
-        names = [f.name for f in fields(Spec)]
+    names = [f.name for f in fields(Spec)]
+    with reading(path, f"write {','.join(names)} and one line for each case"):
+        reader = csv.DictReader(read_text(path).splitlines())
         if reader.fieldnames != names:
             raise InputError(f"{path}: columns are {reader.fieldnames}; write {','.join(names)}")
         return [_spec(row, path, line) for line, row in enumerate(reader, start=2)]

@@ -99,13 +99,15 @@ def left(points: Digitised, table: pd.DataFrame) -> dict[str, float]:
     if points.sensor:
         own = own[own.sensor == points.sensor]
     elif "orientation" in own:
-        own = own[own.orientation == "vertical"]
+        own = own[(own.orientation == "vertical") & (own[x] > 0.0) & (own[y] > 0.0)]
     found = {}
     for model, line in own.groupby("model", sort=False):
         # The reflection's line begins where the pulse's ends.
-        off = _off(points, line.sort_values(x).drop_duplicates(x), x, y)
+        line = line.dropna(subset=[x, y]).sort_values(x).drop_duplicates(x)
+        off = _off(points, line, x, y) if len(line) > 1 else []
         if len(off):
-            found[model] = float(np.mean(off**2))
+            with np.errstate(over="ignore"):  # told only where it is finite
+                found[model] = float(np.mean(np.square(off)))
     return found
 
 

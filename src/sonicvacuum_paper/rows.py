@@ -146,4 +146,9 @@ def _row(cells, count, path, place):
         value, error = (float(c) if c else math.nan for c in (value, error))
     except ValueError:
         raise InputError(f"{path}, line {place}: {value!r} or {error!r} is not a number") from None
+    if math.isinf(value) or math.isinf(error) or error < 0.0:
+        raise InputError(
+            f"{path}, line {place}: {value:g} with a numerical error of {error:g} is no result; "
+            "leave a cell empty where there is no number"
+        )
     return Row(case, quantity, sensor, value, unit, error, *reason)

@@ -1,9 +1,9 @@
 """Mutants of every file that a user can hand over, and what the program makes of them.
 
-A mutant is either another tree (a value of another kind, size or sign, a key too many or too few) or other
-bytes (cut, flipped, in another encoding). Each must be accepted, and then mean something, or be refused by an
-`InputError` with the file's name; anything else is a fault. Run as a script, it tries many and writes a
-table:
+A mutant is either another tree (a value of another kind, size or sign, a key too many or too few), another
+table (a cell changed, lost, put in twice) or other bytes (cut, flipped, in another encoding). Each must be
+accepted, and then mean something, or be refused by an `InputError` with the file's name; anything else is a
+fault. Run as a script, it tries many and writes a table:
 
     python tests/fuzz/mutants.py results/fuzz.csv 5000
 """
@@ -15,6 +15,7 @@ import random
 import shutil
 import sys
 import tempfile
+import warnings
 from collections import Counter
 from pathlib import Path
 
@@ -22,10 +23,11 @@ import numpy as np
 import yaml
 
 HERE = Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE.parent / folder) for folder in ("records", "report", "unit")]
+sys.path[:0] = [str(HERE), *(str(HERE.parent / folder) for folder in ("records", "report", "unit"))]
 
 from made_verdicts import write  # noqa: E402
 from record_cases import CONTENT  # noqa: E402
+from tables import Tables, in_cell  # noqa: E402
 from test_card import CASE  # noqa: E402
 from test_histories import CARD, PARTS  # noqa: E402
 
@@ -141,6 +143,9 @@ class Files:
         }
         for file, tree, dumped in self.trees.values():
             (folder / file).write_text(dumped(tree))
+        tables = Tables(folder / "tables")
+        self.trees |= {kind: (f"tables/{file}", *rest) for kind, (file, *rest) in tables.trees.items()}
+        self.readers |= {kind: (f"tables/{file}", read) for kind, (file, read) in tables.readers.items()}
         self.whole = {kind: (folder / file).read_bytes() for kind, (file, _) in self.readers.items()}
 
     @staticmethod
@@ -163,6 +168,8 @@ class Files:
                 mutant = dumped(tree).encode("utf-8", "surrogatepass")
             except (TypeError, ValueError):  # keys that JSON does not have
                 return mutation, "refused", "not written"
+        elif path.suffix == ".csv" and draw.random() < 0.7:
+            mutant, mutation = in_cell(self.whole[kind], draw), "cell"
         else:
             mutant, mutation = spoiled(self.whole[kind], draw)
         path.write_bytes(mutant)
@@ -179,6 +186,7 @@ class Files:
 
 def main(table: str, count: str) -> None:
     """Try `count` mutants and write how many of each kind were accepted, refused, and neither."""
+    warnings.filterwarnings("error", module="sonicvacuum")  # as in the tests: our own overflows are faults
     tally, faults = Counter(), []
     folder = Path(tempfile.mkdtemp())
     try:

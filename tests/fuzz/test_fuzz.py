@@ -8,15 +8,28 @@ from hypothesis import strategies as st
 from mutants import Files
 
 KINDS = (
+    "absent",
+    "assumptions",
+    "blind verdict",
     "candidates",
     "card",
+    "cases",
+    "claims",
     "config",
+    "figure",
     "gap",
     "history",
+    "ledger",
     "limits",
+    "metrics",
     "model",
+    "points",
+    "probable",
     "record",
+    "score",
     "signals",
+    "summary",
+    "truth",
     "verdict",
     "where",
 )

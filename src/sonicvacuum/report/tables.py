@@ -2,24 +2,34 @@
 
 import math
 
-from sonicvacuum.files import InputError
+from sonicvacuum.files import InputError, check_file, reading
 
 
-def read(path, columns):
+def read(path, columns, numbers=()):
     """The pandas.DataFrame of a table with exactly these columns, text kept as text and missing cells empty.
 
     Raises:
-        InputError: when the file has other columns or cannot be parsed.
+        InputError: when the file has other columns or cannot be parsed, or where a cell of the columns
+            `numbers` is neither a number nor empty.
     """
     import pandas as pd  # only here: the page of a record does without
 
-    try:
+    check_file(path)
+    with reading(path, "make the table again"):
         table = pd.read_csv(path, dtype=str, keep_default_na=False)
-    except (OSError, ValueError) as error:
-        raise InputError(f"{path}: cannot be read as a table ({error})") from None
     if list(table.columns) != list(columns):
         raise InputError(f"{path}: columns are {','.join(table.columns)}; expected {','.join(columns)}")
+    for column in numbers:
+        for place, cell in enumerate(table[column], 2):
+            _check_number(cell, f"{path}, line {place}: {column}")
     return table
+
+
+def _check_number(cell, where):
+    try:
+        float(cell or "nan")
+    except ValueError:
+        raise InputError(f"{where}: is {cell!r}; make the table again, or write a number") from None
 
 
 def number(text: str, digits: int = 4) -> str:
@@ -30,6 +40,8 @@ def number(text: str, digits: int = 4) -> str:
         return text
     if math.isnan(value):
         return ""
+    if math.isinf(value):
+        return text
     if value == 0.0:
         return "0"
     exponent = math.floor(math.log10(abs(value)))

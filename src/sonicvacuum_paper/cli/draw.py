@@ -46,14 +46,13 @@ def draw(figure, cards, histories, points, out):
 @click.option("--figure", required=True, type=existing(), help="Numbers of its figure (CSV).")
 def digitised(points, figure):
     """Check POINTS that were read off the paper, and hold them against each model of a figure."""
-    import pandas
-
     from sonicvacuum.files import InputError
     from sonicvacuum_paper import digitised as module
+    from sonicvacuum_paper import figures
 
     read = module.read(points)
     if Path(figure).stem != read.figure:
         raise InputError(
             f"{points}: figure: is {read.figure!r}; give --figure {read.figure}.csv, not {figure}"
         )
-    click.echo(module.told(read, pandas.read_csv(figure)))
+    click.echo(module.told(read, figures.read(read.figure, figure)))

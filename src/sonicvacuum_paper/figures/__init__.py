@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from sonicvacuum.blas import one_thread
-from sonicvacuum.files import InputError, replacing
+from sonicvacuum.files import InputError, reading, replacing
 
 # Figure → the cards it shows, panel by panel.
 CARDS = {
@@ -28,6 +28,9 @@ CARDS = {
         for model in ("layer-loss", "layer-loss-geometry", "layer", "matched")
     ),
 }
+
+# Columns of their tables that hold words; the others hold numbers.
+WORDS = ["panel", "series", "model", "orientation", "sensor"]
 
 
 def names() -> tuple[str, ...]:
@@ -113,18 +116,22 @@ def with_points(name: str, table, points):
 
 def draw(name: str, path):
     """The matplotlib Figure of the numbers in a CSV that `make` wrote; InputError where it is not one."""
+    return _module(name).draw(read(name, path))
+
+
+def read(name: str, path):
+    """The pandas.DataFrame of a figure's numbers; InputError where the file does not hold them."""
     import pandas
 
-    module = _module(name)
-    try:
+    cure = f"draw {name} from its cards again"
+    with reading(path, cure):
         table = pandas.read_csv(path)
-    except (OSError, ValueError) as error:
-        raise InputError(
-            f"{path}: cannot be read as CSV ({error}); draw {name} from its cards again"
-        ) from None
-    if list(table.columns) != module.COLUMNS or table.empty:
-        raise InputError(f"{path}: not the numbers of {name}; draw it from its cards again")
-    return module.draw(table)
+    if list(table.columns) != _module(name).COLUMNS or table.empty:
+        raise InputError(f"{path}: not the numbers of {name}; {cure}")
+    for column in table.columns.difference(WORDS):
+        if not pandas.api.types.is_numeric_dtype(table[column]):
+            raise InputError(f"{path}: {column}: holds what is no number; {cure}")
+    return table
 
 
 def _module(name):

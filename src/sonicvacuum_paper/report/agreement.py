@@ -9,7 +9,7 @@ import re
 
 import pandas as pd
 
-from sonicvacuum.files import InputError
+from sonicvacuum.files import InputError, reading
 
 TOLERANCES = ["table", "column", "absolute", "relative", "reason"]
 DIFFERENCES = ["table", "row", "column", "reference", "fresh", "allowed"]
@@ -22,7 +22,8 @@ def read_tolerances(path) -> pd.DataFrame:
     Raises:
         InputError: for other columns or a row without a reason.
     """
-    table = pd.read_csv(path, keep_default_na=False)
+    with reading(path, f"write {','.join(TOLERANCES)}"):
+        table = pd.read_csv(path, keep_default_na=False)
     if list(table.columns) != TOLERANCES:
         raise InputError(f"{path}: columns are {','.join(table.columns)}; expected {','.join(TOLERANCES)}")
     bare = table[table["reason"].str.strip() == ""]

@@ -4,7 +4,6 @@ The figure is drawn again from its CSV, which takes a part of a second, and aske
 themselves stay in the SVG, see `sonicvacuum.report.interactive`.
 """
 
-import pandas
 from matplotlib.axes import Axes
 
 from sonicvacuum.figures import style
@@ -23,7 +22,7 @@ def of_figure(name: str, path) -> str:
         InputError: where the file does not hold the numbers of that figure.
     """
     drawn = figures.draw(name, path)
-    table = pandas.read_csv(path)
+    table = figures.read(name, path)
     width, height = (_DOTS * size for size in drawn.get_size_inches())
     panels = []
     for axes, letter in zip(drawn.axes, dict.fromkeys(table.panel), strict=True):

@@ -118,7 +118,7 @@ CLAIMS = [
 
 def _ledger(given: Sources):
     """The ledger with statements, notes and the models that a row excludes."""
-    ledger = tables.read(given.ledger, tables.LEDGER)
+    ledger = tables.read_ledger(given.ledger)
     claims = tables.read(given.claims, CLAIMS).set_index("claim")
     ledger["statement"] = [claims["statement"].get(c, "") for c in ledger["claim"]]
     ledger["note"] = [claims["note"].get(c, "") for c in ledger["claim"]]

@@ -4,7 +4,7 @@ import re
 
 import pandas as pd
 
-from sonicvacuum.files import InputError, read_text, replacing
+from sonicvacuum.files import InputError, read_text, reading, replacing
 from sonicvacuum_paper import ladder
 from sonicvacuum_paper.report import tables
 
@@ -53,7 +53,8 @@ def naming(score_path) -> pd.DataFrame:
     Raises:
         InputError: where a column is missing.
     """
-    table = pd.read_csv(score_path, dtype=str, keep_default_na=False)
+    with reading(score_path, "make the table with sonicvacuum blind score"):
+        table = pd.read_csv(score_path, dtype=str, keep_default_na=False)
     missing = [column for column in NAMING if column not in table]
     if missing:
         raise InputError(f"{score_path}: no column {missing[0]}; make the table with sonicvacuum blind score")
@@ -75,7 +76,7 @@ def publish_benchmark(benchmark_path, page_path) -> None:
 
 def publish(ledger_path, readme_path, reference_path) -> None:
     """Copy the ledger to its place in git and renew the README's summary."""
-    ledger = tables.read(ledger_path, tables.LEDGER)
+    ledger = tables.read_ledger(ledger_path)
     renewed = with_part(read_text(readme_path), "results", summary(ledger))
     with replacing(reference_path) as stream:
         stream.write(read_text(ledger_path))

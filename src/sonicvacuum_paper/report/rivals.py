@@ -7,6 +7,7 @@ All numbers come from the tables of `sonicvacuum paper rivals`; the sentences ar
 import pandas as pd
 
 from sonicvacuum.effects import CATALOGUE
+from sonicvacuum.files import reading
 from sonicvacuum.report.tables import number
 from sonicvacuum_paper.ladder import title
 from sonicvacuum_paper.printed import PRINTED
@@ -23,18 +24,23 @@ def context(contours, experiments, relaxation, losses) -> dict:
     """What the template asks for, from the paths of the four tables; empty where they have not been made."""
     if not (contours and experiments and relaxation and losses):
         return {"allowed": None}
-    series = pd.read_csv(experiments)[formats.EXPERIMENTS]
+    series = _read(experiments, formats.EXPERIMENTS)
     if series.empty:  # a configuration without a ledger
         return {"allowed": None}
     apart = series.groupby("series", sort=False)[["speeds_sigma", "all_sigma"]].first()
     return {
-        "allowed": allowed(pd.read_csv(contours)[formats.MAP]),
+        "allowed": allowed(_read(contours, formats.MAP)),
         "series": _series(series),
         "apart": [(name, number(r.speeds_sigma, 2), number(r.all_sigma, 2)) for name, r in apart.iterrows()],
         "decisive": apart.speeds_sigma.idxmax(),
-        **of_laws(pd.read_csv(losses)[formats.LOSSES]),
-        "relaxing": relaxing(pd.read_csv(relaxation)[formats.RELAXATION]),
+        **of_laws(_read(losses, formats.LOSSES)),
+        "relaxing": relaxing(_read(relaxation, formats.RELAXATION)),
     }
+
+
+def _read(path, columns):
+    with reading(path, "run sonicvacuum paper rivals again"):
+        return pd.read_csv(path)[columns]
 
 
 def allowed(table: pd.DataFrame) -> dict:

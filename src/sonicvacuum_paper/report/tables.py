@@ -4,6 +4,7 @@ from dataclasses import fields
 
 import pandas as pd
 
+from sonicvacuum.files import InputError
 from sonicvacuum.report.tables import number, read
 from sonicvacuum_paper.assumptions import AssumptionRow
 from sonicvacuum_paper.ladder import ARITHMETIC, SIMULATION, THEORY, members, title
@@ -17,6 +18,8 @@ __all__ = ["number", "read"]
 LEDGER = [field.name for field in fields(LedgerRow)]
 ASSUMPTIONS = [field.name for field in fields(AssumptionRow)]
 METRICS = list(COLUMNS)
+# Columns of the ledger that hold numbers.
+NUMBERS = [field.name for field in fields(LedgerRow) if field.type in (float, "float")]
 # What a reader asks first: claim, and what it is called in the first table.
 FIRST = {
     "fig3a-speed": "197 m/s, coated beads, Fig. 3a",
@@ -26,6 +29,15 @@ FIRST = {
     "force-level": "forces up to about 3 N",
     "fig3b-speed": "578 m/s, bare steel",
 }
+
+
+def read_ledger(path) -> pd.DataFrame:
+    """The ledger, text as text; InputError where it is none, or a claim stands in it twice."""
+    ledger = read(path, LEDGER, NUMBERS)
+    twice = ledger["claim"][ledger["claim"].duplicated()]
+    if len(twice):
+        raise InputError(f"{path}: {twice.iloc[0]} stands here twice; run sonicvacuum paper ledger again")
+    return ledger
 
 
 def shown(excluded: str) -> str:

@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 from dataclasses import dataclass, fields
 
+from sonicvacuum.files import reading
 from sonicvacuum_paper.rows import cells_of, write_lines
 
 
@@ -25,8 +26,12 @@ def write(rows: Iterable[Agreement], path) -> None:
 
 
 def read(path) -> dict[str, dict[str, float]]:
-    """Claim → model → probability, of a table that `write` wrote."""
+    """Claim → model → probability, of a table that `write` wrote; InputError where it is none."""
     found: dict[str, dict[str, float]] = {}
-    for cells in cells_of(path, tuple(f.name for f in fields(Agreement))):
-        found.setdefault(cells[0], {})[cells[1]] = float(cells[-1])
+    with reading(path, "run sonicvacuum paper uncertainty again"):
+        for cells in cells_of(path, tuple(f.name for f in fields(Agreement))):
+            share = float(cells[-1])
+            if not 0.0 <= share <= 1.0:
+                raise ValueError(f"{cells[0]}: probability is {share:g}, outside 0 to 1")
+            found.setdefault(cells[0], {})[cells[1]] = share
     return found
