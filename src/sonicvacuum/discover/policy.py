@@ -25,6 +25,8 @@ CLEAR = 1.0
 GROSS = 4.0
 # ... and an effect is named that is so surely part of what explains the data.
 STANDS_OUT = 0.95
+# Its strength then stands off from zero by more than so many standard errors.
+SEEN = 3.0
 # Effects that are less surely there are not told of.
 TOLD = 0.05
 # No more effects than this are named together: a set of more is not looked through in any sense.

@@ -115,14 +115,14 @@ def _more(forward, null, fit: Fit, setup: Setup, found) -> list[Combination]:
 
 
 def _told_apart(forward, null, ranked, odds, setup) -> Fit | None:
-    """The best explanation without the effects that do not stand out, or gain no more than one shape outside
-    the catalogue would in their place.
+    """The best explanation without the effects that do not stand out, are hardly seen, or gain no more than
+    one shape outside the catalogue would in their place.
     """
     fit = ranked[0].fit
+    seen = _seen(forward, fit)
     for k in reversed(range(len(ranked[0].effects))):
-        if odds[fit.hypothesis.ids[k]] < policy.STANDS_OUT or not _ahead(
-            forward, null, fit, k, ranked, setup
-        ):
+        likely = seen[k] and odds[fit.hypothesis.ids[k]] > policy.STANDS_OUT
+        if not likely or not _ahead(forward, null, fit, k, ranked, setup):
             fit = _less(forward, null, fit, k, ranked, setup)
     return fit if fit.hypothesis.components else None
 
@@ -148,10 +148,28 @@ def widened(forward: Forward, null: Fit, fit: Fit) -> tuple[Forward, Fit, Fit]:
     independent pieces.
     """
     e = forward.experiment
-    wider = max(1.0, float(fit.normal.chi2.sum()) / pieces(forward, fit)) ** 0.5
-    view = Forward(replace(e, sigma=wider * e.sigma), forward.threads)
+    view = Forward(replace(e, sigma=_wider(forward, fit) * e.sigma), forward.threads)
     there = Fit(fit.hypothesis, linearise(view, fit.hypothesis, fit.u[None], fit.nu[None]))
     return view, Fit(null.hypothesis, linearise(view, null.hypothesis, null.u[None], null.nu[None])), there
+
+
+def _wider(forward, fit: Fit) -> float:
+    """Errors over those that the noise alone would make."""
+    return max(1.0, float(fit.normal.chi2.sum()) / pieces(forward, fit)) ** 0.5
+
+
+def _seen(forward, fit: Fit) -> list[bool]:
+    """Whether the strength of each effect of a fit stands off from zero by a few of its errors."""
+    error = _wider(forward, fit) * np.maximum(fit.sigma, 1e-300)
+    found = []
+    for component, own in zip(fit.hypothesis.components, fit.hypothesis.columns, strict=True):
+        z = [
+            (1.0 if c.kind in ("log", "inverse") else abs(u)) / e
+            for c, u, e in zip(component.free, fit.u[own], error[own], strict=True)
+            if c.parameter.switches
+        ]
+        found.append(max(z, default=0.0) > policy.SEEN)
+    return found
 
 
 def weighed(forward: Forward, null: Fit, found: Iterable[Combination]) -> list[Combination]:
