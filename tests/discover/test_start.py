@@ -1,0 +1,42 @@
+"""Where time zero is unknown: what suits all runs tells an echo from the pulse."""
+
+import numpy as np
+import pytest
+
+from sonicvacuum.discover.model import start
+
+TIME = np.arange(400.0)
+
+
+def trace(pulse, echo, late):
+    """A pulse and its echo 150 samples later."""
+    bump = lambda at: np.exp(-np.square((TIME - at - late) / 8.0))  # noqa: E731
+    return pulse * bump(60.0) + echo * bump(210.0)
+
+
+def test_an_echo_that_looks_more_like_the_pulse_is_not_taken_for_it():
+    # A decaying gauge weakens the pulse of the second run until its echo is the larger.
+    pairs = {
+        0: [(trace(1.0, 0.5, 20.0), trace(1.0, 0.3, 0.0))],
+        1: [(trace(0.6, 1.0, 25.0), trace(1.0, 0.3, 0.0))],
+    }
+    assert start._lags({1: pairs[1]}) == {1: 175}  # alone it is
+    assert start._lags(pairs) == {0: 20, 1: 25}
+
+
+def test_a_run_that_suits_no_other_keeps_its_own_shift():
+    pairs = {
+        0: [(trace(1.0, 0.0, 10.0), trace(1.0, 0.0, 0.0))],
+        1: [(trace(1.0, 0.0, 12.0), trace(1.0, 0.0, 0.0))],
+        2: [(trace(1.0, 0.0, 250.0), trace(1.0, 0.0, 0.0))],
+    }
+    assert start._lags(pairs) == {0: 10, 1: 12, 2: 250}
+
+
+@pytest.mark.parametrize("lengths", [(400, 300), (250, 400)])
+def test_runs_of_unequal_length_are_held_against_each_other(lengths):
+    pairs = {
+        k: [(trace(1.0, 0.4, 7.0)[:length], trace(1.0, 0.4, 0.0)[:length])]
+        for k, length in enumerate(lengths)
+    }
+    assert start._lags(pairs) == {0: 7, 1: 7}
