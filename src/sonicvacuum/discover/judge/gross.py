@@ -75,24 +75,31 @@ class Standing:
 def standing_out(
     forward: Forward, null: Fit, found: Iterable[Combination], setup: Setup, prior: Mapping[str, float]
 ) -> Standing:
-    """What stands out of all explanations `found`, to the best of which effects are added as long as all of
-    its own do.
+    """What stands out of all explanations `found`.
+
+    To the best of them effects are added as long as all of its own stand out. Where that ends still far from
+    the data, what stood out at first is kept: one effect more would only stand for what is left.
     """
     found = [*found, *_profiles(forward, null, setup)]
+    first = None
     while True:
         ranked = sorted(weighed(forward, null, found), key=lambda c: -c.log_bayes)
         weights = explanations.log_weights((), ranked, [], prior)
         odds = shares(weights)
         if set(ranked[0].effects) & _PROFILES:
-            return Standing(None, odds, {})
+            return first or Standing(None, odds, {})
         fit = _told_apart(forward, null, ranked, odds, setup)
         if fit is None:
-            return Standing(None, odds, weights)
+            return first or Standing(None, odds, weights)
+        now = Standing(fit, odds, _merged(weights, fit.hypothesis.ids))
+        if not gross(forward, fit):
+            return now
+        first = first or now
         best = ranked[0].effects
         grown = set(fit.hypothesis.ids) == set(best) and 1 < len(best) < policy.MOST_EFFECTS
         more = _more(forward, null, fit, setup, found) if grown else []
         if not more:
-            return Standing(fit, odds, _merged(weights, fit.hypothesis.ids))
+            return first
         found += more
 
 
