@@ -182,3 +182,26 @@ def test_listing(tmp_path):
     done = CliRunner().invoke(cli, ["record", "import", *files, "--list"])
     assert done.exit_code == 2
     assert "CH2" in done.stdout and "bad.csv" in done.stderr
+
+
+def test_columns_of_one_gauge_are_shots(tmp_path):
+    raw = tmp_path / "shots.csv"
+    raw.write_bytes(table(["time_us,shot1_V,shot2_V,other_V"], (1e6 * TIMES, PULSE, 0.5 * PULSE, PULSE)))
+    chosen = options(channel=("shot1=g", "shot2=g"), scale=("g=1N/V",))
+    import_files([raw], tmp_path / "record", chosen)
+    record = yaml.safe_load((tmp_path / "record" / "record.yaml").read_text())
+    assert [r["id"] for r in record["runs"]] == ["shots-1", "shots-2"]
+    peaks = [
+        np.genfromtxt(tmp_path / "record" / r["signals"], delimiter=",", names=True)["g"].max()
+        for r in record["runs"]
+    ]
+    assert peaks[1] == pytest.approx(0.5 * peaks[0], rel=0.02)  # two per cent of noise on the baseline
+
+
+def test_columns_that_do_not_pair_up_are_refused(tmp_path):
+    raw = tmp_path / "shots.csv"
+    raw.write_bytes(table(["time_us,a_V,b_V,c_V"], (1e6 * TIMES, PULSE, PULSE, PULSE)))
+    with pytest.raises(InputError, match="two channels are g"):
+        import_files(
+            [raw], tmp_path / "record", options(channel=("a=g", "b=g", "c=h"), scale=("g=1N/V", "h=1N/V"))
+        )

@@ -26,7 +26,7 @@ from sonicvacuum.cli.helped import examples
     "--channel",
     multiple=True,
     metavar="CH=GAUGE",
-    help="A channel (or FILE:CH) reads this gauge; others are left out.",
+    help="A channel (or FILE:CH) reads this gauge; others are left out. Several of one gauge are shots.",
 )
 @click.option(
     "--scale", multiple=True, metavar="GAUGE=12.5N/V", help="Sensitivity, also -12.5N/V, 80mV/N, 12.5N/V±2%."

@@ -27,6 +27,9 @@ GROSS = 4.0
 STANDS_OUT = 0.95
 # Its strength then stands off from zero by more than so many standard errors.
 SEEN = 3.0
+# Beside others it takes away this share of what they leave: in nine records of real chains a defect of one
+# bead, another one each time, took away 30 %, friction 43 to 52 %.
+TAKES_AWAY = 0.4
 # Effects that are less surely there are not told of.
 TOLD = 0.05
 # No more effects than this are named together: a set of more is not looked through in any sense.

@@ -67,6 +67,7 @@ def _id(text):
 
 def _segments(run, group: list[Recording], options):
     """One run per shot of the files; shots are numbered where there are several."""
+    group = [_beside(r, len(group) > 1, options) for r in group]
     count = max(r.segments for r in group)
     if any(r.segments != count for r in group):
         raise InputError(f"run {run}: its files hold different numbers of shots; import them one by one")
@@ -87,6 +88,27 @@ def _segments(run, group: list[Recording], options):
             names = ", ".join(c.name for r in group for c in r.channels)
             raise InputError(f"run {run}: none of its channels ({names}) is named by --channel")
         yield Shot(run if count == 1 else f"{run}-{k}", channels, tuple(notes))
+
+
+def _beside(recording: Recording, several, options) -> Recording:
+    """The recording with channels that the user says read the same gauge as shots of their own.
+
+    Tables often hold one column for each shot. Every gauge must then have as many columns.
+    """
+    named = [(c, _gauge(c, recording, several, options)) for c in recording.channels]
+    gauges = [g for _, g in named if g]
+    count = gauges.count(gauges[0]) if gauges else 1
+    alike = all(gauges.count(g) == count for g in gauges)
+    if not options.channels or recording.segments > 1 or count < 2 or not alike:
+        return recording
+    seen: dict[str, int] = {}
+    channels = []
+    for channel, gauge in named:
+        if gauge:
+            seen[gauge] = seen.get(gauge, 0) + 1
+            channels.append(replace(channel, segment=seen[gauge]))
+    note = "Columns that read the same gauge are shots of their own, numbered in the order of the file."
+    return replace(recording, channels=tuple(channels), notes=(*recording.notes, note))
 
 
 def _plain(name):

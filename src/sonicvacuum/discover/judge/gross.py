@@ -145,8 +145,13 @@ def _less(forward, null, fit: Fit, k: int, ranked, setup) -> Fit:
 
 
 def _ahead(forward, null, fit: Fit, k: int, ranked, setup) -> bool:
+    """Whether effect k gains more than one shape outside the catalogue would, and beside others takes away
+    much of what they leave.
+    """
     less = _less(forward, null, fit, k, ranked, setup)
     gain = less.objective - fit.objective
+    if less.hypothesis.components and gain < policy.TAKES_AWAY * less.objective:
+        return False
     return gain > (1.0 + policy.SHARE) * unknown.simplest(forward, less)[1] + policy.MARGIN
 
 
