@@ -43,7 +43,8 @@ def write_rivals(config: Config, out: Mapping[str, str]) -> None:
     """Write the tables in which the two lossy models, and a relaxing solid, are held against each other.
 
     Args:
-        config: must have the case fig3a under the models compared; without a ledger the tables are empty.
+        config: must have fig3a, fig5a and fig6b under the models compared; the tables are empty without a
+            ledger.
         out: `map`, `experiments`, `relaxation` and `losses` → file.
     """
     if not config.ledger:
@@ -55,11 +56,16 @@ def write_rivals(config: Config, out: Mapping[str, str]) -> None:
     missing = [model for model in ("layer_loss", "matched_loss", "matched") if model not in cards]
     if missing:
         raise InputError(f"cases.fig3a: no variant for the ledger's column {missing[0]}; add one")
+    lossy = {case: column_cards(config, case) for case in losses.CASES}
+    for case, of_case in lossy.items():
+        for model in losses.CONTACTS:
+            if model not in of_case:
+                raise InputError(f"cases.{case}: no variant for the ledger's column {model}; add one")
     tables = {
         "map": lambda: identify.table(cards["layer_loss"]),
         "experiments": lambda: decide.table(cards),
         "relaxation": lambda: viscoelastic.table(cards["matched"]),
-        "losses": lambda: losses.table({case: column_cards(config, case) for case in losses.CASES}),
+        "losses": lambda: losses.table(lossy),
     }
     for name, made in tables.items():
         with replacing(out[name]) as stream:
