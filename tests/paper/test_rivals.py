@@ -113,9 +113,25 @@ def test_a_loss_is_calibrated_on_the_printed_duration(cases):
     )
 
 
-def test_the_section_of_the_report_says_what_the_tables_say(contours, experiments, solids, laws, tmp_path):
-    paths = [tmp_path / name for name in ("map.csv", "experiments.csv", "relaxation.csv", "losses.csv")]
-    for path, table in zip(paths, (contours, experiments, solids, laws), strict=True):
+@pytest.fixture(scope="module")
+def fits():
+    """The table of the fits to the record, in round numbers."""
+    rows = [
+        (names, said, 4.0, 300.0, "light", "speed g9-g5", "", "m/s", 197.0, 2.0, 113.0, 196.0, held)
+        for names, said, held in (
+            ("dynamic-modulus", "dynamic-modulus modulus_ratio 3.7", 190.0),
+            ("coating-thickness+kuwabara-kono", "coating-thickness layer_thickness_um 50", np.nan),
+        )
+    ]
+    return pd.DataFrame(rows, columns=formats.EXPLAINED)
+
+
+def test_the_section_of_the_report_says_what_the_tables_say(
+    contours, experiments, solids, laws, fits, tmp_path
+):
+    names = ("map.csv", "experiments.csv", "relaxation.csv", "losses.csv", "explained.csv")
+    paths = [tmp_path / name for name in names]
+    for path, table in zip(paths, (contours, experiments, solids, laws, fits), strict=True):
         table.to_csv(path, index=False)
     ledger = pd.DataFrame(
         [("fig3a-speed", "The pulse runs at 197 m/s.", "layer 0.02; matched 0.3", "matched")],
@@ -125,6 +141,7 @@ def test_the_section_of_the_report_says_what_the_tables_say(contours, experiment
     page = template.render(**uncertain.context(ledger), **rivals.context(*paths), map_picture=None)
     assert "0.3 (fitted)" in page and "±1 mm each" in page
     assert "by them the thickness of the coating decides" in page
+    assert "196 | 190" in page and "196 | –" in page and "modulus over handbook value 3.7" in page
     assert "1.52 on the layer and 1.37 on Hertz" in page and "Hunt" in page
     assert "None of the solids tried meets both speeds and the duration" in page
     assert "Nothing has been drawn" in template.render(probable=(), allowed=None)
@@ -136,4 +153,4 @@ def test_what_the_comparison_needs_is_named_where_it_is_missing(cases, tmp_path)
 
     without = config.Config(**{**{f: getattr(cases, f) for f in cases.__struct_fields__}, "cases": {}})
     with pytest.raises(InputError, match=r"cases\.fig3a: no variant for the ledger's column layer_loss"):
-        write_rivals(without, dict.fromkeys(formats.HEADERS, str(tmp_path / "x")))
+        write_rivals(without, None, dict.fromkeys(formats.HEADERS, str(tmp_path / "x")))

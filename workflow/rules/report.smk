@@ -70,6 +70,7 @@ rule page:
         experiments="results/experiments.csv",
         relaxation="results/relaxation.csv",
         losses="results/losses.csv",
+        explained="results/explained.csv",
         blind_full=sorted(Path(STUDY_TABLES).glob("*.csv")),
         animations=expand("results/animations/{name}.svg", name=ANIMATIONS),
         linked=["results/runs.html", "results/blind.html"],
@@ -101,7 +102,7 @@ rule page:
         " {params.cards:q} {params.locks:q} {params.discoveries:q} --blind-full {params.blind_full:q}"
         " {params.histories:q} {params.animations:q} {params.linked:q}"
         " --map {input.contours:q} --map-picture {input.contours_picture:q} --experiments {input.experiments:q}"
-        " --relaxation {input.relaxation:q} --losses {input.losses:q} --out {output:q} 2> {log:q}"
+        " --relaxation {input.relaxation:q} --losses {input.losses:q} --explained {input.explained:q} --out {output:q} 2> {log:q}"
 
 
 rule runs:

@@ -27,12 +27,15 @@ rule uncertainty:
 
 
 rule rivals:
+    input:
+        record=home("workflow/resources/measured/daraio-nesterenko-2006-coated/record.yaml"),
     output:
         contours="results/identifiability.csv",
         picture=report("results/identifiability.svg", category="Figures", caption="../report/rivals.rst"),
         experiments=report("results/experiments.csv", category="Tables", caption="../report/rivals.rst"),
         relaxation=report("results/relaxation.csv", category="Tables", caption="../report/rivals.rst"),
         losses=report("results/losses.csv", category="Tables", caption="../report/rivals.rst"),
+        explained=report("results/explained.csv", category="Tables", caption="../report/rivals.rst"),
     log:
         "results/logs/rivals.log",
     benchmark:
@@ -49,4 +52,5 @@ rule rivals:
         "Comparing the rival models of the coating"
     shell:
         "sonicvacuum paper rivals --config {params.config:q} --map {output.contours:q} --picture {output.picture:q}"
-        " --experiments {output.experiments:q} --relaxation {output.relaxation:q} --losses {output.losses:q} 2> {log:q}"
+        " --experiments {output.experiments:q} --relaxation {output.relaxation:q} --losses {output.losses:q}"
+        " --record {input.record:q} --explained {output.explained:q} 2> {log:q}"

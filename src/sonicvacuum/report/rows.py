@@ -79,14 +79,14 @@ def odds(verdict, catalogue, singles=()) -> list[dict]:
             "id": k,
             "share": share(p),
             "percent": f"{100.0 * p:.1f}",
-            "with": _with(fitted.get(k, ""), catalogue),
+            "with": in_words(fitted.get(k, ""), catalogue),
         }
         for place, (k, p) in enumerate(best)
         if place < FEWEST or p >= LEAST
     ]
 
 
-def _with(parameters, catalogue):
+def in_words(parameters, catalogue):
     """`dynamic-modulus modulus_ratio 3.87` of candidates.csv in words: `modulus over handbook value 3.9`."""
     told = []
     for part in filter(None, (p.strip() for p in parameters.split(";"))):

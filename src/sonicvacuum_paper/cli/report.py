@@ -43,6 +43,7 @@ _OUT = click.Path(dir_okay=False)
 @click.option("--experiments", type=_FILE, help="Series from `paper rivals`.")
 @click.option("--relaxation", type=_FILE, help="Solids from `paper rivals`.")
 @click.option("--losses", type=_FILE, help="Laws of loss from `paper rivals`.")
+@click.option("--explained", type=_FILE, help="Fits to the paper's record from `paper rivals`.")
 @click.option("--out", required=True, type=_OUT, help="Page (HTML) to write.")
 def report(cards, histories, out, **given):
     """Write the self-contained page with figures, ledger, audit, discoveries and provenance."""

@@ -12,7 +12,8 @@ _FILE = existing()
 @click.command(
     epilog=examples(
         "sonicvacuum paper rivals --map map.csv --picture map.svg --experiments runs.csv \\",
-        "    --relaxation solids.csv",
+        "    --relaxation solids.csv --losses laws.csv --explained fits.csv \\",
+        "    --record workflow/resources/measured/daraio-nesterenko-2006-coated",
     )
 )
 @click.option("--config", "path", default="config.yaml", show_default=True, type=_FILE)
@@ -21,16 +22,21 @@ _FILE = existing()
 @click.option("--experiments", required=True, type=click.Path(dir_okay=False), help="Series (CSV) to write.")
 @click.option("--relaxation", required=True, type=click.Path(dir_okay=False), help="Solids (CSV) to write.")
 @click.option("--losses", required=True, type=click.Path(dir_okay=False), help="Laws of loss (CSV) to write.")
-def rivals(path, contours, picture, experiments, relaxation, losses):
+@click.option("--record", required=True, type=click.Path(exists=True), help="Record of the coated chain.")
+@click.option(
+    "--explained", required=True, type=click.Path(dir_okay=False), help="Fits to it (CSV) to write."
+)
+def rivals(path, record, picture, contours, **out):
     """Compare the layer with a loss, Hertz at 15 GPa with a loss, laws of loss, and a relaxing solid."""
     import pandas
 
     from sonicvacuum import config as configuration
+    from sonicvacuum import records
     from sonicvacuum.figures import style
     from sonicvacuum_paper.uncertainty import picture as drawing
     from sonicvacuum_paper.uncertainty.stage import write_rivals
 
-    out = {"map": contours, "experiments": experiments, "relaxation": relaxation, "losses": losses}
+    out |= {"map": contours}
     check_apart([*out.values(), picture], [path])
-    write_rivals(configuration.read(path), out)
+    write_rivals(configuration.read(path), records.read(record), out)
     style.save(drawing.draw(pandas.read_csv(contours)), picture)

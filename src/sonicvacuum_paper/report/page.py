@@ -32,7 +32,7 @@ class Sources:
         own: simulated cards of cases that a user added.
         animations: SVG files that move, named by `shown.ANIMATIONS`.
         linked: names of the pages beside this one, of `runs.html` and `blind.html`.
-        contours, experiments, relaxation, losses: tables of `sonicvacuum paper rivals`, None where missing.
+        contours, experiments, relaxation, losses, explained: tables of `sonicvacuum paper rivals`.
         map_picture: the picture of the first of them (SVG).
     """
 
@@ -53,6 +53,7 @@ class Sources:
     experiments: Path | None = None
     relaxation: Path | None = None
     losses: Path | None = None
+    explained: Path | None = None
 
 
 def build(given: Sources) -> str:
@@ -63,7 +64,8 @@ def build(given: Sources) -> str:
     """
     ledger = _ledger(given)
     metrics = tables.read(given.metrics, tables.METRICS)
-    compared = rivals.context(given.contours, given.experiments, given.relaxation, given.losses)
+    of_rivals = (given.contours, given.experiments, given.relaxation, given.losses, given.explained)
+    compared = rivals.context(*of_rivals)
     template = inline.environment("sonicvacuum_paper.report").get_template("page.html.j2")
     return template.render(
         ledger=[_claim_row(row) for row in ledger.to_dict("records")],

@@ -8,6 +8,7 @@ import pandas as pd
 
 from sonicvacuum.effects import CATALOGUE
 from sonicvacuum.files import reading
+from sonicvacuum.report.rows import in_words
 from sonicvacuum.report.tables import number
 from sonicvacuum_paper.ladder import title
 from sonicvacuum_paper.printed import PRINTED
@@ -20,9 +21,9 @@ DURATION, LOW = 14.0, 7.35
 CELLS = ("speed_m_s", "half_duration_us", "decay")
 
 
-def context(contours, experiments, relaxation, losses) -> dict:
-    """What the template asks for, from the paths of the four tables; empty where they have not been made."""
-    if not (contours and experiments and relaxation and losses):
+def context(contours, experiments, relaxation, losses, explained) -> dict:
+    """What the template asks for, from the paths of the five tables; empty where they have not been made."""
+    if not (contours and experiments and relaxation and losses and explained):
         return {"allowed": None}
     series = _read(experiments, formats.EXPERIMENTS)
     if series.empty:  # a configuration without a ledger
@@ -33,14 +34,15 @@ def context(contours, experiments, relaxation, losses) -> dict:
         "series": _series(series),
         "apart": [(name, number(r.speeds_sigma, 2), number(r.all_sigma, 2)) for name, r in apart.iterrows()],
         "decisive": apart.speeds_sigma.idxmax(),
+        "explained": of_sets(_read(explained, formats.EXPLAINED, dtype=str, keep_default_na=False)),
         **of_laws(_read(losses, formats.LOSSES)),
         "relaxing": relaxing(_read(relaxation, formats.RELAXATION)),
     }
 
 
-def _read(path, columns):
+def _read(path, columns, **how):
     with reading(path, "run sonicvacuum paper rivals again"):
-        return pd.read_csv(path)[columns]
+        return pd.read_csv(path, **how)[columns]
 
 
 def allowed(table: pd.DataFrame) -> dict:
@@ -69,6 +71,30 @@ def _series(table):
         cells = [number(of_model.loc[model, cell], 3) for cell in CELLS for model in formats.MODELS]
         rows.append({"series": f"{series}, {unit}", "at": number(at, 3), "cells": cells})
     return rows
+
+
+def of_sets(table: pd.DataFrame) -> dict:
+    """Fits of single effects and pairs to the paper's record: heads of the columns, a row for each number.
+
+    `table` is text. Each cell is what the fit gives and, after a bar, what it gives fitted to all others.
+    """
+    sets = list(dict.fromkeys(table.effects))
+    first = {name: table[table.effects == name].iloc[0] for name in sets}
+    heads = [" with ".join(CATALOGUE.effect(n).title.lower() for n in name.split("+")) for name in sets]
+    rows = []
+    for (run, quantity), part in table.groupby(["run", "quantity"], sort=False):
+        of_set = part.set_index("effects")
+        printed = {"": "", "at_most": "at most ", "at_least": "at least "}[part.bound.iloc[0]]
+        printed += f"{number(part.measured.iloc[0], 4)} ± {number(part.sigma.iloc[0], 2)}"
+        cells = [[number(of_set.loc[n, c], 3) or "–" for c in ("extended", "held_out")] for n in sets]
+        rows.append({"run": run, "quantity": quantity, "printed": printed, "cells": cells})
+    return {
+        "heads": heads,
+        "rows": rows,
+        "numbers": [in_words(first[n].parameters, CATALOGUE) for n in sets],
+        "misfits": [number(first[n].misfit, 3) for n in sets],
+        "worth": [number(first[n].log10_bayes, 3) for n in sets],
+    }
 
 
 def of_laws(table: pd.DataFrame) -> dict:

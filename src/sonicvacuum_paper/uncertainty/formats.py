@@ -41,4 +41,25 @@ LOSSES = [
     "split_g9",
     "pulses_fig6b",
 ]
-HEADERS = {"map": MAP, "experiments": EXPERIMENTS, "relaxation": RELAXATION, "losses": LOSSES}
+EXPLAINED = [
+    "effects",
+    "parameters",
+    "misfit",
+    "log10_bayes",
+    "run",
+    "quantity",
+    "bound",
+    "unit",
+    "measured",
+    "sigma",
+    "nominal",
+    "extended",
+    "held_out",
+]
+HEADERS = {
+    "map": MAP,
+    "experiments": EXPERIMENTS,
+    "relaxation": RELAXATION,
+    "losses": LOSSES,
+    "explained": EXPLAINED,
+}

@@ -6,11 +6,13 @@ from sonicvacuum.blas import one_thread
 from sonicvacuum.card import Card
 from sonicvacuum.config import Config
 from sonicvacuum.files import InputError, replacing
+from sonicvacuum.records import Record
 from sonicvacuum_paper.claims import Claim, read_table
 from sonicvacuum_paper.columns import column_cards
 from sonicvacuum_paper.uncertainty import (
     agreement,
     decide,
+    explained,
     identify,
     inputs,
     losses,
@@ -39,13 +41,14 @@ def write_uncertainty(
 
 
 @one_thread
-def write_rivals(config: Config, out: Mapping[str, str]) -> None:
+def write_rivals(config: Config, record: Record, out: Mapping[str, str]) -> None:
     """Write the tables in which the two lossy models, and a relaxing solid, are held against each other.
 
     Args:
         config: must have fig3a, fig5a and fig6b under the models compared; the tables are empty without a
             ledger.
-        out: `map`, `experiments`, `relaxation` and `losses` → file.
+        record: what the paper prints of its coated chain.
+        out: name of `formats.HEADERS` → file.
     """
     if not config.ledger:
         for name, header in HEADERS.items():
@@ -66,6 +69,7 @@ def write_rivals(config: Config, out: Mapping[str, str]) -> None:
         "experiments": lambda: decide.table(cards),
         "relaxation": lambda: viscoelastic.table(cards["matched"]),
         "losses": lambda: losses.table(lossy),
+        "explained": lambda: explained.table(record),
     }
     for name, made in tables.items():
         with replacing(out[name]) as stream:
