@@ -18,7 +18,7 @@ COMPILE := pip compile --quiet --universal --generate-hashes --no-emit-index-url
 	--custom-compile-command "make lock"
 
 .DELETE_ON_ERROR:
-.PHONY: always all env test browser bare fuzz crash slurm crate generic reproduce bench study docs lock clean help
+.PHONY: always all env test browser bare fuzz crash slurm crate generic reproduce bench study slips docs lock clean help
 
 all: env  ## build the environment, then run the whole pipeline
 	$(START) --cores $(CORES)
@@ -101,6 +101,9 @@ bench: .venv/benched  ## measure the engine against other codes, on one core
 study: .venv/studied  ## the full blind study with its baselines and further runs; takes hours
 	$(BIN)/pytest workflow/study
 	$(START) --cores $(CORES) blind_full blind_resolved
+
+slips: env  ## slips of the laboratory in 270 records, searched and counted; takes hours
+	$(START) --cores $(CORES) results/blind_slips/summary.csv
 
 docs: .venv/documented  ## build the documentation into results/docs
 	$(BIN)/mkdocs build --quiet --config-file workflow/mkdocs.yml

@@ -143,9 +143,7 @@ def _row(truth, verdict):
         class_level=int(_class_level(effects, named, verdict["confusable"])),
         false_alarm=int(bool(wrong)),
         says_unknown=int(UNKNOWN in named),
-        confident_wrong=int(
-            UNKNOWN not in named and any(_marginal(probabilities, n) >= CONFIDENT for n in wrong)
-        ),
+        confident_wrong=int(UNKNOWN not in named and confidently(probabilities, wrong)),
         closed=_number(held_out.get("closed")),
         before=_over_floor(held_out, "before"),
         chi2=_over_floor(held_out, "after"),
@@ -156,9 +154,13 @@ def _row(truth, verdict):
     )
 
 
-def _marginal(probabilities, effect):
-    """Probability of an effect, alone or among others (keys join several by ` + `)."""
-    return sum(p for name, p in probabilities.items() if effect in name.split(" + "))
+def confidently(probabilities: dict[str, float], wrong: list[str]) -> bool:
+    """Whether one of some effects, alone or among others (keys join several by ` + `), is held sure."""
+
+    def marginal(effect):
+        return sum(p for name, p in probabilities.items() if effect in name.split(" + "))
+
+    return any(marginal(n) >= CONFIDENT for n in wrong)
 
 
 def _reached(truth):

@@ -8,6 +8,8 @@ blind = Verbs(
     verbs={
         "hide": "sonicvacuum_blind.cli.hide:hide",
         "score": "sonicvacuum_blind.cli.score:score",
+        "slips": "sonicvacuum_blind.cli.slips:slips",
+        "slips-score": "sonicvacuum_blind.cli.slips:slips_score",
         "follow": "sonicvacuum_blind.cli.follow:follow",
         "resolved": "sonicvacuum_blind.cli.resolved:resolved",
         "calibrate": "sonicvacuum_blind.cli.calibrate:calibrate",

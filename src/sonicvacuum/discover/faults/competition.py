@@ -86,7 +86,8 @@ def discover(records: Sequence[Record], catalogue: Catalogue = CATALOGUE, thread
 def _investigated(benches, catalogue, threads):
     experiment = together([b.record for b in benches], catalogue)
     lost = {at: rows for b in benches for at, rows in b.lost.items()}
-    return investigate(Bench(benches[0].record, lost).masked(experiment), threads)
+    lines = {at: line for b in benches for at, line in b.lines.items()}
+    return investigate(Bench(benches[0].record, lost, lines).masked(experiment), threads)
 
 
 class Search:
@@ -111,13 +112,16 @@ class Search:
         """Slips that leave nothing to doubt, then effects, then the rest of the slips against them."""
         for _ in range(policy.MOST):
             model = self.nominal()
-            ranked = self.ranked(model) if suspicious(model) else []
+            looked = suspicious(model)
+            ranked = self.ranked(model) if looked else []
             if not ranked or not obvious(ranked[0], model):
                 break
             self._accept(ranked, ranked[0])
         else:
-            ranked = []
+            ranked, looked = [], True
         found = self._investigate()
+        if not looked and found.named:
+            ranked = self._as_small(model, found)
         for _ in range(policy.MOST):
             better = self._instead(found, ranked)
             if better is None:
@@ -140,6 +144,19 @@ class Search:
         one = self._nominal
         null = one.fit if one is not None and one.bench is self.bench else None
         return investigate(self.make(self.bench), self.threads, null)
+
+    def _as_small(self, model: Model, found: Investigation) -> list[Judged]:
+        """Slips that explain what is as small as to be no misfit by itself, and was named an effect.
+
+        Only sizes can be so small, and only those count that explain about as much as the effects do.
+        """
+        judge, own = Judge(model, self.judged), found.null.objective - found.final.objective
+        looked = [judge.look(s) for s in hypotheses(model.bench.record) if s.continuous]
+        near = [j for j in looked if j.gain > own - ALIKE]
+        followed = [judge.follow(j) for j in sorted(near, key=lambda j: -j.log_odds)[: policy.FOLLOWED]]
+        self.simulations += judge.simulations
+        kept = [j for j in followed if j.gain > own - ALIKE and j.log_odds > 0.0]
+        return sorted(kept, key=lambda j: -j.log_odds)
 
     def ranked(self, model: Model) -> list[Judged]:
         """Slips that gain enough beside a model, fitted, the likeliest first."""

@@ -33,6 +33,10 @@ def examine(record: Record, predicted: dict[str, dict[str, np.ndarray]] | None =
     return look.bench(), look.findings()
 
 
+# Of a level that differs from run to run, this share may change within a run.
+MOVING = 0.3
+
+
 class _Look:
     """One pass over a record."""
 
@@ -40,7 +44,9 @@ class _Look:
         self.record, self.predicted = record, predicted
         self.readings = {k: dict(s.readings) for k, s in record.signals.items()}
         self.lost, self.seen, self.rests = {}, defaultdict(dict), defaultdict(dict)
-        self.silent, self.blank, self.unsure = set(), [], {}
+        self.silent, self.blank, self.lines = set(), [], {}
+        # Gauge → what is known of its level and of its drift only so well, in its unit.
+        self.unsure = defaultdict(dict)
 
     def run(self, run):
         """All traces of one run."""
@@ -88,18 +94,22 @@ class _Look:
         """What the stretch before the pulse shows: a line, a slope, a level, the size of the noise."""
         trace = self.readings[run.id][gauge.id]
         stretch = traces.quiet(trace, gauge.sigma)
-        hum = traces.pickup(stretch)
+        hum = traces.pickup(stretch, gauge.sigma) or traces.pickup(
+            traces.quiet(trace, gauge.sigma, swinging=True), gauge.sigma
+        )
         if hum:
             cycles, (cosine, sine) = hum
             angle = 2.0 * np.pi * cycles * np.arange(len(trace))
             trace = trace - cosine * np.cos(angle) - sine * np.sin(angle)
-            self.seen["pickup", gauge.id][run.id] = 1e-3 * cycles / run.signals.interval_s
-            stretch = trace[: len(stretch)]
+            frequency = cycles / run.signals.interval_s
+            self.seen["pickup", gauge.id][run.id] = 1e-3 * frequency
+            self.lines[run.id, gauge.id] = float(np.hypot(cosine, sine)), frequency
+            stretch = traces.quiet(trace, gauge.sigma)
         drifting = traces.drift(stretch, gauge.sigma)
         if drifting is not None:
             slope, error = drifting
             self.seen["drift", gauge.id][run.id] = slope * len(trace)
-            self.unsure[gauge.id] = max(self.unsure.get(gauge.id, 0.0), error * len(trace))
+            self._unsure(gauge.id, "drift", error * len(trace))
             trace = trace - traces.line(stretch, np.arange(len(trace)))
             stretch = trace[: len(stretch)]
         ratio = traces.noise_ratio(stretch, gauge.sigma)
@@ -107,6 +117,9 @@ class _Look:
             self.seen["noise-misstated", gauge.id][run.id] = ratio
         self.rests[gauge.id][run.id] = traces.rest(stretch, gauge.sigma)
         self.readings[run.id][gauge.id] = trace
+
+    def _unsure(self, gauge, what, error):
+        self.unsure[gauge][what] = max(self.unsure[gauge].get(what, 0.0), error)
 
     def bench(self) -> Bench:
         """The record without what is wrong in its traces."""
@@ -123,10 +136,11 @@ class _Look:
         }
         gone = [k for k in self.record.signals if k not in signals]
         lost = {at: rows for at, rows in self.lost.items() if at not in self.silent}
+        lines = {at: line for at, line in self.lines.items() if at not in self.silent and at[0] in signals}
         changed = bool(self.seen) or bool(gone)
         if not changed:
             return Bench(self.record, lost)
-        return Bench(_drifting(_without_runs(self.record, signals, gone), self.unsure), lost)
+        return Bench(_drifting(_without_runs(self.record, signals, gone), self.unsure), lost, lines)
 
     def _baselines(self):
         """Levels that differ from run to run; one level in all runs is no slip of a run."""
@@ -141,6 +155,10 @@ class _Look:
                 if abs(mean - others) > traces.SURE * error and abs(mean) > traces.SURE * error:
                     self.seen["baseline", id][run] = mean
                     self.readings[run][id] = self.readings[run][id] - (mean - min(others, common, key=abs))
+                    # A level that is another one in each run need not stand still within a run: what looks
+                    # like one may be a part of a slow swing, of mains above all.
+                    self._unsure(id, "baseline", MOVING * abs(mean))
+                    self._unsure(id, "drift", MOVING * abs(mean))
 
     def findings(self) -> list[Finding]:
         """One finding for a gauge whose runs all show it, else one for each run."""
@@ -164,15 +182,16 @@ def _shared(fault, runs):
 
 
 def _drifting(record, unsure):
-    """The record whose gauges may still drift by what a line through a short stretch leaves open."""
+    """The record whose gauges may still rest elsewhere, or drift, by what a short stretch leaves open."""
     sensors = [_looser(s, unsure[s.id]) if s.id in unsure else s for s in record.block.sensors]
     return replace(record, block=msgspec.structs.replace(record.block, sensors=sensors))
 
 
-def _looser(sensor, error):
-    """A sensor's block with at least this standard error of its drift, in the gauge's unit."""
-    key = f"drift_sigma_{KINDS[sensor.kind].suffix}"
-    return msgspec.structs.replace(sensor, **{key: max(getattr(sensor, key) or 0.0, error)})
+def _looser(sensor, errors):
+    """A sensor's block with at least these standard errors of its baseline and drift, in the gauge's unit."""
+    keys = {f"{what}_sigma_{KINDS[sensor.kind].suffix}": error for what, error in errors.items()}
+    wider = {key: max(getattr(sensor, key) or 0.0, error) for key, error in keys.items()}
+    return msgspec.structs.replace(sensor, **wider)
 
 
 def _without_runs(record, signals, gone):

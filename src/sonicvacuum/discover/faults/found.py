@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from sonicvacuum.discover.model.experiment import Experiment
+from sonicvacuum.discover.model.slow import slow
 from sonicvacuum.records import Record
 
 
@@ -36,15 +37,18 @@ class Bench:
     Attributes:
         record: changed where a slip was found.
         lost: (run id, gauge id) → (T,) samples that must not be believed.
+        lines: (run id, gauge id) → amplitude and frequency in Hz of pick-up that was taken off.
     """
 
     record: Record
     lost: dict[tuple[str, str], np.ndarray] = field(default_factory=dict)
+    lines: dict[tuple[str, str], tuple[float, float]] = field(default_factory=dict)
 
     def masked(self, experiment: Experiment) -> Experiment:
-        """A data set in which the samples that are lost do not count."""
+        """A data set in which samples that are lost do not count, and the rest of pick-up counts as noise."""
         runs = tuple(self._masked(run, experiment.gauges) for run in experiment.runs)
-        return replace(experiment, runs=runs)
+        changed = replace(experiment, runs=runs)
+        return replace(changed, slow=slow(changed, self.lines)) if self.lines else changed
 
     def _masked(self, run, gauges):
         rows = {s: self.lost[run.id, g.id] for s, g in enumerate(gauges) if (run.id, g.id) in self.lost}

@@ -6,7 +6,7 @@ compared: χ², the penalty of the nuisances, and the logarithm of the noise of 
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -87,7 +87,7 @@ class Judge:
         self._own = self._residuals(model.bench.record)
 
     def _bench(self, record: Record) -> Bench:
-        return Bench(record, self.model.bench.lost)
+        return replace(self.model.bench, record=record)
 
     def _forward(self, record):
         return Forward(self.make(self._bench(record)), self.model.forward.threads)

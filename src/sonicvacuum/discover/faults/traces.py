@@ -19,12 +19,23 @@ NOISE_FACTOR = 1.3
 LINE_P = 1e-6
 # Quiet is what precedes the first sample above this share of the peak; the last part of it is left out.
 _QUIET_PEAK, _QUIET_SHARE = 0.03, 0.7
+# What swings from the first tenth on is no pulse up to so many times that swing, unless it is this high.
+_SWING, _PULSE = 1.5, 0.35
+# Periods of a line that a stretch must hold, for one that is seen as a line in the spectrum, and for one that
+# leaves nothing but noise.
+_SEEN, _FEWEST_PERIODS = 4, 1.5
 
 
-def quiet(trace: np.ndarray, sigma: float) -> np.ndarray:
-    """(n,) samples before the pulse arrives, counted generously off a baseline."""
+def quiet(trace: np.ndarray, sigma: float, swinging: bool = False) -> np.ndarray:
+    """(n,) samples before the pulse arrives, counted generously off a baseline; with `swinging` also where
+    the trace swings from its beginning on.
+    """
     rest = float(np.median(trace[: max(8, len(trace) // 20)]))
-    level = max(6.0 * sigma, _QUIET_PEAK * float(np.abs(trace - rest).max()))
+    peak = float(np.abs(trace - rest).max())
+    level = max(6.0 * sigma, _QUIET_PEAK * peak)
+    if swinging:
+        swing = float(np.abs(trace[: max(8, len(trace) // 10)] - rest).max())
+        level = max(level, _SWING * swing) if swing < _PULSE * peak else level
     loud = np.abs(trace - rest) > level
     first = int(loud.argmax()) if loud.any() else len(trace)
     return trace[: int(_QUIET_SHARE * first)]
@@ -90,12 +101,14 @@ def rest(stretch: np.ndarray, sigma: float) -> tuple[float, float]:
     return float(stretch.mean()), max(sigma, float(stretch.std())) / math.sqrt(len(stretch))
 
 
-def pickup(stretch: np.ndarray) -> tuple[float, np.ndarray] | None:
+def pickup(stretch: np.ndarray, sigma: float = 0.0) -> tuple[float, np.ndarray] | None:
     """Frequency (cycles per sample) of the steady line in a quiet stretch, and its cosine and sine there.
 
-    The largest of m ordinates of a white periodogram exceeds x means with probability 1 − (1 − e^−x)^m
-    (Fisher, Proc. R. Soc. A 125, 54, 1929, for many ordinates). The power of the rest is taken from the
-    median, which a line hardly moves: the median of an exponential distribution is ln 2 means.
+    A line of few periods, which no spectrum tells from a slope or a bend, counts where it leaves noise alone
+    of what was more than twice as much. Of more periods, the largest of m ordinates of a white periodogram
+    exceeds x means with probability 1 − (1 − e^−x)^m (Fisher, Proc. R. Soc. A 125, 54, 1929, for many
+    ordinates). The power of the rest is taken from the median, which a line hardly moves: the median of an
+    exponential distribution is ln 2 means.
     """
     n = len(stretch)
     if n < FEWEST:
@@ -107,20 +120,34 @@ def pickup(stretch: np.ndarray) -> tuple[float, np.ndarray] | None:
         return None
     # Neighbouring power falls off for a line; a red spectrum has it all at the low end.
     around = power[max(0, best - 4) : best + 5]
-    if best < 2 or power[best] < 0.5 * around.sum():
-        return None
-    return _tuned(stretch, (best + 2) / n)
+    if best + 2 < _SEEN or power[best] < 0.5 * around.sum():
+        return _slow_line(stretch, sigma)
+    f, (cosine, sine), _ = _tuned(stretch, (best + 2 + np.linspace(-0.6, 0.6, 121)) / n)
+    return f, np.array([cosine, sine])
 
 
-def _tuned(stretch, frequency):
-    """The frequency about a first guess at which a sinusoid explains most, by a fine search."""
-    n, place = len(stretch), np.arange(len(stretch))
-    flat = stretch - line(stretch)
+def _slow_line(stretch, sigma):
+    """A line of few periods that leaves nothing but noise, None where there is none."""
+    n = len(stretch)
+    f, wave, left = _tuned(stretch, np.arange(_FEWEST_PERIODS, _SEEN + 2, 0.05) / n)
+    noise, whole = math.sqrt(left / (n - 5)), float((stretch - line(stretch)).std(ddof=2))
+    alone = noise < NOISE_FACTOR * max(sigma, flicker(stretch)) and whole > 2.0 * noise
+    return (f, wave) if alone else None
 
-    def wave(f):
-        return np.column_stack([np.cos(2.0 * np.pi * f * place), np.sin(2.0 * np.pi * f * place)])
 
-    tried = frequency + np.linspace(-0.6, 0.6, 121) / n
-    left = [float(np.linalg.lstsq(wave(f), flat, rcond=None)[1].sum()) for f in tried]
-    f = float(tried[int(np.argmin(left))])
-    return f, np.linalg.lstsq(wave(f), flat, rcond=None)[0]
+def _tuned(stretch, tried):
+    """The frequency, of some, at which a sinusoid beside a line explains most; its cosine and sine, and the
+    sum of squares left.
+    """
+    place = np.arange(len(stretch))
+    share = place / len(stretch) - 0.5
+
+    def fitted(f):
+        angle = 2.0 * np.pi * f * place
+        table = np.column_stack([np.cos(angle), np.sin(angle), np.ones_like(share), share])
+        found, left, *_ = np.linalg.lstsq(table, stretch, rcond=None)
+        return float(left.sum()), found[:2]
+
+    all_of = [(*fitted(f), float(f)) for f in tried]
+    left, wave, f = min(all_of, key=lambda one: one[0])
+    return f, wave, left

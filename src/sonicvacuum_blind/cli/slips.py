@@ -1,0 +1,65 @@
+"""`sonicvacuum blind slips` and `slips-score`: records with slips of the laboratory, and what was made of
+them.
+"""
+
+from pathlib import Path
+
+import click
+
+from sonicvacuum.outputs import check_apart
+from sonicvacuum.records.guard import check_collection
+from sonicvacuum_blind.cli.hide import check_truth
+from sonicvacuum_blind.cli.options import batch_of, folder, present
+
+
+@click.command()
+@click.option("--batch", default="0/1", show_default=True, help="k/n: every n-th case from the k-th on.")
+@click.option(
+    "--records",
+    "records_folder",
+    required=True,
+    type=folder,
+    help="Folder for the records, one for each case.",
+)
+@click.option(
+    "--truth",
+    "truth_folder",
+    required=True,
+    type=folder,
+    help="Folder for the truth; keep it away from discover.",
+)
+def slips(batch, records_folder, truth_folder):
+    """Make records with slips of the laboratory, with and without a hidden effect."""
+    from sonicvacuum_blind import slip_cases
+    from sonicvacuum_blind.hide import TRUTH
+    from sonicvacuum_blind.study import batch as part
+
+    chosen = part(slip_cases.cases(), *batch_of(batch))
+    check_truth(truth_folder, records_folder)
+    check_collection(records_folder, [c.id for c in chosen], lambda name: Path(truth_folder) / name / TRUTH)
+    for case in filter(slip_cases.possible, chosen):
+        slip_cases.write(case, records_folder, truth_folder)
+        click.echo(case.id)
+
+
+@click.command(name="slips-score")
+@click.option("--truth", required=True, type=present, help="Folder of truths.")
+@click.option("--verdicts", required=True, type=present, help="Folder of verdicts.")
+@click.option(
+    "--out", required=True, type=click.Path(dir_okay=False), help="Row of each record (CSV) to write."
+)
+@click.option("--summary", required=True, type=click.Path(dir_okay=False), help="Table (CSV) to write.")
+def slips_score(truth, verdicts, out, summary):
+    """Count which slips are named, and which effects, rightly and wrongly."""
+    from sonicvacuum_blind import slip_score
+    from sonicvacuum_blind.score import Line, write_table
+
+    check_apart([out, summary], [truth, verdicts])
+    rows = slip_score.score(truth, verdicts)
+    lines = slip_score.summary(rows)
+    write_table(rows, slip_score.SlipRow, out)
+    write_table(lines, Line, summary)
+    for line in lines:
+        if line.count:
+            interval = f"{line.value:.3f} [{line.low:.3f}, {line.high:.3f}]"
+            click.echo(f"{line.measure}, {line.group}: {interval} of {line.count}  {line.goal}")

@@ -1,0 +1,152 @@
+"""The study of slips: which are made in which records, and their making.
+
+Five set-ups, drawn like those of the other studies, each without and with one hidden effect, each with every
+slip and without any. A slip's d′ is what the record's own errors of speed, modulus, gain and trigger leave of
+it, as for effects (`signature`); slips that no such error resembles have none, and are plain.
+"""
+
+import json
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+
+from sonicvacuum import records
+from sonicvacuum.blas import one_thread
+from sonicvacuum.files import replacing
+from sonicvacuum_blind.hide import TOLERANCE, TRUTH, Laboratory, Spec, laboratory, noisy, stream
+from sonicvacuum_blind.plan import Plan
+from sonicvacuum_blind.prediction import predict
+from sonicvacuum_blind.record import as_record
+from sonicvacuum_blind.slips import CLOCK, SLIPS, TOO_MUCH, Bench, Place, Slip, applies
+
+SEED = 20064
+# Kind of design and hidden effect of each set-up; the effects are of several classes.
+SETUPS = (
+    ("traces", "kuwabara-kono"),
+    ("traces", "sensor-droop"),
+    ("traces", "viscous-drag"),
+    ("varied", "wall-compliance"),
+    ("traces", "contact-exponent"),
+)
+# As strong as losses in real chains are; what is weaker is the other studies' subject.
+D_PRIME = 30.0
+
+
+@dataclass(frozen=True)
+class SlipCase:
+    """One record: a set-up, an effect or none, a slip or none ("sound").
+
+    Attributes:
+        id: name of the record's folder; it says nothing of what is inside.
+        slip: key of `slips.SLIPS`.
+        setup: place in `SETUPS`.
+        effect: hidden, "" for none.
+    """
+
+    id: str
+    slip: str
+    setup: int
+    effect: str
+
+    @property
+    def spec(self) -> Spec:
+        """The case of the hidden effect that the slip is made in."""
+        kind, names = ("single", (self.effect,)) if self.effect else ("null", ())
+        design, strength = SETUPS[self.setup][0], D_PRIME if self.effect else 0.0
+        return Spec(self.id, kind, design, "white", names, strength, SEED, self.setup)
+
+
+def cases() -> list[SlipCase]:
+    """All cases; the order tells nothing."""
+    rows = [(s, k, e) for k, (_, name) in enumerate(SETUPS) for e in ("", name) for s in SLIPS]
+    order = np.random.default_rng(np.random.SeedSequence(SEED)).permutation(len(rows))
+    return [SlipCase(f"slips-{n:04d}", *rows[i]) for n, i in enumerate(order.tolist())]
+
+
+@lru_cache(maxsize=len(SETUPS) * 2)
+def _laboratory(setup: int, effect: str) -> Laboratory:
+    return laboratory(SlipCase("", "sound", setup, effect).spec)
+
+
+def possible(case: SlipCase) -> bool:
+    """Whether the set-up has the gauges and runs that the slip needs."""
+    design = _laboratory(case.setup, case.effect).design
+    return applies(SLIPS[case.slip], design.reference, len(design.runs))
+
+
+def make(case: SlipCase) -> tuple[records.Record, dict]:
+    """The record with its slip, and the truth; the same case gives the same record, bit for bit."""
+    own, slip = _laboratory(case.setup, case.effect), SLIPS[case.slip]
+    design = own.design
+
+    def truly(plan):
+        plan = own.case.change(plan)
+        return slip.plan(plan) if slip.plan else plan
+
+    clean = predict(design, truly, own.errors, TOLERANCE)
+    # The noise is the set-up's own, whatever the slip: records of one set-up differ in the slip alone.
+    traces, _ = noisy(design, clean.traces, "white", 0.0, stream(case.spec, "noise"))
+    sound = as_record(design, traces, clean.scalars, title=f"Data set {case.id}")
+    pulse = 5e6 * design.reference.contact_time
+    made, place = slip.written(Bench(sound, pulse, _random(case)))
+    truth = {
+        "format": 1,
+        "id": case.id,
+        "slip": slip.id,
+        "setup": case.setup,
+        "run": place.run,
+        "sensor": place.sensor,
+        "effects": [case.effect] if case.effect else [],
+        "d_prime": _d_prime(own, slip, place),
+        "d_prime_effect": max((h.d_prime for h in own.case.hidden), default=0.0),
+    }
+    return replace(made, name=case.id), truth
+
+
+def _random(case):
+    """Choices of one slip: of its kind and set-up, so that it is the same with an effect and without."""
+    key = (case.setup, list(SLIPS).index(case.slip), 1)
+    return np.random.default_rng(np.random.SeedSequence(SEED, spawn_key=key))
+
+
+def _d_prime(own: Laboratory, slip: Slip, place: Place) -> float | None:
+    """Of what truly was otherwise, refitted; of what acts like an error of the record, along straight lines."""
+    frame = own.case.frame
+    truly = _as_slow if slip.id == "clock" else slip.plan
+    if truly:
+        return frame.fit(truly).size
+    if slip.id not in _LIKE_ERRORS:
+        return None
+    return float(np.linalg.norm(frame.seen(_LIKE_ERRORS[slip.id](frame, place))))
+
+
+def _as_slow(plan: Plan) -> Plan:
+    """The chain that does in its own time what a recorder whose times are too long shows: forces are the same
+    with times λ if masses are λ², speeds 1/λ.
+    """
+    heavy = {"bead_mass": plan.bead_mass * CLOCK**2, "striker_mass": plan.striker_mass * CLOCK**2}
+    return replace(plan, speed=plan.speed / CLOCK, gravity=plan.gravity / CLOCK**2, **heavy)
+
+
+def _like_speed(frame, place):
+    run = int(place.run.removeprefix("r")) - 1
+    return frame.slopes[:, run] * np.log(TOO_MUCH) / frame.design.speed_sigma
+
+
+_LIKE_ERRORS = {
+    "run-off": _like_speed,
+    # The noise grows with the reading.
+    "gain-common": lambda frame, _place: (1.0 - 1.0 / TOO_MUCH) * frame.base,
+}
+
+
+@one_thread
+def write(case: SlipCase, records_folder, truth_folder) -> None:
+    """Write `truth_folder/<id>/truth.json`, and after it `records_folder/<id>/`."""
+    record, truth = make(case)
+    with replacing(Path(truth_folder) / case.id / TRUTH) as out:
+        json.dump(truth, out, indent=1, sort_keys=True)
+        out.write("\n")
+    records.write(record, Path(records_folder) / case.id)
