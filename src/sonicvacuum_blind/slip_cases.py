@@ -112,7 +112,7 @@ def _random(case):
 
 
 def _d_prime(own: Laboratory, slip: Slip, place: Place) -> float | None:
-    """Of what truly was otherwise, refitted; of what acts like an error of the record, along straight lines."""
+    """Of what truly was otherwise, refitted; of what acts like an error of the record, linear."""
     frame = own.case.frame
     truly = _as_slow if slip.id == "clock" else slip.plan
     if truly:
