@@ -120,3 +120,32 @@ def test_true_effects_are_no_slips_of_traces(model, effect):
     }[effect]
     record, _ = made([(effect, given)], seed=21)
     assert examine(record, model)[1] == []
+
+
+def test_pick_up_of_few_periods_before_the_pulse_is_taken_off(empty, model):
+    hum = 5.0 * SIGMA * np.sin(2.0 * np.pi * 0.0202 * TIME + 1.0)
+    bench, (one,) = examine(altered(empty, "g4", lambda y: y + hum), model)
+    assert (one.fault, one.sensor) == ("pickup", "g4")
+    # Two periods of 100 samples know a frequency to 2 %, two runs to 1 %.
+    assert one.value == pytest.approx(20.2, rel=0.02)
+    data = bench.masked(together((bench.record,)))
+    for k, run in enumerate(("v0", "v1")):
+        left = bench.record.signals[run].readings["g4"] - empty.signals[run].readings["g4"]
+        alone = np.zeros((1, 3, 700))
+        alone[0, 0] = left
+        # Of an rms of 3.5 SIGMA less than a sample's noise is left, and nearly none once it counts as noise.
+        assert left.std() < SIGMA
+        assert np.linalg.norm(data.whiten(k, alone, np.zeros((1, 0)))) < 2.0
+
+
+def test_a_level_that_differs_from_run_to_run_may_also_swing(empty, model):
+    bench, _ = examine(altered(empty, "g7", lambda y: y + 0.2, "v1"), model)
+    (g7,) = [s for s in bench.record.block.sensors if s.id == "g7"]
+    assert 0.0 < g7.drift_sigma_N < 0.2
+
+
+def test_traces_without_a_model_are_put_right_too(empty):
+    bench, found = examine(altered(empty, "wall", MADE["pickup"][2]))
+    assert [f.fault for f in found] == ["pickup"]
+    assert not bench.record.signals["v0"].equals(empty.signals["v0"])
+    assert bench.lines.keys() == {("v0", "wall"), ("v1", "wall")}

@@ -27,9 +27,13 @@ def examine(record: Record, predicted: dict[str, dict[str, np.ndarray]] | None =
         The `Bench` with what was put right, and the findings.
     """
     look = _Look(record, predicted or {})
-    for run in record.runs:
-        if run.signals is not None:
-            look.run(run)
+    runs = [run for run in record.runs if run.signals is not None]
+    for run in runs:
+        look.samples(run)
+    for gauge in record.gauges:
+        look.pickup(gauge)
+    for run in runs:
+        look.quiet(run)
     return look.bench(), look.findings()
 
 
@@ -48,15 +52,45 @@ class _Look:
         # Gauge → what is known of its level and of its drift only so well, in its unit.
         self.unsure = defaultdict(dict)
 
-    def run(self, run):
-        """All traces of one run."""
-        own = {g.id: g for g in self.record.gauges if g.id in run.signals.readings}
+    def _own(self, run):
+        """Gauges of a run by id."""
+        return {g.id: g for g in self.record.gauges if g.id in run.signals.readings}
+
+    def samples(self, run):
+        """Single samples of all traces of one run, and their pulses."""
+        own = self._own(run)
         for gauge in own.values():
             self._sample_slips(run.id, gauge)
         self._against_the_model(run.id, own)
-        for id, gauge in own.items():
+
+    def quiet(self, run):
+        """What precedes the pulses in all traces of one run."""
+        for id, gauge in self._own(run).items():
             if (run.id, id) not in self.silent:
                 self._quiet_slips(run, gauge)
+
+    def pickup(self, gauge):
+        """A steady line in a gauge's traces: one frequency in all runs that show it, taken off."""
+        shown = {}
+        for run, signals in self.record.signals.items():
+            if gauge.id in signals.readings and (run, gauge.id) not in self.silent:
+                trace = self.readings[run][gauge.id]
+                for stretch in (traces.quiet(trace, gauge.sigma, swings) for swings in (False, True)):
+                    found = traces.pickup(stretch, gauge.sigma)
+                    if found:
+                        shown[run] = stretch, found[0] / signals.interval_s
+                        break
+        if not shown:
+            return
+        intervals = {run: self.record.signals[run].interval_s for run in shown}
+        frequency = traces.shared_line([(s, intervals[run], f) for run, (s, f) in shown.items()])
+        for run, (stretch, _) in shown.items():
+            trace, cycles = self.readings[run][gauge.id], frequency * intervals[run]
+            wave, _ = traces.wave(stretch, cycles)
+            angle = 2.0 * np.pi * cycles * np.arange(len(trace))
+            self.readings[run][gauge.id] = trace - wave @ [np.cos(angle), np.sin(angle)]
+            self.seen["pickup", gauge.id][run] = 1e-3 * frequency
+            self.lines[run, gauge.id] = float(np.hypot(*wave)), frequency
 
     def _sample_slips(self, run, gauge):
         """Spikes and clipping: samples that are masked."""
@@ -91,20 +125,9 @@ class _Look:
                 self.readings[run][id] = -self.readings[run][id]
 
     def _quiet_slips(self, run, gauge):
-        """What the stretch before the pulse shows: a line, a slope, a level, the size of the noise."""
+        """What the stretch before the pulse shows: a slope, a level, the size of the noise."""
         trace = self.readings[run.id][gauge.id]
         stretch = traces.quiet(trace, gauge.sigma)
-        hum = traces.pickup(stretch, gauge.sigma) or traces.pickup(
-            traces.quiet(trace, gauge.sigma, swinging=True), gauge.sigma
-        )
-        if hum:
-            cycles, (cosine, sine) = hum
-            angle = 2.0 * np.pi * cycles * np.arange(len(trace))
-            trace = trace - cosine * np.cos(angle) - sine * np.sin(angle)
-            frequency = cycles / run.signals.interval_s
-            self.seen["pickup", gauge.id][run.id] = 1e-3 * frequency
-            self.lines[run.id, gauge.id] = float(np.hypot(cosine, sine)), frequency
-            stretch = traces.quiet(trace, gauge.sigma)
         drifting = traces.drift(stretch, gauge.sigma)
         if drifting is not None:
             slope, error = drifting
@@ -124,7 +147,7 @@ class _Look:
     def bench(self) -> Bench:
         """The record without what is wrong in its traces."""
         self._baselines()
-        if len(self.blank) == len(self.predicted):
+        if self.blank and len(self.blank) == len(self.predicted):
             # Nothing was measured at all: there is nothing to put right.
             return Bench(self.record)
         for run, id in self.silent:

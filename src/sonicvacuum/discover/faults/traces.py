@@ -24,6 +24,8 @@ _SWING, _PULSE = 1.5, 0.35
 # Periods of a line that a stretch must hold, for one that is seen as a line in the spectrum, and for one that
 # leaves nothing but noise.
 _SEEN, _FEWEST_PERIODS = 4, 1.5
+# Frequencies tried for one that several stretches share.
+TRIED = 401
 
 
 def quiet(trace: np.ndarray, sigma: float, swinging: bool = False) -> np.ndarray:
@@ -135,19 +137,30 @@ def _slow_line(stretch, sigma):
     return (f, wave) if alone else None
 
 
-def _tuned(stretch, tried):
-    """The frequency, of some, at which a sinusoid beside a line explains most; its cosine and sine, and the
-    sum of squares left.
+def wave(stretch: np.ndarray, cycles: float) -> tuple[np.ndarray, float]:
+    """Cosine and sine of a sinusoid of so many cycles per sample beside a straight line, and the sum of
+    squares left.
     """
     place = np.arange(len(stretch))
-    share = place / len(stretch) - 0.5
+    angle, share = 2.0 * np.pi * cycles * place, place / len(stretch) - 0.5
+    table = np.column_stack([np.cos(angle), np.sin(angle), np.ones_like(share), share])
+    found, left, *_ = np.linalg.lstsq(table, stretch, rcond=None)
+    return found[:2], float(left.sum())
 
-    def fitted(f):
-        angle = 2.0 * np.pi * f * place
-        table = np.column_stack([np.cos(angle), np.sin(angle), np.ones_like(share), share])
-        found, left, *_ = np.linalg.lstsq(table, stretch, rcond=None)
-        return float(left.sum()), found[:2]
 
-    all_of = [(*fitted(f), float(f)) for f in tried]
-    left, wave, f = min(all_of, key=lambda one: one[0])
-    return f, wave, left
+def _tuned(stretch, tried):
+    """The frequency, of some, at which a sinusoid explains most; its cosine and sine, and what it leaves."""
+    all_of = [(*wave(stretch, f), float(f)) for f in tried]
+    found, left, f = min(all_of, key=lambda one: one[1])
+    return f, found, left
+
+
+def shared_line(seen: list[tuple[np.ndarray, float, float]]) -> float:
+    """Frequency in Hz that explains several stretches best, of (stretch, interval in s, its own frequency).
+
+    A few periods of one stretch know it to a tenth, all stretches together by far better.
+    """
+    own = [f for _, _, f in seen]
+    tried = np.linspace(0.98 * min(own), 1.02 * max(own), TRIED)
+    left = [sum(wave(stretch, f * interval)[1] for stretch, interval, _ in seen) for f in tried]
+    return float(tried[int(np.argmin(left))])

@@ -12,6 +12,7 @@ from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
+from scipy.signal import detrend
 
 from sonicvacuum.discover.model.experiment import (
     Batch,
@@ -240,6 +241,9 @@ def _quiet_of(records, gauge):
     traces = _traces(records, gauge)
     sigma = gauge.sigma or max(map(flicker, traces), default=0.0)
     quiet = [q for t in traces if len(q := _quiet(t, sigma)) >= _LEAST]
+    if gauge.baseline_sigma or gauge.drift_sigma:
+        # Where level and slope are open, noise is what is left of both.
+        quiet = [detrend(q) for q in quiet]
     return quiet if sum(map(len, quiet)) >= _FEWEST else []
 
 
