@@ -71,21 +71,27 @@ class _Look:
 
     def pickup(self, gauge):
         """A steady line in a gauge's traces: one frequency in all runs that show it, taken off."""
-        shown = {}
+        shown, hidden = {}, {}
         for run, signals in self.record.signals.items():
-            if gauge.id in signals.readings and (run, gauge.id) not in self.silent:
-                trace = self.readings[run][gauge.id]
-                for stretch in (traces.quiet(trace, gauge.sigma, swings) for swings in (False, True)):
-                    found = traces.pickup(stretch, gauge.sigma)
-                    if found:
-                        shown[run] = stretch, found[0] / signals.interval_s
-                        break
+            if gauge.id not in signals.readings or (run, gauge.id) in self.silent:
+                continue
+            trace, interval = self.readings[run][gauge.id], signals.interval_s
+            calm, swinging = (traces.quiet(trace, gauge.sigma, swings) for swings in (False, True))
+            for stretch in (calm, swinging):
+                found = traces.pickup(stretch, gauge.sigma)
+                if found and run not in shown:
+                    shown[run] = stretch, interval, found[0] / interval
+            hidden[run] = swinging, interval
         if not shown:
             return
-        intervals = {run: self.record.signals[run].interval_s for run in shown}
-        frequency = traces.shared_line([(s, intervals[run], f) for run, (s, f) in shown.items()])
-        for run, (stretch, _) in shown.items():
-            trace, cycles = self.readings[run][gauge.id], frequency * intervals[run]
+        frequency = traces.shared_line(list(shown.values()))
+        for run, (stretch, interval) in hidden.items():
+            cycles = frequency * interval
+            if run in shown:
+                stretch = shown[run][0]
+            elif not traces.is_line(stretch, cycles, gauge.sigma):
+                continue
+            trace = self.readings[run][gauge.id]
             wave, _ = traces.wave(stretch, cycles)
             angle = 2.0 * np.pi * cycles * np.arange(len(trace))
             self.readings[run][gauge.id] = trace - wave @ [np.cos(angle), np.sin(angle)]

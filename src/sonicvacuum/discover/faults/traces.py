@@ -130,11 +130,18 @@ def pickup(stretch: np.ndarray, sigma: float = 0.0) -> tuple[float, np.ndarray] 
 
 def _slow_line(stretch, sigma):
     """A line of few periods that leaves nothing but noise, None where there is none."""
-    n = len(stretch)
-    f, wave, left = _tuned(stretch, np.arange(_FEWEST_PERIODS, _SEEN + 2, 0.05) / n)
-    noise, whole = math.sqrt(left / (n - 5)), float((stretch - line(stretch)).std(ddof=2))
-    alone = noise < NOISE_FACTOR * max(sigma, flicker(stretch)) and whole > 2.0 * noise
-    return (f, wave) if alone else None
+    f, found, left = _tuned(stretch, np.arange(_FEWEST_PERIODS, _SEEN + 2, 0.05) / len(stretch))
+    return (f, found) if _alone(stretch, left, sigma) else None
+
+
+def is_line(stretch: np.ndarray, cycles: float, sigma: float) -> bool:
+    """Whether a sinusoid of so many cycles per sample, known from elsewhere, leaves nothing but noise."""
+    return len(stretch) >= FEWEST and _alone(stretch, wave(stretch, cycles)[1], sigma)
+
+
+def _alone(stretch, left, sigma):
+    noise, whole = math.sqrt(left / (len(stretch) - 5)), float((stretch - line(stretch)).std(ddof=2))
+    return noise < NOISE_FACTOR * max(sigma, flicker(stretch)) and whole > 2.0 * noise
 
 
 def wave(stretch: np.ndarray, cycles: float) -> tuple[np.ndarray, float]:
