@@ -120,7 +120,7 @@ class Search:
         else:
             ranked, looked = [], True
         found = self._investigate()
-        if not looked and found.named:
+        if not looked and set(found.named) - {explanations.UNKNOWN}:
             ranked = self._as_small(model, found)
         for _ in range(policy.MOST):
             better = self._instead(found, ranked)

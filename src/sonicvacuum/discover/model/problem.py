@@ -12,7 +12,6 @@ from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
-from scipy.signal import detrend
 
 from sonicvacuum.discover.model.experiment import (
     Batch,
@@ -243,8 +242,14 @@ def _quiet_of(records, gauge):
     quiet = [q for t in traces if len(q := _quiet(t, sigma)) >= _LEAST]
     if gauge.baseline_sigma or gauge.drift_sigma:
         # Where level and slope are open, noise is what is left of both.
-        quiet = [detrend(q) for q in quiet]
+        quiet = [_off_its_line(q) for q in quiet]
     return quiet if sum(map(len, quiet)) >= _FEWEST else []
+
+
+def _off_its_line(stretch):
+    """A stretch without its straight line."""
+    place = np.arange(len(stretch)) - 0.5 * (len(stretch) - 1)
+    return stretch - stretch.mean() - place * (place @ stretch / (place @ place))
 
 
 def _sigma(records, gauge, quiet):
