@@ -6,13 +6,16 @@ from pathlib import Path
 
 import click
 
+from sonicvacuum.cli.helped import examples
 from sonicvacuum.outputs import check_apart
 from sonicvacuum.records.guard import check_collection
 from sonicvacuum_blind.cli.hide import check_truth
 from sonicvacuum_blind.cli.options import batch_of, folder, present
 
 
-@click.command()
+@click.command(
+    epilog=examples("sonicvacuum blind slips --records slips/records --truth slips/truth --batch 0/8")
+)
 @click.option("--batch", default="0/1", show_default=True, help="k/n: every n-th case from the k-th on.")
 @click.option(
     "--records",
@@ -42,7 +45,13 @@ def slips(batch, records_folder, truth_folder):
         click.echo(case.id)
 
 
-@click.command(name="slips-score")
+@click.command(
+    name="slips-score",
+    epilog=examples(
+        "sonicvacuum blind slips-score --truth slips/truth --verdicts slips/verdicts"
+        " --out slips/records.csv --summary slips/summary.csv"
+    ),
+)
 @click.option("--truth", required=True, type=present, help="Folder of truths.")
 @click.option("--verdicts", required=True, type=present, help="Folder of verdicts.")
 @click.option(
