@@ -167,7 +167,7 @@ def separation(old: Forward, new: Forward, best, rival) -> float:
     The rival's parameters and the shared nuisances (gains, modulus) move within what the old data leave
     them; speed and trigger of the new run are free within their errors.
     """
-    truth = new.sampled(best.hypothesis, best.u[None], _shared(old, new, best)[None])[0][0][0]
+    truth = new.columns(best.hypothesis, best.u[None], _shared(old, new, best)[None])[0][0, 0]
     columns = new.columns(rival.hypothesis, rival.u[None], _shared(old, new, rival)[None])[0][0]
     miss, slopes = truth - columns[0], columns[1:]
     prior = _precision(old, new, rival)
