@@ -9,6 +9,7 @@ bead's centre, the wall gauge at the wall, speeds are distance over peak-to-peak
 import inspect
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
@@ -37,8 +38,14 @@ class Quantity:
     @property
     def options(self) -> tuple[str, ...]:
         """Names of what may be given besides: arguments with a default."""
-        arguments = inspect.signature(self.function).parameters.values()
-        return tuple(a.name for a in arguments if a.default is not a.empty)
+        return _with_default(self.function)
+
+
+@cache
+def _with_default(function):
+    """Names of a function's arguments that have a default; kept, as each value of each lane is checked."""
+    arguments = inspect.signature(function).parameters.values()
+    return tuple(a.name for a in arguments if a.default is not a.empty)
 
 
 def measure(

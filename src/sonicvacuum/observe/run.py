@@ -12,6 +12,7 @@ A gauge near the wall sees the incident pulse and its reflection. Two rules keep
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -48,11 +49,16 @@ class Geometry:
                 raise ValueError(f"diameter_m is {diameter}; it must be positive")
         ids = [s.id for s in self.sensors]
         for sensor in self.sensors:
-            position(sensor, self.beads, self.diameter_m)
             if ids.count(sensor.id) > 1:
                 raise ValueError(
                     f"sensor {sensor.id} is given {ids.count(sensor.id)} times; names must differ"
                 )
+        _ = self._positions
+
+    @cached_property
+    def _positions(self):
+        """Gauge → distance from the wall in m; ValueError for one outside the chain."""
+        return {s.id: position(s, self.beads, self.diameter_m) for s in self.sensors}
 
     @property
     def _diameters(self):
@@ -67,7 +73,7 @@ class Geometry:
 
     def position(self, id: str) -> float:
         """Distance of a gauge from the wall in m."""
-        return position(self.sensor(id), self.beads, self.diameter_m)
+        return self._positions[self.sensor(id).id]
 
     @property
     def length(self) -> float:

@@ -98,7 +98,9 @@ def _edge(trace, pulse, level, rising):
     if not low.any():
         return missing(f"truncated: the record {'starts' if rising else 'ends'} above {level:g} of the peak")
     outward = outward[: int(low.argmax()) + 1]
-    peaks = turns(outward, 0, drop_of(trace, pulse, PROMINENCE))
+    # What only falls, as a simulated pulse does, has no other peak; that is soon seen.
+    falls = bool((outward[1:] <= outward[:-1]).all())
+    peaks = () if falls else turns(outward, 0, drop_of(trace, pulse, PROMINENCE))
     if any(outward[peak] >= THRESHOLD * pulse.force for _, peak, _ in peaks):
         return missing(f"merged: the force does not fall to {level:g} of the peak before another pulse")
     return Measured(trace.time(_balanced(trace.force, outward, pulse.peak, target, rising)))

@@ -186,7 +186,10 @@ def _root(c, lower, upper):
     rising = _value(c, upper) >= _value(c, lower)
     x = 0.5 * (lower + upper)
     for _ in range(60):
-        value, slope = _value(c, x), _slope_and_curvature(c, x)[0]
+        value = slope = 0.0
+        for a in reversed(c):
+            slope = slope * x + value
+            value = value * x + a
         lower, upper = (lower, x) if (value > 0.0) == rising else (x, upper)
         new = x - value / slope if slope != 0.0 else lower
         new = new if lower < new < upper else 0.5 * (lower + upper)
