@@ -158,18 +158,27 @@ def _simulated(forward, hypothesis, u, nu, family, rough):
     def at(strengths):
         return finite(forward, hypothesis, u, nu, family, strengths)
 
-    trial = forward.strengths.get(family.directions, np.full(count, family.trial))
-    changes = at(trial)
+    def at_both(strengths):
+        found = at(np.concatenate([strengths, 2.0 * strengths]))
+        return [c[:count] for c in found], [c[count:] for c in found]
+
+    known = forward.strengths.get(family.directions)
+    trial = np.full(count, family.trial) if known is None else known
+    # Strengths that served before will do again, so that both differences are taken at once.
+    changes, twice = (at(trial), None) if rough or known is None else at_both(trial)
     size = np.sqrt(sum(np.square(c).sum(axis=1) for c in changes))
     strengths = np.clip(trial * AIM / np.maximum(size, 1e-9), family.least, STRONGEST)
     far = (strengths < 0.3 * trial) | (strengths > 3.0 * trial)
     strengths = np.where(far, strengths, trial)
     forward.strengths[family.directions] = strengths
-    once = at(strengths) if np.any(far) else changes
+    once = changes
     if rough:
+        once = at(strengths) if np.any(far) else changes
         slopes = [a / strengths[:, None] for a in once]
     else:
-        twice = at(2.0 * strengths)
+        if np.any(far):
+            once, twice = at_both(strengths)
+        twice = twice or at(2.0 * strengths)
         slopes = [(2.0 * a - 0.5 * b) / strengths[:, None] for a, b in zip(once, twice, strict=True)]
     for run, slope in enumerate(slopes):
         slope[:, forward.counts(run)] = 0.0
@@ -177,14 +186,19 @@ def _simulated(forward, hypothesis, u, nu, family, rough):
 
 
 def finite(forward: Forward, hypothesis: Hypothesis, u, nu, family: Family, strengths=None):
-    """For each run, the changes (K, M) of the whitened data when each direction takes its strength (1)."""
+    """For each run, the changes (n K, M) of the whitened data when each direction takes its strength.
+
+    `strengths` are (n K,), one for each direction and then the next for each; None: (K,) of 1.
+    """
     count = len(family.directions)
-    many_u, many_nu = np.repeat(u[None], count + 1, axis=0), np.repeat(nu[None], count + 1, axis=0)
     strengths = np.append(np.ones(count) if strengths is None else strengths, 0.0)
+    lanes = len(strengths)
+    which = np.append(np.arange(lanes - 1) % count, count - 1)
+    many_u, many_nu = np.repeat(u[None], lanes, axis=0), np.repeat(nu[None], lanes, axis=0)
 
     def change(setup, index):
         setup = hypothesis.change(many_u)(setup, index)
-        return family.change(setup, np.minimum(index, count - 1), strengths[index])
+        return family.change(setup, which[index], strengths[index])
 
     found = [value for value, _ in forward.sampled(hypothesis, many_u, many_nu, None, change=change)]
     return [(v[:-1] - v[-1]) for v in found]
