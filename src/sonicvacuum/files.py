@@ -1,6 +1,7 @@
 """Reading and writing files: whole or not at all, and one clear message for what is wrong with a file."""
 
 import csv
+import errno
 import math
 import os
 import re
@@ -39,6 +40,10 @@ _DAMAGED = (
 )
 
 
+# What no other input would change: a disk that is full, beyond a quota, or fails; a reader that has gone.
+MACHINE = {errno.ENOSPC, errno.EFBIG, errno.EDQUOT, errno.EIO, errno.EPIPE}
+
+
 class InputError(Exception):
     """Bad input; the message names file, place, value and cure.
 
@@ -60,8 +65,24 @@ def replacing(path: str | os.PathLike, mode: str = "w"):
         with open(partial, mode, **text) as stream:
             yield stream
         partial.replace(path)
+    except OSError as error:
+        error.filename = error.filename or str(path)  # a full disk does not say which file it was
+        raise
     finally:
         partial.unlink(missing_ok=True)
+
+
+@contextmanager
+def writing(folder: str | os.PathLike):
+    """Turn a refusal to write into a folder into one InputError; a full disk stays an OSError."""
+    try:
+        yield
+    except OSError as error:
+        if error.errno in MACHINE:
+            raise
+        raise InputError(
+            f"{folder}: {error.strerror or error}; choose a folder that can be written"
+        ) from None
 
 
 @contextmanager
@@ -72,6 +93,8 @@ def reading(path: str | os.PathLike, cure: str):
     except UnicodeDecodeError as error:
         raise InputError(f"{path}: not a text file (byte {error.start} is not UTF-8); {cure}") from None
     except OSError as error:
+        if error.errno in MACHINE:
+            raise
         raise InputError(f"{path}: {error.strerror or error}; {cure}") from None
     except _DAMAGED as error:
         told = " ".join(str(error).split()) or type(error).__name__

@@ -18,12 +18,14 @@ from sonicvacuum.files import InputError, check_file, replacing
 from sonicvacuum.files import reading as reading_file
 from sonicvacuum.gauges import Gauge, needed, reading
 from sonicvacuum.gauges.base import Recorded
+from sonicvacuum.laboratory import ranges
 from sonicvacuum.physics import validity
 from sonicvacuum.physics.assemble import assemble
 from sonicvacuum.physics.chain import Chain
 from sonicvacuum.physics.extent import Extent, TooLargeError, estimate
 from sonicvacuum.physics.run import History
 from sonicvacuum.physics.run import simulate as integrate
+from sonicvacuum.physics.scales import impact_scales
 
 # An aimed striker's speed is settled when the gauge's peak is this close to its aim.
 AIM_TOLERANCE = 1e-6
@@ -147,15 +149,33 @@ def check_extent(card: Card, catalogue: Catalogue = CATALOGUE) -> None:
         raise InputError(f"{card.name}: {error}") from None
 
 
+def check_times(card: Card, catalogue: Catalogue = CATALOGUE) -> None:
+    """InputError for a duration or a sampling interval that shows nothing of the impact, as of records."""
+    contact = 1e6 * impact_scales(set_up(card, catalogue=catalogue).chain)[1]
+    shortest, longest = ranges.SHORTEST_RECORD * contact, ranges.LONGEST_INTERVAL * contact
+    duration, interval = 1e6 * card.duration_s, 1e6 * card.interval_s
+    told = ""
+    if duration < shortest:
+        told = f"duration_us: is {duration:g} us, while a contact lasts {contact:.3g} us"
+        told += ranges.suspicion("us", duration, shortest, 1e4 * contact, {"ms": 1e-3, "s": 1e-6})
+    elif interval > longest:
+        told = f"sample_us: is {interval:g} us, while a contact lasts {contact:.3g} us"
+        told += ranges.suspicion("us", interval, 0.0, longest, {"ns": 1e3})
+    if told:
+        raise InputError(f"{card.name}: {told}")
+
+
 @one_thread
 def simulate(card: Card, catalogue: Catalogue = CATALOGUE, limits: bool = True) -> Simulation:
     """Simulate a card, at the chosen step and at half of it.
 
     Raises:
-        InputError: for effects or an aim that cannot be; with `limits`, for more than a computer gives.
+        InputError: for effects or an aim that cannot be; with `limits`, for more than a computer gives, and
+            for times that show nothing of the impact.
     """
     if limits:
         check_extent(card, catalogue)
+        check_times(card, catalogue)
     speeds = np.array(card.striker.speeds_m_s)
     if card.striker.aim is not None:
         speeds = _aimed(card, speeds, catalogue)

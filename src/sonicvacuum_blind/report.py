@@ -20,8 +20,9 @@ from sonicvacuum_blind.score import Line
 
 SUMMARY = [f.name for f in fields(Line)]
 BASELINES = [f.name for f in fields(Baseline)]
-# Columns of both that hold numbers.
-NUMBERS = ("value", "low", "high")
+# Columns of both that hold numbers, and of the first.
+SHARES = ("value", "low", "high")
+NUMBERS = (*SHARES, "ideal", "of_ideal")
 BEGIN = "<!-- study: made by `snakemake publish_study`, do not edit -->"
 END = "<!-- end of study -->"
 # What is kept of a study: what must be there, and what may.
@@ -86,8 +87,11 @@ def read(folder) -> Study:
     """The tables in a folder; InputError where there is no summary.csv or one has other columns."""
     folder = Path(folder)
     found = {
-        name: tables.read(folder / f"{name}.csv", columns, NUMBERS)
-        for name, columns in (("baselines", BASELINES), ("resolved_summary", SUMMARY))
+        name: tables.read(folder / f"{name}.csv", columns, numbers)
+        for name, columns, numbers in (
+            ("baselines", BASELINES, SHARES),
+            ("resolved_summary", SUMMARY, NUMBERS),
+        )
         if (folder / f"{name}.csv").exists()
     }
     summary = tables.read(folder / "summary.csv", SUMMARY, NUMBERS)

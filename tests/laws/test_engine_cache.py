@@ -97,6 +97,21 @@ def test_without_a_writable_folder_code_is_compiled_afresh(crowd, copy, tmp_path
     assert finish(start(copy, tmp_path / "file" / "cache")) == (crowd[1][0][0], "1 0")
 
 
+def test_what_another_user_could_have_written_is_not_loaded(monkeypatch, tmp_path):
+    path = tmp_path / "code.bin"
+    path.write_bytes(b"mine")
+    path.chmod(0o600)
+    assert compiled._own(path) == b"mine"
+    path.chmod(0o620)
+    with pytest.raises(PermissionError):
+        compiled._own(path)
+    path.chmod(0o600)
+    owner = path.stat().st_uid
+    monkeypatch.setattr(os, "getuid", lambda: owner + 1)
+    with pytest.raises(PermissionError):
+        compiled._own(path)
+
+
 def test_folders_long_unused_are_removed(monkeypatch, tmp_path):
     for k in range(12):
         folder = tmp_path / f"compiled-{k}"

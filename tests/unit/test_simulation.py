@@ -114,3 +114,23 @@ def test_a_card_with_effects_survives_its_file():
 
     with_effects = msgspec.structs.replace(card(), effects={"mass-defect": {"mass_ratio": 1.1, "bead": 3.0}})
     assert load(dump(with_effects)) == with_effects
+
+
+@pytest.mark.parametrize(
+    ("times", "told"),
+    [
+        (
+            {"duration_s": 150e-12},
+            "duration_us: is 0.00015 us, while a contact lasts .* one in s: convert it",
+        ),
+        ({"duration_s": 150e-9}, "duration_us: is 0.15 us, .* one in ms or s: convert it to us"),
+        (
+            {"interval_s": 250e-6},
+            "sample_us: is 250 us, while a contact lasts .* one in ns: convert it to us",
+        ),
+    ],
+)
+def test_times_in_another_unit_are_suspected(times, told):
+    with pytest.raises(InputError, match=told):
+        simulation.check_times(card(**times))
+    simulation.check_times(card())

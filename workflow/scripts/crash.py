@@ -205,6 +205,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--moments", type=int, default=60)
     parser.add_argument("--target", default="results/metrics.csv")
+    parser.add_argument("--seed", type=int, default=1, help="Of the moments.")
     parser.add_argument("--out", type=Path, required=True)
     asked = parser.parse_args()
     failed = 0
@@ -212,7 +213,7 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as folder, open(asked.out, "w", newline="") as stream:
         table = csv.DictWriter(stream, COLUMNS, lineterminator="\n")
         table.writeheader()
-        for row in rows(Path(folder).resolve(), asked.target, asked.moments):
+        for row in rows(Path(folder).resolve(), asked.target, asked.moments, asked.seed):
             table.writerow(row)
             stream.flush()
             print(*row.values(), flush=True)

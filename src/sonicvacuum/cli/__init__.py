@@ -12,7 +12,7 @@ from importlib import import_module
 import click
 
 from sonicvacuum.cli.helped import COMPLETION, EXIT_CODES, locked
-from sonicvacuum.files import InputError, check_file
+from sonicvacuum.files import MACHINE, InputError, check_file
 
 # Verb → where it stands; the order is the order of the work. The two groups at the end belong to packages
 # that the library does not import.
@@ -120,9 +120,9 @@ def main():
     except InputError as error:
         click.echo(f"Error: {error}", err=True)
         sys.exit(2)
-    except OSError as error:  # a full disk, say: the machine's fault, not the input's
-        click.echo(f"Error: {error.filename or 'file'}: {error.strerror or error}", err=True)
-        sys.exit(1)
+    except OSError as error:  # a full disk is the machine's fault, a place that cannot be written is not
+        click.echo(f"Error: {error.filename or 'output'}: {error.strerror or error}", err=True)
+        sys.exit(1 if error.errno in MACHINE else 2)
     except ModuleNotFoundError as error:
         if error.name not in EXTRAS:
             raise

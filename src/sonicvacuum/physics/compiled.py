@@ -4,7 +4,8 @@ Numba's own cache looks at the file of one function only: an edit of any functio
 unseen, and processes that write together may mix their files up. Here each compiled signature is one
 file, named by a digest of the signature and the processor, in a folder named by a digest of the source of
 `sonicvacuum.physics` and of the versions of all that takes part. Force laws from elsewhere (effects) stand in
-the signature with a digest of their own formulas. Nothing is ever overwritten with something else.
+the signature with a digest of their own formulas. Nothing is ever overwritten with something else, and
+nothing is loaded that another user could have written.
 
 The folder lies in the user's cache folder, or in $SONICVACUUM_CACHE_DIR. Where it cannot be written,
 code is compiled afresh by each process.
@@ -15,6 +16,7 @@ import hashlib
 import os
 import pickle
 import shutil
+import stat
 import sys
 import tempfile
 from functools import lru_cache
@@ -103,7 +105,7 @@ class _SignatureCache(_Cache):
             return None
         # Whatever is wrong with the file, compiling afresh is the cure.
         with contextlib.suppress(Exception):
-            payload = pickle.loads(self.path(sig, target_context).read_bytes())
+            payload = pickle.loads(_own(self.path(sig, target_context)))
             target_context.refresh()
             return CompileResultCacheImpl.rebuild(None, target_context, payload)
         return None
@@ -117,6 +119,20 @@ class _SignatureCache(_Cache):
             with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as file:
                 file.write(payload)
             os.replace(file.name, path)
+
+
+def _own(path: Path) -> bytes:
+    """Content of a file that nobody else could have written: whoever makes a pickle runs code here.
+
+    Raises:
+        PermissionError: for a file of another user, or one that others may write.
+    """
+    with open(path, "rb") as file:
+        status = os.fstat(file.fileno())
+        others = status.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
+        if hasattr(os, "getuid") and (others or status.st_uid != os.getuid()):
+            raise PermissionError(f"{path}: may have been written by another user")
+        return file.read()
 
 
 def cached(dispatcher):

@@ -4,7 +4,7 @@ import json
 from importlib.resources import files
 from pathlib import Path
 
-from sonicvacuum.files import InputError, replacing
+from sonicvacuum.files import InputError, replacing, writing
 from sonicvacuum.records.blocks import RunBlock, schema
 from sonicvacuum.records.described import chain_of
 from sonicvacuum.records.reader import FILE
@@ -31,11 +31,8 @@ def new(folder) -> Path:
     file = Path(folder) / FILE
     if file.exists():
         raise InputError(f"{file}: exists already; choose another folder or remove it")
-    try:
-        with replacing(file) as stream:
-            stream.write(template())
-    except OSError as error:
-        raise InputError(f"{file}: {error.strerror or error}; choose a folder that can be written") from None
+    with writing(folder), replacing(file) as stream:
+        stream.write(template())
     return file
 
 

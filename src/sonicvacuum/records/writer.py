@@ -4,7 +4,7 @@ from pathlib import Path
 
 import msgspec
 
-from sonicvacuum.files import InputError, replacing
+from sonicvacuum.files import InputError, replacing, writing
 from sonicvacuum.records import signals
 from sonicvacuum.records.reader import FILE, parse
 from sonicvacuum.records.record import Record
@@ -30,15 +30,11 @@ def write(record: Record, path) -> None:
             f"{folder}: runs {sorted(files)} name signals and {sorted(record.signals)} have traces; "
             "each run with traces needs its own file name"
         )
-    try:
+    with writing(folder):
         for run, name in files.items():
             signals.write(record.signals[run], folder / name)
         with replacing(folder / FILE) as stream:
             stream.write(text(content))
-    except OSError as error:
-        raise InputError(
-            f"{folder}: {error.strerror or error}; choose a folder that can be written"
-        ) from None
 
 
 def dump(record: Record) -> dict:

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from sonicvacuum.files import InputError, replacing
+from sonicvacuum.files import InputError, replacing, writing
 from sonicvacuum.records import reader, signals
 from sonicvacuum.scope import draft
 from sonicvacuum.scope.clean import CleanRun, clean
@@ -41,15 +41,11 @@ def _spare(folder, runs, raw, force):
 
 
 def _write(folder, text, runs: list[CleanRun]):
-    try:
+    with writing(folder):
         for run in runs:
             signals.write(run.signals, folder / f"{run.id}.csv")
         with replacing(folder / reader.FILE) as stream:
             stream.write(text)
-    except OSError as error:
-        raise InputError(
-            f"{folder}: {error.strerror or error}; choose a folder that can be written"
-        ) from None
 
 
 def _report(runs):
