@@ -10,6 +10,7 @@ import json
 import mimetypes
 from collections.abc import Iterable
 from datetime import UTC, datetime
+from importlib.metadata import version
 from pathlib import Path
 
 import yaml
@@ -19,7 +20,8 @@ PROFILES = {
     "https://w3id.org/ro/wfrun/workflow/0.5": "Workflow Run Crate",
     "https://w3id.org/workflowhub/workflow-ro-crate/1.0": "Workflow RO-Crate",
 }
-SNAKEMAKE = "https://w3id.org/workflowhub/workflow-ro-crate#snakemake"
+# The profiles build on this version; what it has no words for (sha256) stands in their own context.
+VERSION, TERMS = "1.1", "https://w3id.org/ro/terms/workflow-run/context"
 INPUTS = ("config.yaml", "requirements.lock", "requirements-build.lock", "workflow/resources/claims.csv")
 INPUTS += ("workflow/resources/assumptions.csv",)
 MORE = ("workflow/resources/measured/*/*.yaml", "workflow/resources/measured/*/*.csv")
@@ -66,12 +68,20 @@ def build(root: Path):
     from rocrate.model import ContextEntity, Person
     from rocrate.rocrate import ROCrate
 
-    crate, citation = ROCrate(), yaml.safe_load((root / "CITATION.cff").read_text(encoding="utf-8"))
+    crate, citation = (
+        ROCrate(version=VERSION),
+        yaml.safe_load((root / "CITATION.cff").read_text(encoding="utf-8")),
+    )
+    crate.metadata.extra_contexts.append(TERMS)
     crate.name, crate.description = citation["title"], citation["abstract"]
     crate.license = "https://spdx.org/licenses/MIT"
     author = crate.add(Person(crate, "#developers", properties={"name": "sonicvacuum developers"}))
     profiles = [
-        crate.add(ContextEntity(crate, url, {"@type": "CreativeWork", "name": name, "version": url[-3:]}))
+        crate.add(
+            ContextEntity(
+                crate, url, {"@type": ["CreativeWork", "Profile"], "name": name, "version": url[-3:]}
+            )
+        )
         for url, name in PROFILES.items()
     ]
     crate.root_dataset["conformsTo"] = profiles
@@ -83,6 +93,7 @@ def build(root: Path):
         lang="snakemake",
         properties={"name": "pipeline"},
     )
+    workflow["programmingLanguage"]["version"] = version("snakemake")
     described(crate, root, ["Snakefile", "workflow/rules/*.smk"])
     used = described(crate, root, (*INPUTS, *MORE))
     made = described(crate, root, PRODUCTS)
