@@ -119,6 +119,16 @@ def call(monkeypatch, *arguments):
     return 0
 
 
+def test_what_elastic_laws_leave_out_is_told():
+    """A steel ball at 5 m/s presses beads far beyond their yield strength, one at 1 cm/s does not."""
+    chain = {"beads": 5, "diameter": "5mm", "material": "stainless-steel", "gauges": "3"}
+    hard = sv.predict(**chain, speed=5.0)
+    assert any("times the yield strength" in told for told in hard.warnings)
+    assert f"beware: {hard.warnings[0]}" in text(hard)
+    assert content(hard)["warnings"] == hard.warnings
+    assert sv.predict(**chain, speed=0.01).warnings == ()
+
+
 def test_the_command_prints_text_json_and_a_picture(monkeypatch, capsys, tmp_path):
     asked = [
         "--beads",

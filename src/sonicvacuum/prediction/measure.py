@@ -71,6 +71,7 @@ class ChainPrediction:
         sampling_us: longest interval between samples that resolves the shortest pulse.
         time_us: (S,) times of the simulation.
         readings_N: gauge → (S,) readings.
+        warnings: what is doubtful about the motion, one sentence each, see `physics.validity`.
     """
 
     beads: int
@@ -86,6 +87,7 @@ class ChainPrediction:
     sampling_us: float | None
     time_us: np.ndarray = field(repr=False, compare=False)
     readings_N: dict[str, np.ndarray] = field(repr=False, compare=False)
+    warnings: tuple[str, ...] = ()
 
 
 def predict(
@@ -193,6 +195,7 @@ def measured(simulation: Simulation) -> ChainPrediction:
         or None,
         time_us=simulation.time * 1e6,
         readings_N={g.id: readings[g.id] for g in simulation.sensors},
+        warnings=simulation.warnings,
     )
 
 

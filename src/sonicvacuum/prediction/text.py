@@ -43,6 +43,7 @@ def text(prediction: ChainPrediction) -> str:
             f"sample at least every {p.sampling_us:.3g} us ({1e3 / p.sampling_us:.3g} kHz): "
             f"{SAMPLES_PER_PULSE} samples across the shortest pulse at half its height"
         )
+    lines += [f"beware: {warning}" for warning in p.warnings]
     return "\n".join(lines)
 
 
