@@ -268,3 +268,37 @@ def test_a_name_of_any_kind_leaves_ids_whole(tmp_path):
     (id,) = re.findall(r'<g id="([^"]*-parameters[^"]*)"', page)
     assert re.fullmatch(r"[A-Za-z0-9_.-]+", id)
     assert f'href="#{id}"' in page
+
+
+class Tags(HTMLParser):
+    """Names of tags in order, and of attributes that would run something."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.tags, self.handlers = [], []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attributes):
+        self.tags.append(tag)
+        self.handlers += [name for name, _ in attributes if name.startswith("on")]
+
+
+def test_hostile_names_of_runs_gauges_and_the_rest_are_text(folders, tmp_path):
+    """Names from a record, put where each kind of name stands, add no tag and no attribute to the page."""
+    hostile = "\"'><img src=x onerror=alert(1)>&amp;"
+    folder = write(tmp_path / "made", "single")
+    for path in folder.iterdir():
+        text = path.read_text()
+        for name in ("fast", "g1", "made", "kuwabara-kono leaves nothing significant"):
+            quoted = hostile.replace('"', '""') if path.suffix == ".csv" else hostile.replace('"', '\\"')
+            text = re.sub(rf"(?<![\w-])\"?{name}\"?(?![\w-])", lambda _, q=quoted: f'"{q}"', text)
+        path.write_text(text)
+    discovery.draw(folder)
+    page = write_page(folder).read_text(encoding="utf-8")
+    found, usual = (Tags(text) for text in (page, (folders["single"] / "index.html").read_text()))
+    assert set(found.tags) == set(usual.tags)
+    assert found.tags.count("img") == usual.tags.count("img")
+    assert found.handlers == []
+    assert "onerror=alert(1)" in " ".join(Page(page).words)
+    ids = Page(page).ids
+    assert len(ids) == len(set(ids)) and all(re.fullmatch(r"[A-Za-z0-9_.-]+", id) for id in ids)
