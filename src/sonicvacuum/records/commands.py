@@ -3,13 +3,16 @@
 import json
 from importlib.resources import files
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from sonicvacuum.files import InputError, replacing, writing
 from sonicvacuum.records.blocks import RunBlock, schema
 from sonicvacuum.records.described import chain_of
 from sonicvacuum.records.reader import FILE
 from sonicvacuum.records.record import Record, Run
-from sonicvacuum.records.review import Review, lines
+
+if TYPE_CHECKING:
+    from sonicvacuum.records.review import Review
 
 
 def template() -> str:
@@ -36,8 +39,10 @@ def new(folder) -> Path:
     return file
 
 
-def summary(record: Record, seen: Review) -> str:
+def summary(record: Record, seen: "Review") -> str:
     """What is in a record, and what its review says of it."""
+    from sonicvacuum.records.review import lines  # which brings the engine; a new record needs none
+
     gauges = ", ".join(f"{g.id} ({'wall' if g.bead is None else f'bead {g.bead}'})" for g in record.gauges)
     said = [
         f"{record.name}: {record.title}",
