@@ -24,6 +24,13 @@ Path = str | PathLike[str]
 def read(folder: Path) -> Record:
     """The record of measured data in a folder: `record.yaml` and a CSV of traces for each run that has any.
 
+    Args:
+        folder: its path.
+
+    Returns:
+        `Record`: laboratory, gauges and runs in SI; `signals` run → traces, (samples,) for each gauge, in the
+        gauge's unit over `time_us`.
+
     Raises:
         InputError: naming file, key or line, value and cure, where the folder does not hold a sound record.
     """
@@ -33,6 +40,14 @@ def read(folder: Path) -> Record:
 def read_case(path: Path, name: str, variant: str = "nominal") -> Card:
     """One variant of one case of a configuration file, resolved into SI.
 
+    Args:
+        path: of the file, as `config.yaml`.
+        name: key of the case below `cases`.
+        variant: key of the variant below the case; `nominal` is the case as it is written.
+
+    Returns:
+        `Card`, what `sv.simulate` takes.
+
     Raises:
         InputError: naming file, key, value and cure.
     """
@@ -41,6 +56,9 @@ def read_case(path: Path, name: str, variant: str = "nominal") -> Card:
 
 def simulate(card: Card) -> Simulation:
     """A card integrated at the chosen step and at half of it; `readings()` of the result are its gauges.
+
+    Args:
+        card: from `sv.case` or `sv.read_case`.
 
     Returns:
         `Simulation`: `time` (samples,) in s, `force` (samples, contacts, runs) in N, `readings()` gauge →
@@ -68,6 +86,9 @@ def compare(model: Model | Path, record: Record, threads: int | None = None) -> 
         model: what `discover` found, or the path of a `model.json`.
         record: what to score it on.
         threads: as in `discover`.
+
+    Returns:
+        `Comparison`: misfit over the noise before and after (`gap`), and the record's own nuisances.
 
     Raises:
         InputError: for a file that holds no model, or a model that does not fit the record.

@@ -54,6 +54,9 @@ def bead(
         coating_um, core: thickness of a coating and the material below it.
         faces: `flat` for a body with ground faces, which balls touch; its mass has to be given.
 
+    Returns:
+        The block `bead` of a chain, masses in g and lengths in mm and µm as their names say.
+
     Raises:
         InputError: naming key, value and cure.
 
@@ -85,6 +88,9 @@ def chain(
         wall: its material; that of bead 1 (of its core) where it is not given.
         orientation: `vertical` with the wall below, where weight compresses the chain, or `horizontal`.
         static_force_N: force on bead 1 at rest.
+
+    Returns:
+        The block `chain` of a case.
 
     Raises:
         InputError: naming key, value and cure.
@@ -136,6 +142,9 @@ def striker(
         diameter_mm: of a ball.
         aim: `sensor` and `amplitude_N`: the speed is changed until this gauge has this peak.
 
+    Returns:
+        The block `striker` of a case.
+
     Raises:
         InputError: naming key, value and cure.
 
@@ -169,6 +178,9 @@ def gauge(
         droop_us: time constant with which a constant signal decays; none where it stays.
         lowpass_us: time constant of the bandwidth.
 
+    Returns:
+        One of the `sensors` of a case.
+
     Raises:
         InputError: naming key, value and cure.
 
@@ -200,6 +212,9 @@ def case(
         materials: name → `modulus_GPa`, `poisson`, `density_kg_m3`, `yield_MPa` that override the table.
         effects: id → parameters of what an ideal chain lacks; `sonicvacuum effects` lists them.
         title: one line.
+
+    Returns:
+        `Card`, in SI, what `sv.simulate` takes.
 
     Raises:
         InputError: for an unknown key, a value out of range, a gauge outside the chain and the like.

@@ -1,6 +1,7 @@
 """The public face: what is imported and when, what its examples say, and how many threads its sums take."""
 
 import doctest
+import inspect
 import json
 import os
 import re
@@ -13,6 +14,8 @@ from ball import RECORD
 
 import sonicvacuum as sv
 from sonicvacuum import api, blas, builders
+from sonicvacuum.discover import session
+from sonicvacuum.physics import solitary, theory
 from sonicvacuum.prediction import measure
 
 
@@ -109,3 +112,33 @@ write(found, Path({str(ball / "out")!r}))
 
 def test_the_guard_keeps_name_and_docstring():
     assert blas.one_thread(api.read).__doc__ == api.read.__doc__
+
+
+def functions(module):
+    """Public functions that a module defines."""
+    found = vars(module).items()
+    return [f for n, f in found if inspect.isfunction(f) and f.__module__ == module.__name__ and n[0] != "_"]
+
+
+PUBLIC = {n: getattr(sv, n) for n in sv.__all__ if inspect.isfunction(getattr(sv, n))}
+
+
+@pytest.mark.parametrize("name", [*PUBLIC, "discover"])
+def test_every_public_function_says_what_it_takes_returns_and_refuses(name):
+    function = session.discover if name == "discover" else inspect.unwrap(PUBLIC[name])
+    told = inspect.getdoc(function)
+    args = told.partition("Args:\n")[2].partition("\n\n")[0]
+    for parameter in inspect.signature(function).parameters:
+        assert re.search(rf"\b{parameter}\b", args), parameter
+    assert "Returns:" in told
+    assert "Raises:\n    InputError:" in told
+
+
+def test_public_classes_name_their_attributes_and_formulas_their_source():
+    for one in (sv.Chain, sv.Record, sv.Simulation):
+        assert "Attributes:" in inspect.getdoc(one)
+    formulas = [f for f in functions(theory) if not f.__name__.startswith("require")]
+    assert len(formulas) > 10
+    assert [f.__name__ for f in formulas if not re.search(r"Eqs?\.|equation", f.__doc__)] == []
+    assert all(inspect.getdoc(f) for f in functions(solitary))
+    assert "Eq. (3)" in solitary.__doc__

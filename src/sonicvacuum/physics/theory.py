@@ -271,11 +271,11 @@ def linear_frequency(
 
 
 def linear_sound_speed(static_force: Num, modulus: Num, poisson: Num, diameter: Num, mass: Num) -> Real:
-    """Sound speed [m/s] of the discrete chain under F₀ [N], a √(K/M): dω/dκ at κ = 0, and c₀ of the paper."""
+    """Sound speed [m/s] of Eq. (2) under F₀ [N], a √(K/M): dω/dκ at κ = 0, and c₀ of the paper."""
     return np.pi * np.asarray(diameter) * cutoff_frequency(static_force, modulus, poisson, diameter, mass)
 
 
 def cutoff_frequency(static_force: Num, modulus: Num, poisson: Num, diameter: Num, mass: Num) -> Real:
-    """Highest frequency [Hz] that the chain under F₀ [N] carries, √(K/M)/π; zero in sonic vacuum."""
+    """Highest frequency [Hz] that Eq. (2) carries under F₀ [N], √(K/M)/π; zero in sonic vacuum."""
     require_positive(mass=mass)
     return np.sqrt(contact_stiffness(static_force, modulus, poisson, diameter) / np.asarray(mass)) / np.pi

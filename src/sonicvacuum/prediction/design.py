@@ -108,6 +108,10 @@ def design(
         **chain: what else `predict` takes: mass, coating, core, wall, orientation, preload, striker and its
             mass, diameter, material.
 
+    Returns:
+        The gauges and runs that tell the effects apart, and by how many standard errors (`single`: gauge by
+        gauge).
+
     Raises:
         InputError: naming the argument, its value and the cure.
 

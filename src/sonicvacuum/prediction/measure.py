@@ -129,6 +129,10 @@ def predict(
         gauges: numbers of beads and `wall`, as `3,7,wall` or [3, 7, "wall"].
         aim: peak force at the first of the gauges, or `GAUGE=FORCE`.
 
+    Returns:
+        What is expected, SI units or those in the names: the wave's speed, force and duration, arrival and
+        peak at each gauge, window to record and sampling.
+
     Raises:
         InputError: naming the argument, its value and the cure.
 
