@@ -106,7 +106,7 @@ def test_links_on_the_page_lead_to_its_parts_or_to_the_pages_beside_it(page):
     inner = {link[1:] for link in found.links if link.startswith("#")}
     assert inner <= set(found.ids)
     assert {"runs.html", "blind.html", "runs.html#fig3a.matched"} <= set(found.links)
-    assert found.folds == 4  # ledger, what is uncertain, assumptions, cards
+    assert found.folds == 5  # ledger, what is uncertain and its inputs, assumptions, cards
 
 
 def test_the_model_that_decides_stands_in_the_row_and_the_others_below_the_statement(page):

@@ -98,7 +98,10 @@ def design(
 
     Args:
         effects: ids of the catalogue, as `sensor-droop,kuwabara-kono` or a list; one is told from none.
-        beads, diameter, material, speed: as in `predict`.
+        beads: as in `predict`.
+        diameter: as in `predict`.
+        material: as in `predict`.
+        speed: as in `predict`.
         gauges: places that can be had; by default five beads along the chain and the wall.
         most: the largest number of gauges.
         strength: how strong the effects are, in their typical departures (`sonicvacuum effects`).

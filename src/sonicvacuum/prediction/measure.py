@@ -119,12 +119,14 @@ def predict(
         material: what touches, a name of the table of materials.
         speed: of the striker; with an aim, where the search for it begins.
         mass: of a bead; from the density where it is not given.
-        coating, core: thickness and inner material of coated beads.
+        coating: its thickness, of coated beads.
+        core: their inner material.
         wall: material of the wall; the beads' (their core's) where not given.
         orientation: `horizontal`, or `vertical` with the wall below.
         preload: static force on bead 1.
         striker: `sphere` or `flat`. By default a ball like the beads.
-        striker_mass, striker_diameter: of a ball, one follows from the other and the density.
+        striker_mass: from diameter and density where it is not given.
+        striker_diameter: of a ball, from mass and density where it is not given.
         striker_material: the beads' (their core's) where not given.
         gauges: numbers of beads and `wall`, as `3,7,wall` or [3, 7, "wall"].
         aim: peak force at the first of the gauges, or `GAUGE=FORCE`.
