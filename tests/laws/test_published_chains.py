@@ -102,8 +102,8 @@ def test_a_dimer_carries_a_wider_wave(dimers):
 
     Mean mass and mean spacing carry the wave as in a chain of equal beads; the dispersion is 1 + 3θ² =
     4 (m1² − m1 m2 + m2²)/(m1 + m2)² times theirs, the length its square root: 1 for equal beads, 2 for very
-    light ones, between which the heavy ones are a diameter farther apart. These are the combinations of
-    masses in Porter et al., PRE 77, 015601 (2008), and Physica D 238, 666 (2009).
+    light ones, between which the heavy ones are a diameter farther apart. Long-wave
+    theory of dimers: Porter et al., PRE 77, 015601 (2008), and Physica D 238, 666 (2009).
     """
     _, found = dimers
     widths = []
