@@ -52,7 +52,9 @@ def test_evidence_of_a_strength_is_the_integral_over_its_prior(z, two_sided):
 
 def test_evidence_of_a_gaussian_shape_is_exact():
     """A flat prior over 4 whose peak is Gaussian with σ = 0.1: the share √(2π) σ/4."""
-    c = SimpleNamespace(low=-2.0, high=2.0, two_sided=True, parameter=SimpleNamespace(switches=False))
+    c = SimpleNamespace(
+        low=-2.0, high=2.0, two_sided=True, parameter=SimpleNamespace(switches=False, known=None)
+    )
     fit = SimpleNamespace(hypothesis=SimpleNamespace(coordinates=(c,)), sigma=np.array([0.1]))
     exact, _ = integrate.quad(lambda x: math.exp(-0.5 * (x / 0.1) ** 2) / 4.0, -2.0, 2.0, points=[0.0])
     assert evidence.log_bayes(fit, 50.0) == pytest.approx(25.0 + math.log(exact), abs=1e-9)  # both exact
