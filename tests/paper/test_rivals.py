@@ -149,7 +149,7 @@ def test_the_section_of_the_report_says_what_the_tables_say(
 
 def test_what_the_comparison_needs_is_named_where_it_is_missing(cases, tmp_path):
     from sonicvacuum.files import InputError
-    from sonicvacuum_paper.uncertainty.stage import write_rivals
+    from sonicvacuum_paper.uncertainty.rivals import write_rivals
 
     without = config.Config(**{**{f: getattr(cases, f) for f in cases.__struct_fields__}, "cases": {}})
     with pytest.raises(InputError, match=r"cases\.fig3a: no variant for the ledger's column layer_loss"):

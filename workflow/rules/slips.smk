@@ -60,11 +60,12 @@ rule score_slips:
         ENVIRONMENT
     params:
         sources=sources("blind slips-score", without=CATALOGUE),
-        folder=SLIPS,
+        truth=lambda wildcards, input: Path(input.truth[0]).parent,
+        verdicts=lambda wildcards, input: Path(input.verdicts[0]).parent,
     message:
         "Counting slips and effects that were named"
     shell:
-        "sonicvacuum blind slips-score --truth {params.folder:q}/truth --verdicts {params.folder:q}/verdicts"
+        "sonicvacuum blind slips-score --truth {params.truth:q} --verdicts {params.verdicts:q}"
         " --out {output.rows:q} --summary {output.summary:q} > {log:q} 2>&1"
 
 
@@ -73,8 +74,14 @@ rule publish_slips:
     input:
         rows=f"{SLIPS}/records.csv",
         summary=f"{SLIPS}/summary.csv",
+    log:
+        "results/logs/publish_slips.log",
     localrule: True
+    conda:
+        ENVIRONMENT
     params:
         keep=SLIP_TABLES,
+    message:
+        "Keeping the tables of the slips in git"
     shell:
-        "mkdir -p {params.keep:q} && cp {input.rows:q} {input.summary:q} {params.keep:q}"
+        "mkdir -p {params.keep:q} && cp {input.rows:q} {input.summary:q} {params.keep:q} > {log:q} 2>&1"

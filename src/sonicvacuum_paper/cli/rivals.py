@@ -34,7 +34,7 @@ def rivals(path, record, picture, contours, **out):
     from sonicvacuum import records
     from sonicvacuum.figures import style
     from sonicvacuum_paper.uncertainty import picture as drawing
-    from sonicvacuum_paper.uncertainty.stage import write_rivals
+    from sonicvacuum_paper.uncertainty.rivals import write_rivals
 
     out |= {"map": contours}
     check_apart([*out.values(), picture], [path])
