@@ -5,7 +5,7 @@ Bad input ends in one line on standard error and exit code 2, never in a traceba
 
 import os
 import sys
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from difflib import get_close_matches
 from importlib import import_module
 
@@ -122,6 +122,7 @@ def main():
         sys.exit(2)
     except OSError as error:  # a full disk is the machine's fault, a place that cannot be written is not
         click.echo(f"Error: {error.filename or 'output'}: {error.strerror or error}", err=True)
+        _forget_output()
         sys.exit(1 if error.errno in MACHINE else 2)
     except ModuleNotFoundError as error:
         if error.name not in EXTRAS:
@@ -137,6 +138,12 @@ def main():
         sys.stdout.flush()
         sys.stderr.flush()
         os._exit(130)
+
+
+def _forget_output():
+    """What a full output still holds would fail once more at exit, with a code of its own."""
+    with suppress(OSError, ValueError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 @contextmanager
