@@ -30,7 +30,7 @@ _DAMAGED = (
     AttributeError,
     EOFError,
     LookupError,
-    NotImplementedError,  # zipfile's word for a compression that it does not know
+    NotImplementedError,  # zipfile raises it at an unknown compression: a damaged history
     RecursionError,
     TypeError,
     ValueError,

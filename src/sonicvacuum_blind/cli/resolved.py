@@ -4,7 +4,7 @@ import click
 
 from sonicvacuum.cli.helped import examples
 from sonicvacuum.outputs import check_apart
-from sonicvacuum_blind.cli.options import present
+from sonicvacuum_blind.cli.options import present, say
 
 
 @click.command(
@@ -44,7 +44,4 @@ def resolved(truth, verdicts, proposed, random, out, summary):
     lines = counting.summary(rows)
     write_table(rows, counting.Followed, out)
     write_table(lines, Line, summary)
-    for line in lines:
-        if line.count:
-            interval = f"{line.value:.3f} [{line.low:.3f}, {line.high:.3f}]"
-            click.echo(f"{line.measure}, {line.group}: {interval} of {line.count}")
+    say(lines)

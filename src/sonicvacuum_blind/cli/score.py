@@ -6,7 +6,7 @@ import click
 
 from sonicvacuum.cli.helped import examples
 from sonicvacuum.outputs import check_apart
-from sonicvacuum_blind.cli.options import folder, present
+from sonicvacuum_blind.cli.options import folder, present, say
 
 
 @click.command(
@@ -40,7 +40,4 @@ def score(truth, verdicts, out, summary, tables):
     for name, path in details.items():
         kind, table = breakdown.TABLES[name]
         scoring.write_table(table(rows), kind, path)
-    for line in lines:
-        if line.count:
-            interval = f"{line.value:.3f} [{line.low:.3f}, {line.high:.3f}]"
-            click.echo(f"{line.measure}, {line.group}: {interval} of {line.count}  {line.goal}")
+    say(lines)

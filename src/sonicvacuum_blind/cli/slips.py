@@ -9,7 +9,7 @@ import click
 from sonicvacuum.cli.helped import examples
 from sonicvacuum.outputs import check_apart
 from sonicvacuum_blind.cli.hide import check_truth
-from sonicvacuum_blind.cli.options import batch_of, folder, present
+from sonicvacuum_blind.cli.options import batch_of, folder, present, say
 
 
 @click.command(
@@ -68,7 +68,4 @@ def slips_score(truth, verdicts, out, summary):
     lines = slip_score.summary(rows)
     write_table(rows, slip_score.SlipRow, out)
     write_table(lines, Line, summary)
-    for line in lines:
-        if line.count:
-            interval = f"{line.value:.3f} [{line.low:.3f}, {line.high:.3f}]"
-            click.echo(f"{line.measure}, {line.group}: {interval} of {line.count}  {line.goal}")
+    say(lines)

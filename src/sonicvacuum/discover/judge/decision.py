@@ -8,8 +8,7 @@ import numpy as np
 from sonicvacuum.discover import policy
 from sonicvacuum.discover.fit import enough, evidence, heldout, smooth
 from sonicvacuum.discover.fit.evidence import Candidate, Combination
-from sonicvacuum.discover.fit.normal import linearise
-from sonicvacuum.discover.fit.refit import Fit, polish
+from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.judge import explanations, gross
 from sonicvacuum.discover.judge.left import Left, left, sure
 from sonicvacuum.discover.model.forward import Forward
@@ -201,7 +200,7 @@ class Case:
                     reasons.append(
                         f"{name} may be no more than the nearest to what is left in {counted.group}"
                     )
-                    fit_ = _reduced(grown, fit_, k, self.setup)
+                    fit_ = several.less(grown.forward, grown.null, fit_, k, self.setup)
         weights = explanations.log_weights(
             (), [*grown.tried.values(), *self._rivals(grown)], [], self.forward.experiment.prior_odds
         )
@@ -226,9 +225,7 @@ class Case:
         with_it = several.moved(self.forward, whole)
         if self.null.objective - with_it.objective < singles.NONLINEAR:
             return False
-        hypothesis, u = several.without(with_it.hypothesis, with_it.u, k, self.setup)
-        here = linearise(self.forward, hypothesis, u[None], with_it.nu[None])
-        less = polish(self.forward, Fit(hypothesis, here)) if hypothesis.components else self.null
+        less = several.less(self.forward, self.null, with_it, k, self.setup)
         gain = less.objective - with_it.objective
         instead = smooth.infer(self.forward, less, self.known).log_odds
         beside = smooth.infer(self.forward, with_it, self.known).log_odds
@@ -244,15 +241,6 @@ class Case:
         near = [c for c in self.found if c.gain > 0.5 * most and frozenset((c.effect,)) not in grown.tried]
         fits = [several.moved(grown.forward, c.fit) for c in near[:4]]
         return [pairs.combination(grown.null, f, self.setup) for f in fits]
-
-
-def _reduced(grown, fit_, k, setup):
-    """A fit without effect k."""
-    hypothesis, u = several.without(fit_.hypothesis, fit_.u, k, setup)
-    if not hypothesis.components:
-        return grown.null
-    here = linearise(grown.forward, hypothesis, u[None], fit_.nu[None])
-    return polish(grown.forward, Fit(hypothesis, here))
 
 
 def _clear(weights, named) -> bool:

@@ -18,7 +18,7 @@ from sonicvacuum.discover import policy
 from sonicvacuum.discover.fit import evidence, wide
 from sonicvacuum.discover.fit.evidence import Combination
 from sonicvacuum.discover.fit.normal import linearise
-from sonicvacuum.discover.fit.refit import Fit, polish
+from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.judge import explanations
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.search import pairs, profiles, screen, several, singles, unknown
@@ -128,27 +128,24 @@ def _told_apart(forward, null, ranked, odds, setup) -> Fit | None:
     fit = ranked[0].fit
     seen = _seen(forward, fit)
     for k in reversed(range(len(ranked[0].effects))):
+        less = _less(forward, null, fit, k, ranked, setup)
         likely = seen[k] and odds[fit.hypothesis.ids[k]] > policy.STANDS_OUT
-        if not likely or not _ahead(forward, null, fit, k, ranked, setup):
-            fit = _less(forward, null, fit, k, ranked, setup)
+        if not likely or not _ahead(forward, less, fit):
+            fit = less
     return fit if fit.hypothesis.components else None
 
 
 def _less(forward, null, fit: Fit, k: int, ranked, setup) -> Fit:
     """The best fit known without effect k."""
-    hypothesis, u = several.without(fit.hypothesis, fit.u, k, setup)
-    if not hypothesis.components:
-        return null
-    here = polish(forward, Fit(hypothesis, linearise(forward, hypothesis, u[None], fit.nu[None])))
-    same = [c.fit for c in ranked if set(c.effects) == set(hypothesis.ids)]
+    here = several.less(forward, null, fit, k, setup)
+    same = [c.fit for c in ranked if set(c.effects) == set(here.hypothesis.ids)]
     return min([here, *same], key=lambda f: f.objective)
 
 
-def _ahead(forward, null, fit: Fit, k: int, ranked, setup) -> bool:
-    """Whether effect k gains more than one shape outside the catalogue would, and beside others takes away
-    much of what they leave.
+def _ahead(forward, less: Fit, fit: Fit) -> bool:
+    """Whether an effect more gains more than one shape outside the catalogue would, and beside others takes
+    away much of what they leave.
     """
-    less = _less(forward, null, fit, k, ranked, setup)
     gain = less.objective - fit.objective
     if less.hypothesis.components and gain < policy.TAKES_AWAY * less.objective:
         return False

@@ -15,7 +15,7 @@ from sonicvacuum.discover import policy
 from sonicvacuum.discover.fit import enough, heldout, places, smooth
 from sonicvacuum.discover.fit.evidence import Combination
 from sonicvacuum.discover.fit.normal import linearise
-from sonicvacuum.discover.fit.refit import Fit, polish
+from sonicvacuum.discover.fit.refit import ITERATIONS, Fit, polish
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Hypothesis, is_law
 from sonicvacuum.discover.search import pairs
@@ -61,6 +61,15 @@ def without(hypothesis: Hypothesis, u: np.ndarray, k: int, setup: Setup) -> tupl
     return replace(hypothesis, components=left, common=hypothesis.common and laws > 1), np.delete(
         u, np.arange(*hypothesis.columns[k].indices(len(u)))
     )
+
+
+def less(forward: Forward, null: Fit, fit: Fit, k: int, setup: Setup, iterations: int = ITERATIONS) -> Fit:
+    """The best fit without effect k, from where a fit stands; `null` where none is left."""
+    hypothesis, u = without(fit.hypothesis, fit.u, k, setup)
+    if not hypothesis.components:
+        return null
+    here = Fit(hypothesis, linearise(forward, hypothesis, u[None], fit.nu[None]))
+    return polish(forward, here, iterations)
 
 
 class Turns:
@@ -125,11 +134,9 @@ class Turns:
 
     def _less(self, fit, k):
         """The best fit without effect k."""
-        hypothesis, u = without(fit.hypothesis, fit.u, k, self.setup)
-        if not hypothesis.components:
-            return self.null
-        here = Fit(hypothesis, linearise(self.forward, hypothesis, u[None], fit.nu[None]))
-        found = polish(self.forward, here, pairs.ITERATIONS)
+        found = less(self.forward, self.null, fit, k, self.setup, pairs.ITERATIONS)
+        if found is self.null:
+            return found
         self._noted(found)
         return found
 
