@@ -223,10 +223,10 @@ def test_separation_is_the_expected_misfit_in_closed_form(setup, seed):
     gauges, samples = 2, 30
     layout_columns = 1 + 3 + gauges  # parameter; modulus, speed, trigger, gains
     old = drawn(runs=1, nuisances=2 + gauges + 1, seed=seed)
-    rival, best = old.fit(of_drag(setup)), drawn(runs=1, free=0, nuisances=5, seed=seed).fit(Hypothesis())
+    rival = old.fit(of_drag(setup))
     slopes, miss = rng.normal(size=(layout_columns, samples)), 3.0 * rng.normal(size=samples)
-    new = Imagined({"viscous-drag": np.vstack([np.zeros(samples), slopes]), "": miss[None]}, gauges)
-    found = next_experiment.separation(new, new, best, rival)
+    new = Imagined({"viscous-drag": np.vstack([np.zeros(samples), slopes])}, gauges)
+    found = next_experiment.separation(new, new, miss, rival, next_experiment.precision(new, rival))
     known = np.linalg.inv(rival.normal.total()[1][0])
     # Columns: parameter, modulus, gains as the old data leave them; speed and trigger of the new run afresh.
     # Unknowns of the old fit: parameter, speed, trigger, gains, modulus.

@@ -33,7 +33,7 @@ def test_slopes_are_given_for_every_so_many_lanes(quintic):
     samples, _, _ = quintic
     time, shift = 4e-6 + INTERVAL * np.arange(10), np.array([0.0, 0.13e-6, -0.21e-6])
     every = shifted(samples, INTERVAL, time, shift)[1]
-    assert np.array_equal(shifted(samples, INTERVAL, time, shift, rate_of=2)[1], every[::2])
+    assert np.array_equal(shifted(samples, INTERVAL, time, shift, rated=slice(None, None, 2))[1], every[::2])
 
 
 def test_a_gauge_is_at_rest_before_the_first_sample_and_held_after_the_last():

@@ -31,12 +31,14 @@ def propose(found: Investigation, alike: list[list[str]]) -> Next | None:
     if len(rivals) < 2:
         return None
     (name, best), others = rivals[0], rivals[1:]
+    known = [(fit, precision(forward, fit)) for _, fit in others]
     scored = []
     for change, imagined in changes(forward.experiment):
         if "chain.orientation" in change and any(_depends_on_orientation(fit) for _, fit in rivals):
             continue  # records that hang differently say nothing of such an effect when taken together
         new = Forward(imagined, forward.threads)
-        values = [separation(forward, new, best, fit) for _, fit in others]
+        truth = predicted(forward, new, best)
+        values = [separation(forward, new, truth, *rival) for rival in known]
         forward.simulations += new.simulations
         scored.append((min(values), change, [name, others[int(np.argmin(values))][0]]))
     if not scored:
@@ -161,19 +163,28 @@ def _with(experiment, batch, run, chain, faster: float = 1.0):
     return replace(experiment, runs=(data,), batches=(new,), smooth=None, slow=None)
 
 
-def separation(old: Forward, new: Forward, best, rival) -> float:
-    """χ² by which a new run is expected to tell `best` from `rival`.
+def predicted(old: Forward, new: Forward, fit) -> np.ndarray:
+    """(M,) data of a new run over their noise, as a fit of the old runs has them."""
+    return new.sampled(fit.hypothesis, fit.u[None], _shared(old, new, fit)[None])[0][0][0]
+
+
+def separation(old: Forward, new: Forward, truth: np.ndarray, rival, known: np.ndarray) -> float:
+    """χ² by which a new run is expected to tell what made it from a rival.
 
     The rival's parameters and the shared nuisances (gains, modulus) move within what the old data leave
     them; speed and trigger of the new run are free within their errors.
+
+    Args:
+        old, new: the old runs and the new one.
+        truth: (M,) data of the new run over their noise, see `predicted`.
+        rival: fit of the rival to the old runs.
+        known: its `precision`.
     """
-    truth = new.columns(best.hypothesis, best.u[None], _shared(old, new, best)[None])[0][0, 0]
     columns = new.columns(rival.hypothesis, rival.u[None], _shared(old, new, rival)[None])[0][0]
     miss, slopes = truth - columns[0], columns[1:]
-    prior = _precision(old, new, rival)
-    matrix = slopes @ slopes.T + prior
     projection = slopes @ miss
-    return float(max(miss @ miss - projection @ np.linalg.lstsq(matrix, projection, rcond=1e-12)[0], 0.0))
+    explained = projection @ np.linalg.lstsq(slopes @ slopes.T + known, projection, rcond=1e-12)[0]
+    return float(max(miss @ miss - explained, 0.0))
 
 
 def _shared(old, new, fit):
@@ -183,9 +194,9 @@ def _shared(old, new, fit):
     return nu
 
 
-def _precision(old, new, fit):
-    """Precision of the columns of the new run: parameters and shared nuisances from the old data, 1 for its
-    own.
+def precision(old: Forward, fit) -> np.ndarray:
+    """(n, n) precision of the columns of a new run: parameters and shared nuisances from the old data, 1 for
+    its own.
     """
     _, hessian = fit.normal.total()
     free = fit.normal.free

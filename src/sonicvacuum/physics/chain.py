@@ -8,7 +8,7 @@ reaches.
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property, lru_cache
 
 import numpy as np
@@ -16,10 +16,11 @@ import numpy as np
 from sonicvacuum.laboratory.bodies import Bodies
 from sonicvacuum.physics.bodies import Body, Elastic
 from sonicvacuum.physics.contact import (
+    check_elastic,
     compression_at,
     hertz_constant,
     radius_of_curvature,
-    reduced_modulus,
+    reduced,
 )
 from sonicvacuum.physics.laws import HERTZ, LawSet, Term, depth_at
 
@@ -111,6 +112,15 @@ class Chain:
         if self.beads < 0:
             raise ValueError(f"beads is {self.beads}; it must be 0 (one ball on the wall) or more")
 
+    def _with(self, **changes) -> "Chain":
+        """The chains with numbers and effects changed that are what they must be already; nothing is checked
+        again, and what does not depend on them is not worked out again.
+        """
+        made = object.__new__(Chain)
+        kept = _KEPT if changes.keys() <= _BESIDE_CONTACTS else _FIELDS
+        made.__dict__.update({name: own for name, own in self.__dict__.items() if name in kept}, **changes)
+        return made
+
     def _map(self, change):
         """Set change(number) for each number that may differ from lane to lane; only while being made."""
         for name in _NUMBERS:
@@ -144,14 +154,15 @@ class Chain:
         """Modulus (solids, lanes), Poisson's ratio (solids, 1), curvature (solids, lanes) of `solids`."""
         modulus = np.array([s.surface.modulus for s in self.solids])
         poisson = np.array([[s.surface.poisson] for s in self.solids])
+        check_elastic(modulus, poisson)
         return modulus, poisson, np.array([s.curvature for s in self.solids])
 
     def _hertz(self, pairs):
         """(n, lanes) Hertz constants in N/m^{3/2} of (2, n) pairs of `solids`."""
         modulus, poisson, curvature = self._surfaces
         one, other = pairs
-        reduced = reduced_modulus(modulus[one], poisson[one], modulus[other], poisson[other])
-        return hertz_constant(reduced, radius_of_curvature(curvature[one] + curvature[other]))
+        shared = reduced(modulus[one], poisson[one], modulus[other], poisson[other])
+        return hertz_constant(shared, radius_of_curvature(curvature[one] + curvature[other]))
 
     @cached_property
     def _between_beads(self):
@@ -220,8 +231,7 @@ class Chain:
             replace(a, parameters={k: np.asarray(p)[lanes] for k, p in a.parameters.items()})
             for a in self.actions
         )
-        return replace(
-            self,
+        return self._with(
             **{name: getattr(self, name)[lanes] for name in _NUMBERS},
             **{name: getattr(self, name).mapped(lambda value: value[lanes]) for name in _ENDS},
             bodies=self.bodies.replaced(lambda body: body.mapped(lambda value: value[lanes])),
@@ -236,19 +246,28 @@ class Chain:
             for name in _ENDS
             if (end := getattr(self, name)).name == material
         }
-        return replace(self, bodies=self.bodies.replaced(lambda b: b.stiffened(material, ratio)), **ends)
+        return self._with(bodies=self.bodies.replaced(lambda b: b.stiffened(material, ratio)), **ends)
+
+    def struck_at(self, speed: np.ndarray) -> "Chain":
+        """The chains with other speeds of the striker, (lanes,) in m/s.
+
+        Raises:
+            ValueError: for one that is not positive.
+        """
+        _check("speed", speed > 0.0, "positive", speed)
+        return self._with(speed=speed)
 
     def with_defect(self, what: str, index: int, value) -> "Chain":
         """This chain with one more defect; `value` broadcasts to (lanes,)."""
         value = np.broadcast_to(np.asarray(value, dtype=float), (self.lanes,))
-        return replace(self, defects=(*self.defects, Defect(what, index, value)))
+        return self._with(defects=(*self.defects, Defect(what, index, value)))
 
     def with_action(self, term: Term, coefficients: Callable, **parameters) -> "Chain":
         """This chain with one more term; each parameter broadcasts to (lanes,)."""
         arrays = {
             k: np.broadcast_to(np.asarray(p, dtype=float), (self.lanes,)) for k, p in parameters.items()
         }
-        return replace(self, actions=(*self.actions, Action(term, coefficients, arrays)))
+        return self._with(actions=(*self.actions, Action(term, coefficients, arrays)))
 
     def masses(self, bodies: int) -> np.ndarray:
         """(bodies, lanes) masses in kg of the striker and the first beads."""
@@ -259,10 +278,19 @@ class Chain:
 
     def stiffnesses(self, bodies: int) -> np.ndarray:
         """(bodies, lanes) Hertz constants in N/m^{3/2}: of the contact behind each of the first bodies."""
-        one, other = self.touching(bodies)
-        codes, places = np.unique(one * len(self.solids) + other, return_inverse=True)
-        stiffness = self._hertz(np.divmod(codes, len(self.solids)))[places.ravel()]
+        inner = min(bodies, self.beads)
+        stiffness = np.empty((bodies, self.lanes))
+        stiffness[0] = self.striker_stiffness
+        stiffness[1:inner] = self._between_beads[self._neighbours(inner)]
+        if 0 < self.beads < bodies:
+            stiffness[-1] = self.wall_stiffness
         return self._scaled(stiffness, "stiffness")
+
+    def _neighbours(self, beads):
+        """(beads − 1,) which pair of touching kinds stands at each contact between the first beads."""
+        pairs, kinds = np.array(self.bodies.neighbours(self.beads)), self.bodies.kinds_of(beads)
+        many = len(self.bodies.kinds)
+        return np.searchsorted(pairs @ (many, 1), kinds[:-1] * many + kinds[1:])
 
     def static_forces(self, bodies: int) -> np.ndarray:
         """(bodies, lanes) force in N that each contact bears at rest; the striker does not press yet.
@@ -343,6 +371,18 @@ def _broadcast(value, lanes):
 
 _NUMBERS = ("striker_mass", "speed", "gravity", "static_force")
 _ENDS = ("striker", "wall")
+_FIELDS = frozenset(field.name for field in fields(Chain))
+# What the stiffness of contacts that nothing is wrong with does not depend on, and what is worked out of it.
+_BESIDE_CONTACTS = {"speed", "actions", "defects"}
+_OF_CONTACTS = {
+    "solids",
+    "_surfaces",
+    "_between_beads",
+    "striker_stiffness",
+    "wall_stiffness",
+    "_bead_masses",
+}
+_KEPT = _FIELDS | _OF_CONTACTS
 
 
 def _check(name, good, must_be, values):

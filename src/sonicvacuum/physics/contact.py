@@ -11,11 +11,21 @@ def reduced_modulus(modulus_a, poisson_a, modulus_b, poisson_b):
     Raises:
         ValueError: for a modulus that is not positive or a Poisson's ratio outside (−1, 0.5].
     """
-    for modulus, poisson in ((modulus_a, poisson_a), (modulus_b, poisson_b)):
-        if np.any(np.asarray(modulus) <= 0.0):
-            raise ValueError(f"modulus is {modulus} Pa; it must be positive")
-        if np.any(np.asarray(poisson) <= -1.0) or np.any(np.asarray(poisson) > 0.5):
-            raise ValueError(f"Poisson's ratio is {poisson}; it must lie between −1 and 0.5")
+    check_elastic(modulus_a, poisson_a)
+    check_elastic(modulus_b, poisson_b)
+    return reduced(modulus_a, poisson_a, modulus_b, poisson_b)
+
+
+def check_elastic(modulus, poisson):
+    """Raise ValueError for a modulus that is not positive or a Poisson's ratio outside (−1, 0.5]."""
+    if np.any(np.asarray(modulus) <= 0.0):
+        raise ValueError(f"modulus is {modulus} Pa; it must be positive")
+    if np.any(np.asarray(poisson) <= -1.0) or np.any(np.asarray(poisson) > 0.5):
+        raise ValueError(f"Poisson's ratio is {poisson}; it must lie between −1 and 0.5")
+
+
+def reduced(modulus_a, poisson_a, modulus_b, poisson_b):
+    """The same as `reduced_modulus` of constants that were checked before."""
     return 1.0 / ((1.0 - np.square(poisson_a)) / modulus_a + (1.0 - np.square(poisson_b)) / modulus_b)
 
 

@@ -15,16 +15,16 @@ POINTS, BEFORE = 6, 2
 
 
 @njit(**OPTIONS)
-def _resampled(signals, whole, weights, stride, value):
-    lanes, gauges, samples = signals.shape
-    for lane in range(lanes):
-        w0, w1, w2, w3, w4, w5 = weights[lane]
-        for gauge in range(gauges):
-            signal = signals[lane, gauge]
+def _resampled(signals, chain, whole, weights, gain, stride, value):
+    samples = signals.shape[2]
+    for row in range(len(chain)):
+        w0, w1, w2, w3, w4, w5 = weights[row]
+        for gauge in range(signals.shape[1]):
+            signal, factor = signals[chain[row], gauge], gain[row, gauge]
             for t in range(value.shape[2]):
-                first = whole[lane] - BEFORE + t * stride
+                first = whole[row] - BEFORE + t * stride
                 if first >= 0 and first + POINTS <= samples:
-                    value[lane, gauge, t] = (
+                    total = (
                         w0 * signal[first]
                         + w1 * signal[first + 1]
                         + w2 * signal[first + 2]
@@ -36,31 +36,43 @@ def _resampled(signals, whole, weights, stride, value):
                     total = 0.0
                     for k in range(POINTS):
                         if first + k >= 0:
-                            total += weights[lane, k] * signal[min(first + k, samples - 1)]
-                    value[lane, gauge, t] = total
+                            total += weights[row, k] * signal[min(first + k, samples - 1)]
+                value[row, gauge, t] = factor * total
 
 
 _compiled = cached(_resampled)
 
 
-def resampled(signals: np.ndarray, whole: np.ndarray, weights: np.ndarray, stride: int, count: int):
-    """Weighted sums of neighbouring samples, at equal distances.
+def resampled(
+    signals: np.ndarray,
+    chain: np.ndarray,
+    whole: np.ndarray,
+    weights: np.ndarray,
+    gain: np.ndarray,
+    stride: int,
+    count: int,
+) -> np.ndarray:
+    """Weighted sums of neighbouring samples, at equal distances, one row for each reading of a chain.
 
     Args:
-        signals: (L, S, T) samples.
-        whole: (L,) the last sample before the first reading.
-        weights: (L, POINTS) of the neighbours from `whole` − BEFORE on.
+        signals: (L, S, T) samples of L chains.
+        chain: (N,) which of them is read.
+        whole: (N,) the last sample before the first reading.
+        weights: (N, POINTS) of the neighbours from `whole` − BEFORE on.
+        gain: (N, S) what each reading is multiplied by.
         stride: samples from one reading to the next.
         count: number of readings.
 
     Returns:
-        (L, S, count).
+        (N, S, count).
     """
-    value = np.empty((*signals.shape[:2], count))
+    value = np.empty((len(chain), signals.shape[1], count))
     arguments = (
         np.ascontiguousarray(signals, dtype=float),
+        np.ascontiguousarray(chain, dtype=np.int64),
         np.ascontiguousarray(whole, dtype=np.int64),
         np.ascontiguousarray(weights, dtype=float),
+        np.ascontiguousarray(gain, dtype=float),
         stride,
         value,
     )

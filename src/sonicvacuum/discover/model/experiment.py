@@ -178,12 +178,14 @@ class Experiment:
 
     def whiten(self, run: int, readings: np.ndarray, scalars: np.ndarray) -> np.ndarray:
         """(L, M) readings (L, S, T) and scalars (L, n) of a run over their noise; linear."""
+        return self.whitened_on(run, self.noise_whitened(run, readings), scalars)
+
+    def whitened_on(self, run: int, white: np.ndarray, scalars: np.ndarray) -> np.ndarray:
+        """The same, of readings that `noise_whitened` has made."""
         data = self.runs[run]
-        errors = np.array([s.sigma for s in data.scalars])
-        lanes = len(readings)
+        lanes = len(white)
         if not data.has_signals:
-            return scalars / errors
-        white = self.noise_whitened(run, readings)
+            return scalars / np.array([s.sigma for s in data.scalars])
         if self.slow:
             white = self.slow.whiten(run, white)
         if self.integrated:
@@ -191,10 +193,13 @@ class Experiment:
             white = white if data.present is None else white * data.present
         elif self.smooth:
             white = self.smooth.whiten(run, white)
-        return np.concatenate([white.reshape(lanes, -1), scalars / errors], axis=1)
+        white = white.reshape(lanes, -1)
+        if not data.scalars:
+            return white
+        return np.concatenate([white, scalars / np.array([s.sigma for s in data.scalars])], axis=1)
 
     def noise_whitened(self, run: int, readings: np.ndarray) -> np.ndarray:
-        """(L, S, T) readings of a run over the noise of single samples."""
+        """(…, S, T) readings of a run over the noise of single samples."""
         return whitened_gaps(readings / self.sigma[:, None], self.correlation, self.runs[run].present)
 
     def length(self, run: int) -> int:
@@ -212,12 +217,12 @@ def whitened_gaps(noise: np.ndarray, correlation: np.ndarray, present: np.ndarra
     """Independent numbers of unit variance from samples of a stationary first-order autoregression.
 
     Args:
-        noise: (L, S, T) samples over their standard deviation.
+        noise: (…, S, T) samples over their standard deviation.
         correlation: (S,) of neighbouring samples.
         present: (S, T) samples that count, or None for all.
 
     Returns:
-        (L, S, T); 0 where a sample does not count. A sample whose last counting neighbour is k samples back
+        (…, S, T); 0 where a sample does not count. A sample whose last counting neighbour is k samples back
         is predicted by ρ^k of that one, with the variance 1 − ρ^{2k}: what a Kalman filter makes of a gap
         (Jones, Technometrics 22, 389, 1980).
     """
@@ -230,10 +235,10 @@ def whitened_gaps(noise: np.ndarray, correlation: np.ndarray, present: np.ndarra
     white = np.zeros_like(noise)
     for s, rho in enumerate(correlation):
         at = np.flatnonzero(present[s])
-        kept = noise[:, s, at]
+        kept = noise[..., s, at]
         far = rho ** np.diff(at)
-        white[:, s, at[:1]] = kept[:, :1]
-        white[:, s, at[1:]] = (kept[:, 1:] - far * kept[:, :-1]) / np.sqrt(1.0 - far**2)
+        white[..., s, at[:1]] = kept[..., :1]
+        white[..., s, at[1:]] = (kept[..., 1:] - far * kept[..., :-1]) / np.sqrt(1.0 - far**2)
     return white
 
 

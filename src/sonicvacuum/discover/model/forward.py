@@ -39,6 +39,7 @@ class Forward:
         self.memory = Memory()
         self._coarse = None
         self._tiled: dict[tuple, Chain] = {}
+        self._alike: dict[tuple, list[list[int]]] = {}
 
     @property
     def coarse(self) -> "Forward":
@@ -263,32 +264,68 @@ class Forward:
 
     def _batch(self, batch, change, nu, part, rate_of):
         """Run, predictions and rates of one batch for the lanes `part`."""
-        runs = len(batch.runs)
-        index = np.repeat(part, runs)
-        setup = change(self.nominal(batch, nu[part]), index)
-        seen = self.simulate(batch, setup)
+        nu, e = nu[part], self.experiment
+        setup = change(self.nominal(batch, nu), np.repeat(part, len(batch.runs)))
+        seen, gain = self.simulate(batch, setup), self._gain(nu)
+        traces = {}
+        for places in self._recorded_alike(batch):
+            traces |= self._traces(batch, places, seen, gain, nu, rate_of or len(nu))
         for k, run in enumerate(batch.runs):
-            yield run, *self._data(batch, run, k, runs, seen, nu[part], rate_of)
+            value, timing = traces[run]
+            measured = self._scalars(batch, k, seen, gain, nu)
+            flat = e.whitened_on(run, value, measured)
+            rates, times = timing.reshape(-1, *timing.shape[2:]), timing.shape[1]
+            rates = e.whitened_on(run, rates, np.zeros((len(rates), measured.shape[1])))
+            yield run, flat, rates.reshape(-1, times, rates.shape[1])
 
-    def _data(self, batch, run, k, runs, seen, nu, rate_of):
-        e, data, layout = self.experiment, self.experiment.runs[run], self.layout
-        signals = seen.readings[k::runs] * self._gain(nu)[..., None]
-        measured = scalars.predict(e, run, slice(k, None, runs), seen, signals)
-        errors = {layout.named(p): nu[:, p] for p in layout.other("shared")}
-        measured = scalars.read(data.scalars, measured, errors)
-        lanes, sigma = len(nu), self.nuisance_sigma
-        value = np.zeros((lanes, len(e.gauges), 0))
-        times = 1 + len(layout.other("clock")) + len(layout.other("delay"))
-        timing = np.zeros((len(value[:: rate_of or lanes]), times, *value.shape[1:]))
+    def _recorded_alike(self, batch) -> list[list[int]]:
+        """Places of the batch's runs, those together whose samples were taken, and count, alike."""
+        if batch.runs not in self._alike:
+            found: dict[tuple, list[int]] = {}
+            for k, run in enumerate(batch.runs):
+                data = self.experiment.runs[run]
+                counting = None if data.present is None else data.present.tobytes()
+                found.setdefault((data.time.tobytes(), counting), []).append(k)
+            self._alike[batch.runs] = list(found.values())
+        return self._alike[batch.runs]
+
+    def _traces(self, batch, places, seen, gain, nu, rate_of):
+        """Run → readings (L, S, T) and their slopes (·, n, S, T) to times, over the noise of single samples.
+
+        `places` are those of runs in the batch whose samples were taken, and count, alike.
+        """
+        e, layout, sigma = self.experiment, self.layout, self.nuisance_sigma
+        lanes, runs = len(nu), [batch.runs[k] for k in places]
+        lane, which = np.tile(np.arange(lanes), len(runs)), np.repeat(np.arange(len(runs)), lanes)
+        rated = np.flatnonzero(lane % rate_of == 0)
+        data = e.runs[runs[0]]
         if data.has_signals:
-            shift = data.shift + nu[:, layout.trigger(run)] * sigma[layout.trigger(run)]
+            trigger = layout.trigger(np.array(runs))
+            shift = np.array([e.runs[r].shift for r in runs])[:, None] + (nu[:, trigger] * sigma[trigger]).T
+            chain = lane * len(batch.runs) + np.array(places)[which]
             value, timing = gauges.at_record(
-                layout, sigma, batch.interval, data.time, signals, shift, nu, rate_of or lanes
+                *(layout, sigma, batch.interval, data.time, seen.readings, chain),
+                *(gain[lane], shift.ravel(), nu[lane], rated),
             )
-        flat = e.whiten(run, value, measured)
-        parts = timing.reshape(len(timing) * times, *value.shape[1:])
-        rates = e.whiten(run, parts, np.zeros((len(parts), measured.shape[1])))
-        return flat, rates.reshape(len(timing), times, rates.shape[1])
+        else:
+            value = np.zeros((len(lane), len(e.gauges), 0))
+            times = 1 + len(layout.other("clock")) + len(layout.other("delay"))
+            timing = np.zeros((len(rated), times, len(e.gauges), 0))
+        value, timing = (e.noise_whitened(runs[0], x) for x in (value, timing))
+        return {
+            run: pair
+            for run, *pair in zip(runs, np.split(value, len(runs)), np.split(timing, len(runs)), strict=True)
+        }
+
+    def _scalars(self, batch, k, seen, gain, nu):
+        """(L, n) observables of the k-th run of a batch."""
+        e, layout, run, own = self.experiment, self.layout, batch.runs[k], slice(k, None, len(batch.runs))
+        wanted = e.runs[run].scalars
+        if not wanted:
+            return np.zeros((len(nu), 0))
+        signals = seen.readings[own] * gain[..., None]
+        measured = scalars.predict(e, run, own, seen, signals)
+        return scalars.read(wanted, measured, {layout.named(p): nu[:, p] for p in layout.other("shared")})
 
     def _gain(self, nu):
         """(L, S) gains of the gauges over the nominal ones."""
@@ -303,7 +340,7 @@ class Forward:
         chain = self._repeated(batch, lanes)
         speed = chain.speed * np.exp(nu[:, runs] * sigma[runs]).ravel()
         stiffer = np.repeat(np.exp(nu[:, layout.modulus] * sigma[layout.modulus]), len(runs))
-        chain = replace(chain, speed=speed).stiffened(chain.first.surface.name, stiffer)
+        chain = chain.struck_at(speed).stiffened(chain.first.surface.name, stiffer)
         for place, one in enumerate(layout.others, start=layout.modulus + 1):
             chain = one.change(chain, np.repeat(np.exp(nu[:, place] * sigma[place]), len(runs)))
         return Setup(chain, batch.gauges or self.experiment.gauges, self.experiment.catalogue)

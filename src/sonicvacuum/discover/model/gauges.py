@@ -30,31 +30,33 @@ def _coefficients():
 _VALUE, _SLOPE = _coefficients()
 
 
-def shifted(simulated: np.ndarray, interval: float, time: np.ndarray, shift: np.ndarray, rate_of: int = 1):
+def shifted(simulated, interval: float, time, shift, rated=slice(None), chain=None, gain=None):
     """Readings at recorded times, and their time derivative.
 
     Args:
-        simulated: (L, S, T') readings, first sample at true time 0, at rest before.
+        simulated: (L, S, T') readings of L chains, first sample at true time 0, at rest before.
         interval: between simulated samples in s.
         time: (T,) recorded times in s, their interval a multiple of the simulated one.
-        shift: (L,) trigger shift in s; recorded time = true time + shift.
-        rate_of: the derivative of every so many lanes, from the first on.
+        shift: (N,) trigger shift in s of N records; recorded time = true time + shift.
+        rated: of which records the derivative is wanted.
+        chain: (N,) which chain each record is of; None: in their order.
+        gain: (N, S) what the readings are multiplied by; None: 1.
 
     Returns:
-        Arrays (L, S, T) in the gauges' units and (L / rate_of, S, T) in the same per second.
+        Arrays (N, S, T) in the gauges' units and (·, S, T) in the same per second.
     """
     stride = round((time[-1] - time[0]) / (len(time) - 1) / interval)
     place = (time[0] - shift) / interval
     whole = np.floor(place).astype(int)
     weights, slopes = lagrange(place - whole)
-    rated = slice(None, None, rate_of)
-    value = resampled(simulated, whole, weights, stride, len(time))
-    rate = resampled(simulated[rated], whole[rated], slopes[rated], stride, len(time))
-    rate /= interval
-    return value, rate
+    chain = np.arange(len(shift)) if chain is None else chain
+    gain = np.ones((len(shift), simulated.shape[1])) if gain is None else gain
+    value = resampled(simulated, chain, whole, weights, gain, stride, len(time))
+    some = (chain[rated], whole[rated], slopes[rated] / interval, gain[rated])
+    return value, resampled(simulated, *some, stride, len(time))
 
 
-def at_record(layout, sigma, interval: float, time: np.ndarray, signals, shift, nu, rate_of: int):
+def at_record(layout, sigma, interval: float, time: np.ndarray, signals, chain, gain, shift, nu, rated):
     """Readings at recorded times and their slopes to time zero, clock and delays.
 
     The clock's error is taken to first order: it moves no sample by more than a part of a pulse.
@@ -63,32 +65,34 @@ def at_record(layout, sigma, interval: float, time: np.ndarray, signals, shift, 
         layout: of the nuisances, whose standard errors are `sigma`.
         interval: between simulated samples in s.
         time: (T,) recorded times in s.
-        signals: (L, S, T') simulated readings.
-        shift: (L,) trigger shift in s.
-        nu: (L, q) nuisances over their standard errors.
-        rate_of: slopes of every so many lanes.
+        signals: (L, S, T') simulated readings of L chains.
+        chain: (N,) which chain each of N records is of.
+        gain: (N, S) of the gauges.
+        shift: (N,) trigger shift in s.
+        nu: (N, q) nuisances over their standard errors.
+        rated: (n,) records whose slopes are wanted.
 
     Returns:
-        (L, S, T) readings and (·, n, S, T) slopes.
+        (N, S, T) readings and (n, times, S, T) slopes.
     """
     clock, delays = layout.other("clock"), layout.other("delay")
-    late = np.zeros((len(nu), signals.shape[1]))
-    channels = [layout.others[k - layout.modulus - 1].gauge for k in delays]
-    late[:, channels] = nu[:, delays] * sigma[delays]
-    parts = [
-        shifted(signals[:, own], interval, time, shift + delay, 1 if clock else rate_of)
-        for own, delay in ([(slice(None), late[:, 0])] if not delays else _by_gauge(late))
-    ]
-    value, rate = (np.concatenate(p, axis=1) for p in zip(*parts, strict=True))
+    some = np.arange(len(nu)) if clock else rated
+    if not delays:
+        value, rate = shifted(signals, interval, time, shift, some, chain, gain)
+    else:
+        late = np.zeros((len(nu), signals.shape[1]))
+        channels = [layout.others[k - layout.modulus - 1].gauge for k in delays]
+        late[:, channels] = nu[:, delays] * sigma[delays]
+        parts = [
+            shifted(signals[:, s : s + 1], interval, time, shift + delay, some, chain, gain[:, s : s + 1])
+            for s, delay in enumerate(late.T)
+        ]
+        value, rate = (np.concatenate(p, axis=1) for p in zip(*parts, strict=True))
     slopes = [-rate]
     for k in clock:
         slopes.append(-rate * (time - shift[:, None])[:, None])
         value = value + (nu[:, k] * sigma[k])[:, None, None] * slopes[1]
-        slopes = [s[::rate_of] for s in slopes]
-    slopes += [slopes[0] * (np.arange(signals.shape[1]) == s)[:, None] for s in channels]
+        slopes = [s[rated] for s in slopes]
+    if delays:
+        slopes += [slopes[0] * (np.arange(signals.shape[1]) == s)[:, None] for s in channels]
     return value, np.stack(slopes, axis=1)
-
-
-def _by_gauge(late):
-    """(slice, (L,) delay) of each gauge."""
-    return [(slice(s, s + 1), late[:, s]) for s in range(late.shape[1])]

@@ -11,6 +11,7 @@ the readings, and are marginalised as noise (`slow`).
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -86,7 +87,7 @@ CHANGES: dict[str, Callable] = {
     "bead-mass": _heavier,
     "bead-diameter": _larger,
     "striker-mass": lambda chain, _, ratio: replace(chain, striker_mass=chain.striker_mass * ratio),
-    "speed-common": lambda chain, _, ratio: replace(chain, speed=chain.speed * ratio),
+    "speed-common": lambda chain, _, ratio: chain.struck_at(chain.speed * ratio),
     "law": _shaped,
 }
 
@@ -112,7 +113,7 @@ class Layout:
         """Place of a run's trigger shift."""
         return self.runs + run
 
-    @property
+    @cached_property
     def gains(self) -> np.ndarray:
         """(S,) places of the gains."""
         return 2 * self.runs + np.arange(self.gauges)
@@ -124,19 +125,27 @@ class Layout:
 
     def other(self, kind: str) -> list[int]:
         """Places of the other shared ones of a kind."""
-        return [self.modulus + 1 + k for k, one in enumerate(self.others) if one.kind == kind]
+        return self._by_kind.get(kind, [])
 
     def named(self, place: int) -> str:
         """What the other shared one at a place is of."""
         return self.others[place - self.modulus - 1].of
 
-    @property
+    @cached_property
     def simulated(self) -> list[int]:
         """Places of those that take a simulation of their own each: moduli, masses, sizes."""
         own = [self.modulus + 1 + k for k, one in enumerate(self.others) if one.simulated]
         return [self.modulus, *own]
 
-    @property
+    @cached_property
+    def _by_kind(self) -> dict[str, list[int]]:
+        """Kind → places of the other shared ones."""
+        found: dict[str, list[int]] = {}
+        for place, one in enumerate(self.others, start=self.modulus + 1):
+            found.setdefault(one.kind, []).append(place)
+        return found
+
+    @cached_property
     def shared(self) -> np.ndarray:
         """Places of what does not belong to one run, in the order in which they stand in `local`."""
         return np.array([self.modulus, *self.gains, *range(self.modulus + 1, self.size)])
