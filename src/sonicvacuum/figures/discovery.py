@@ -8,6 +8,7 @@ needed.
 """
 
 import json
+from concurrent.futures import Executor
 from pathlib import Path
 
 import numpy as np
@@ -21,37 +22,50 @@ BLUE, ORANGE, GREEN = "#0072B2", "#D55E00", "#009E73"
 _MOST = 8
 
 
-def draw(folder: Path, catalogue: Catalogue = CATALOGUE) -> list[Path]:
+def draw(folder: Path, catalogue: Catalogue = CATALOGUE, pool: Executor | None = None) -> list[Path]:
     """Draw all pictures that the tables in the folder give; the files written (SVG, each with its PNG).
 
-    The catalogue knows the effects that are named.
+    The catalogue knows the effects that are named. With a pool (`aside.painters`), each is drawn by one of
+    its processes.
 
     Those of an earlier verdict that this one does not have are removed.
     """
     folder = Path(folder)
     posterior.write_table(folder, catalogue)
-    verdict = json.loads((folder / "verdict.json").read_text(encoding="utf-8"))
-    pictures = {
-        "where": lambda: disagreement.where(read_csv(folder / "where.csv")),
-        "scalars": lambda: disagreement.scalars(read_csv(folder / "where.csv")),
-        "traces": lambda: traces(read_csv(folder / "traces.csv"), verdict["named"]),
-        "candidates": lambda: candidates(verdict["probabilities"]),
-        "parameters": lambda: posterior.parameters(read_csv(folder / "parameters.csv")),
-        "gap": lambda: gap(read_csv(folder / "gap.csv")),
-        "law": lambda: force_law.law(read_csv(folder / "law.csv") if (folder / "law.csv").exists() else []),
-    }
-    written = []
+    drawn = (pool.map if pool else map)(_picture, [folder] * len(PICTURES), PICTURES)
+    return [path for path in drawn if path]
+
+
+def _picture(folder: Path, name: str) -> Path | None:
+    """Draw one of `PICTURES`, or remove it; the SVG, None where the tables give none."""
+    paths = [folder / f"{name}.{kind}" for kind in ("svg", "png")]
     with context():
-        for name, make in pictures.items():
-            paths = [folder / f"{name}.{kind}" for kind in ("svg", "png")]
-            figure = make()
-            if figure is not None:
-                save(figure, *paths)
-                written.append(paths[0])
-                continue
-            for path in paths:
-                path.unlink(missing_ok=True)
-    return written
+        figure = PICTURES[name](folder)
+        if figure is not None:
+            save(figure, *paths)
+            return paths[0]
+    for path in paths:
+        path.unlink(missing_ok=True)
+    return None
+
+
+def _verdict(folder: Path) -> dict:
+    return json.loads((folder / "verdict.json").read_text(encoding="utf-8"))
+
+
+def _law(folder: Path) -> list[dict[str, str]]:
+    return read_csv(folder / "law.csv") if (folder / "law.csv").exists() else []
+
+
+PICTURES = {
+    "where": lambda folder: disagreement.where(read_csv(folder / "where.csv")),
+    "scalars": lambda folder: disagreement.scalars(read_csv(folder / "where.csv")),
+    "traces": lambda folder: traces(read_csv(folder / "traces.csv"), _verdict(folder)["named"]),
+    "candidates": lambda folder: candidates(_verdict(folder)["probabilities"]),
+    "parameters": lambda folder: posterior.parameters(read_csv(folder / "parameters.csv")),
+    "gap": lambda folder: gap(read_csv(folder / "gap.csv")),
+    "law": lambda folder: force_law.law(_law(folder)),
+}
 
 
 def traces(table: list[dict[str, str]], named: list[str]):

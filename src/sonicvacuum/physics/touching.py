@@ -9,7 +9,6 @@ each layer at the contacts' chi = √(R* delta)/t; beyond the table's ends Hertz
 from functools import lru_cache
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
 
 from sonicvacuum.physics.bodies import Body
 from sonicvacuum.physics.chain import Chain
@@ -66,6 +65,8 @@ def _plane(elastic):
 @lru_cache(maxsize=64)
 def _table(layer):
     """Ends of chi, and interpolations in its logarithm."""
+    from scipy.interpolate import PchipInterpolator  # long to load
+
     exact = solve(layer, RADII)
     chi = exact.width
     columns = (RADII / chi, exact.concentration)
