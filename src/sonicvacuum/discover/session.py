@@ -10,7 +10,8 @@ from msgspec import UNSET
 
 from sonicvacuum import stages
 from sonicvacuum.blas import one_thread
-from sonicvacuum.discover import given, law, next_experiment, quantities, verdict
+from sonicvacuum.discover import draws, given, law, next_experiment, quantities, verdict
+from sonicvacuum.discover.draws import Draws
 from sonicvacuum.discover.faults import competition
 from sonicvacuum.discover.fit import goodness, heldout
 from sonicvacuum.discover.fit.refit import Fit
@@ -19,6 +20,7 @@ from sonicvacuum.discover.judge.law import surface
 from sonicvacuum.discover.model import window
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.nuisances import exact
+from sonicvacuum.discover.posterior import posterior
 from sonicvacuum.discover.rounds import Investigation
 from sonicvacuum.discover.search import directions, screen, singles
 from sonicvacuum.discover.search.free_law import FreeLaw, free_law
@@ -41,6 +43,8 @@ class Result:
         places, after: disagreements of the nominal and of the extended model.
         limits: of all effects that were not named.
         verdict: what is written.
+        law: the free-form law, where one was needed.
+        posterior: weighted draws of each parameter of what is named.
     """
 
     record: Record
@@ -52,6 +56,7 @@ class Result:
     limits: list[degenerate.Limit]
     verdict: Verdict
     law: FreeLaw | None = None
+    posterior: tuple[Draws, ...] = ()
 
     @property
     def extended(self) -> tuple[Forward, Fit]:
@@ -102,6 +107,8 @@ def discover(*records: Record, threads: int | None = None, catalogue: Catalogue 
     clock.mark("next experiment")
     named = verdict.named_effects(found)
     counted = found.counted or found
+    drawn = posterior(counted.forward, counted.final) if named else []
+    clock.mark("posterior")
     result = Verdict(
         record=found.forward.experiment.name,
         named=found.named,
@@ -133,7 +140,7 @@ def discover(*records: Record, threads: int | None = None, catalogue: Catalogue 
         nuisances=verdict.nuisances(counted.forward, counted.final),
     )
     said = tuple(line for lines in notes for line in lines)
-    return Result(outcome.record, records, said, found, places, after, limits, result, free)
+    return Result(outcome.record, records, said, found, places, after, limits, result, free, tuple(drawn))
 
 
 def _exact(found: Investigation) -> list[str]:
@@ -230,6 +237,7 @@ def write(result: Result, folder: Path) -> None:
         ((x.effect, x.parameter, x.value, x.estimate, int(x.testable), x.place) for x in result.limits),
     )
     verdict.write_table(folder / "traces.csv", *trace_rows(result))
+    draws.write(folder, result.posterior)
     if result.law:
         verdict.write_table(folder / "law.csv", *law.rows(surface(result.law)))
     notes = (*result.notes, *result.found.forward.experiment.notes)

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
+from sonicvacuum.discover import draws
 from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.figures import disagreement, force_law, posterior
 from sonicvacuum.figures.style import BAND, DOUBLE, GREY, SINGLE, canvas, context, panel, save
@@ -62,7 +63,7 @@ PICTURES = {
     "scalars": lambda folder: disagreement.scalars(read_csv(folder / "where.csv")),
     "traces": lambda folder: traces(read_csv(folder / "traces.csv"), _verdict(folder)["named"]),
     "candidates": lambda folder: candidates(_verdict(folder)["probabilities"]),
-    "parameters": lambda folder: posterior.parameters(read_csv(folder / "parameters.csv")),
+    "parameters": lambda folder: posterior.parameters(read_csv(folder / "parameters.csv"), draws.read(folder)),
     "gap": lambda folder: gap(read_csv(folder / "gap.csv")),
     "law": lambda folder: force_law.law(_law(folder)),
 }

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import msgspec
 
-from sonicvacuum.discover import given, quantities
+from sonicvacuum.discover import draws, given, quantities
 from sonicvacuum.discover.compare import check_source
 from sonicvacuum.discover.verdict import Model, Verdict
 from sonicvacuum.effects import CATALOGUE, Catalogue
@@ -23,9 +23,10 @@ PICTURES = {
     "scalars": "Score of each measured quantity against the nominal (open) and the extended model (filled), "
     "in standard errors; band: two of them.",
     "candidates": "Probability of each single explanation.",
-    "parameters": "Posterior of each parameter: Gaussian of value and standard error, 90 % interval shaded; "
-    "on the right the range searched (grey), the value with its 90 % interval, and a cross where the effect "
-    "is off, if the axis has that value.",
+    "parameters": "Posterior of each parameter as sampled (steps; a smooth curve where it was followed as a "
+    "profile), 90 % interval shaded, and the Gaussian of value and standard error (dashed; alone where no "
+    "draws lie beside the verdict). On the right the range searched (grey), the value with its 90 % "
+    "interval, and a cross where the effect is off, if the axis has that value.",
     "gap": "Misfit of the best model of each round, adopted or not; 1 is the noise.",
     "traces": "First and last run: measured, nominal and extended traces; below them running means of the "
     "residuals over their own standard error (band: two of them).",
@@ -102,7 +103,8 @@ def _told(folder, verdict, model, tables, catalogue):
         "where": words.where(verdict, tables["where"]),
         "grid": rows.grid(tables["where"]),
         "quantities": rows.quantities(_quantities(folder)),
-        "effects": rows.effects(verdict, catalogue),
+        "effects": rows.effects(verdict, catalogue, draws.read(folder)),
+        "drawn": words.drawn(draws.read(folder)),
         "odds": rows.odds(verdict, catalogue, tables["candidates"]),
         "nuisances": bench.nuisances(model),
         "law": words.law(verdict, catalogue),

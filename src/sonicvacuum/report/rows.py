@@ -116,12 +116,12 @@ def _round(name, catalogue):
     return "nominal model" if name == "nominal" else f"with {plain(name, catalogue)}"
 
 
-def effects(verdict, catalogue) -> list[dict]:
-    """What was named: title, equation, source, and its parameters with errors."""
+def effects(verdict, catalogue, draws) -> list[dict]:
+    """What was named: title, equation, source, and its parameters with errors; `draws` as in `draws.read`."""
     found = []
     for name, given in verdict.parameters.items():
         one = catalogue.effect(name)
-        parameters = [_parameter(one, key, value) for key, value in given.items()]
+        parameters = [_parameter(one, key, value, draws.get((name, key))) for key, value in given.items()]
         found.append(
             {
                 "id": name,
@@ -135,7 +135,7 @@ def effects(verdict, catalogue) -> list[dict]:
     return found
 
 
-def _parameter(one, key, found):
+def _parameter(one, key, found, draws):
     """Row of a parameter: what, value with its error, 90 % interval, range searched, value without effect."""
     if key == one.places:
         return {
@@ -149,7 +149,7 @@ def _parameter(one, key, found):
     return {
         "name": p.help,
         "value": _with_error(found.value, found.sigma) + unit_of(p.unit),
-        "interval": _interval(found.value, found.sigma),
+        "interval": _interval(found.value, found.sigma, draws),
         "searched": f"{p.low:g} to {p.high:g}",
         "off": off(p),
     }
@@ -163,7 +163,10 @@ def _with_error(value, sigma):
     return f"{value:.{digits}f} ± {sigma:.{digits}f}" if digits < 7 else f"{value:.4g} ± {sigma:.2g}"
 
 
-def _interval(value, sigma):
+def _interval(value, sigma, draws):
+    """The 90 % interval of the draws, where there are any, or else of the Gaussian."""
+    if draws is not None:
+        return f"{draws.quantile(0.05):.4g} to {draws.quantile(0.95):.4g}"
     return f"{value - 1.645 * sigma:.4g} to {value + 1.645 * sigma:.4g}" if sigma > 0.0 else ""
 
 

@@ -6,6 +6,7 @@ Every sentence is made from `verdict.json`, `model.json` and the tables beside t
 import math
 from collections import Counter
 
+from sonicvacuum.discover.draws import PROFILE, pareto_k
 from sonicvacuum.discover.judge.explanations import key
 from sonicvacuum.discover.judge.locate import DISCOVERY_RATE
 from sonicvacuum.discover.verdict import Gap, Next, Verdict
@@ -38,6 +39,23 @@ def in_words(probability: float) -> str:
     """A probability in words, with its number."""
     word = next(text for least, text in SURE if probability >= least)
     return f"{word} ({share(probability)})"
+
+
+def drawn(draws) -> str:
+    """How the intervals were found, "" without draws; `draws` as in `discover.draws.read`."""
+    one = next(iter(draws.values()), None)
+    if one is None:
+        return ""
+    if one.how == PROFILE:
+        return (
+            "The intervals are of profiles: too few draws carried the weight. Each parameter was held at a "
+            "row of values, with all else at its best."
+        )
+    return (
+        f"{len(one.weight)} draws, each simulated and weighed by the data, say as much as "
+        f"{one.effective:.0f} of the posterior itself; the shape of their largest weights, Pareto k, is "
+        f"{pareto_k(one.weight):.2g}, and below 0.7 they are to be trusted."
+    )
 
 
 def share(value: float) -> str:

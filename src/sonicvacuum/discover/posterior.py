@@ -1,0 +1,155 @@
+"""The posterior of what was named, not as a Gaussian but as it is: weighted draws.
+
+Draws come from the Gaussian of the fit, its tails widened (Student's t), and every one of them is simulated,
+all in one batch. At each the nuisances take their best values (a quadratic of the parameters, then a step of
+Gauss and Newton with the slopes of the fit), and are integrated over as if they were Gaussian there (Tierney
+& Kadane, J. Am. Stat. Assoc. 81, 82, 1986). The weight of a draw is what the data make of it, over the chance
+to draw it; its prior is flat in the coordinates of the search. Where few draws carry the weight
+(`draws.pareto_k`), the profile of each parameter is told instead: all else at its best, in the same way.
+"""
+
+import math
+from itertools import chain
+
+import numpy as np
+from scipy.special import chdtri, ndtri
+
+from sonicvacuum.discover.draws import PROFILE, SAMPLED, TRUSTED, Draws, pareto_k
+from sonicvacuum.discover.fit.refit import Fit
+from sonicvacuum.discover.model.forward import CHUNK, Forward
+
+DRAWS, SEED = 200, 20061017
+# Degrees of freedom of Student's t: its tails are heavier than those of any likelihood that ends.
+FREEDOM = 5.0
+# A profile reaches so many standard errors to either side, by so many values.
+REACH, VALUES = 5.0, 61
+# So many of the draws for each coordinate are followed by so many steps.
+FEW, STEPS = 12, 3
+# The widest proposal, as a share of the range that is searched.
+WIDEST = 0.5
+
+
+def posterior(forward: Forward, fit: Fit) -> list[Draws]:
+    """Draws of every free parameter of a fit, or its profile where they are not to be trusted; [] for a fit
+    without any.
+    """
+    if not len(fit.u):
+        return []
+    u, log_proposal = proposed(fit)
+    log_weight = log_posterior(forward, fit, u, np.arange(len(fit.u))) - log_proposal
+    weight = _normalised(log_weight)
+    if pareto_k(weight) <= TRUSTED:
+        return _told(fit, SAMPLED, [(u[:, k], weight) for k in range(len(fit.u))])
+    return _told(fit, PROFILE, [_profile(forward, fit, k) for k in range(len(fit.u))])
+
+
+def proposed(fit: Fit, count: int = DRAWS, seed: int = SEED) -> tuple[np.ndarray, np.ndarray]:
+    """(n, p) draws within the bounds of the search, and (n,) logarithms of their density, up to a constant.
+
+    Of a Kronecker sequence (multiples of powers of 1 / φ_d, φ_d^{d+1} = φ_d + 1, shifted at random), which
+    fills space more evenly than independent draws do; at most `count`, fewer only where nearly all of the
+    Gaussian lies beyond the bounds.
+    """
+    p = len(fit.u)
+    low, high = _bounds(fit)
+    root = np.linalg.cholesky(_covariance(fit))
+    shift = np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed))).random(p + 1)
+    phi = np.real(np.roots([1.0, *np.zeros(p), -1.0, -1.0])).max()
+    steps = phi ** -np.arange(1.0, p + 2.0)
+    points = np.modf(shift + np.arange(1, 16 * count + 1)[:, None] * steps)[0]
+    wide = np.sqrt(FREEDOM / chdtri(FREEDOM, points[:, p]))[:, None]
+    scaled = wide * ndtri(points[:, :p])
+    u = fit.u + scaled @ root.T
+    inside = np.flatnonzero(((u >= low) & (u <= high)).all(axis=1))[:count]
+    radius = np.square(scaled[inside]).sum(axis=1)
+    return u[inside], -0.5 * (FREEDOM + p) * np.log1p(radius / FREEDOM)
+
+
+def _bounds(fit):
+    """Lowest and highest coordinates, the fit's own among them."""
+    low, high = np.array([(c.low, c.high) for c in fit.hypothesis.coordinates]).T
+    return np.minimum(low, fit.u), np.maximum(high, fit.u)
+
+
+def _covariance(fit):
+    """(p, p) of the coordinates, nuisances fitted; none wider than a share of its range."""
+    p = len(fit.u)
+    low, high = _bounds(fit)
+    own = fit.covariance[:p, :p]
+    sigma = np.sqrt(np.maximum(np.diag(own), 1e-16))
+    less = np.minimum(1.0, WIDEST * (high - low) / sigma)
+    return own * np.outer(less, less) + 1e-12 * np.diag(np.square(less * sigma)) + 1e-24 * np.eye(p)
+
+
+def log_posterior(forward: Forward, fit: Fit, values: np.ndarray, held: np.ndarray) -> np.ndarray:
+    """(n,) logarithm, up to a constant, at (n, h) values of the coordinates `held`; all else at its best.
+
+    −inf where nothing can be simulated.
+    """
+    free = np.setdiff1d(np.arange(len(fit.u) + len(fit.nu)), held)
+    _, hessian = fit.normal.total()
+    inner = np.linalg.pinv(hessian[0][np.ix_(free, free)], hermitian=True)
+    away = values - fit.u[held]
+    point = np.tile(np.concatenate([fit.u, fit.nu]), (len(values), 1))
+    point[:, held] = values
+    point[:, free] -= away @ (inner @ hessian[0][np.ix_(free, held)]).T
+    point[:, free] += _bent(forward, fit, point, away, free, inner)
+    objective, gradient = _misfit(forward, fit, point)
+    drop = np.einsum("ln,nm,lm->l", gradient[:, free], inner, gradient[:, free])
+    value = -0.5 * (objective - drop)
+    return np.where(np.isfinite(value), value, -np.inf)
+
+
+def _bent(forward, fit, point, away, free, inner):
+    """(n, free) by how much the best values of all else lie off the linearised ones: a quadratic of (n, h)
+    what is held, through a few points that are followed to their minima.
+    """
+    few = np.unique(np.linspace(0, len(point) - 1, FEW * away.shape[1]).astype(int))
+    best = point[few]
+    for _ in range(STEPS):
+        best[:, free] += _misfit(forward, fit, best)[1][:, free] @ inner
+    away = away / np.abs(away).max(axis=0)
+    basis = np.concatenate([np.ones((len(away), 1)), away, np.square(away)], axis=1)
+    sound = np.isfinite(best).all(axis=1)
+    return basis @ np.linalg.lstsq(basis[few[sound]], (best - point[few])[sound][:, free], rcond=1e-9)[0]
+
+
+def _misfit(forward, fit, point):
+    """(n,) χ² and the penalty of the nuisances, and (n, p + q) minus half its slopes, with the columns of the
+    fit, at (n, p + q) points; a batch at a time.
+    """
+    layout, p = forward.layout, len(fit.u)
+    low, high = _bounds(fit)
+    u, nu = point[:, :p].clip(low, high), point[:, p:]
+    columns = forward.columns(fit.hypothesis, fit.u[None], fit.nu[None])
+    objective, gradient = np.square(nu).sum(axis=1), np.concatenate([np.zeros_like(u), -nu], axis=1)
+    lanes = max(1, CHUNK // layout.runs)
+    for part in (slice(first, first + lanes) for first in range(0, len(u), lanes)):
+        for run, (value, _) in enumerate(forward.sampled(fit.hypothesis, u[part], nu[part])):
+            left = forward.data(run) - value
+            objective[part] += np.square(left).sum(axis=1)
+            own = np.concatenate([np.arange(p), p + layout.local(run)])
+            gradient[part, own] += left @ columns[run][0, 1:].T
+    return objective, gradient
+
+
+def _profile(forward, fit, k):
+    """Values of one coordinate and their weights."""
+    low, high = _bounds(fit)
+    reach = REACH * math.sqrt(_covariance(fit)[k, k])
+    u = np.linspace(max(low[k], fit.u[k] - reach), min(high[k], fit.u[k] + reach), VALUES)
+    return u, _normalised(log_posterior(forward, fit, u[:, None], np.array([k])))
+
+
+def _normalised(log_weight):
+    weight = np.exp(log_weight - log_weight.max())
+    return weight / weight.sum()
+
+
+def _told(fit, how, found):
+    """The draws of all coordinates in the units of their parameters."""
+    owners = chain.from_iterable([c.effect.id] * len(c.free) for c in fit.hypothesis.components)
+    return [
+        Draws(effect, c.parameter.name, how, c.value(u), weight)
+        for effect, c, (u, weight) in zip(owners, fit.hypothesis.coordinates, found, strict=True)
+    ]

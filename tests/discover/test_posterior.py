@@ -1,0 +1,110 @@
+"""Draws of the posterior: against what is known in closed form, and against fits with a parameter held."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.special import ndtri
+
+from sonicvacuum.discover import draws, posterior
+from sonicvacuum.discover.draws import Draws
+from sonicvacuum.discover.model.forward import Forward
+
+
+def test_weights_of_equal_draws_are_all_worth_one():
+    assert draws.effective(np.full(50, 0.3)) == pytest.approx(50.0)
+    assert draws.effective(np.array([1.0, 0.0, 0.0])) == 1.0
+
+
+@pytest.mark.parametrize("shape", [0.3, 0.5, 1.0])
+def test_the_shape_of_pareto_weights_is_found(shape):
+    """Weights u^-k have a tail of shape k (Pareto), here at the quantiles themselves."""
+    weight = ((np.arange(4000) + 0.5) / 4000) ** -shape
+    # 190 weights lie in the tail; the error of its shape is (1 + k) / sqrt(190), 0.1 to 0.15.
+    assert draws.pareto_k(weight) == pytest.approx(shape, abs=0.15)
+
+
+def test_few_heavy_weights_are_not_trusted():
+    weight = np.where(np.arange(200) < 2, 1.0, 1e-6 * np.linspace(1.0, 2.0, 200))
+    assert draws.pareto_k(weight) > draws.TRUSTED
+
+
+def test_quantiles_of_weighted_draws_are_those_of_what_they_stand_for():
+    """Uniform draws weighed by the density of a normal distribution."""
+    value = np.linspace(-6.0, 6.0, 2001)
+    one = Draws("a", "b", draws.SAMPLED, value[::-1], np.exp(-0.5 * value**2) / np.exp(-0.5 * value**2).sum())
+    for share in (0.05, 0.5, 0.95):
+        assert one.quantile(share) == pytest.approx(ndtri(share), abs=0.006)  # the draws' distance
+
+
+def test_draws_are_of_the_distribution_that_they_claim(verdict):
+    """Their density times the volume between them is one: weighed by the Gaussian over it, they are one."""
+    fit = verdict.found.final
+    u, log_density = posterior.proposed(fit, count=4000)
+    z = (u - fit.u)[:, 0] / fit.sigma[0]
+    weight = np.exp(-0.5 * z**2 - log_density)
+    weight /= weight.sum()
+    assert weight @ z == pytest.approx(0.0, abs=0.02)
+    # Four thousand draws of a lattice: far below 1 / sqrt(4000) = 0.016.
+    assert weight @ z**2 == pytest.approx(1.0, abs=0.02)
+
+
+def test_the_posterior_is_that_of_fits_with_the_parameter_held(verdict):
+    """Nuisances followed to their minimum at each value, which takes six steps more."""
+    forward, fit = verdict.found.forward, verdict.found.final
+    values = fit.u + np.array([-3.0, -1.5, 0.0, 1.5, 3.0])[:, None] * fit.sigma
+    quick = posterior.log_posterior(forward, fit, values, np.array([0]))
+    hessian = fit.normal.total()[1][0]
+    inner = np.linalg.inv(hessian[1:, 1:])
+    point = np.concatenate([values, np.tile(fit.nu, (5, 1))], axis=1)
+    for _ in range(6):
+        point[:, 1:] += posterior._misfit(forward, fit, point)[1][:, 1:] @ inner
+    slow = -0.5 * posterior._misfit(forward, fit, point)[0]
+    # In natural logarithms: a tenth of what one standard error makes.
+    assert quick - quick[2] == pytest.approx(slow - slow[2], abs=0.05)
+
+
+def test_draws_lie_within_the_bounds_of_the_search(verdict):
+    fit = verdict.found.final
+    parts = fit.hypothesis.components[0]
+    (own,) = parts.free
+    near = replace(own, high=float(fit.u[0] + 0.5 * fit.sigma[0]))
+    held = replace(fit, hypothesis=replace(fit.hypothesis, components=(replace(parts, free=(near,)),)))
+    u, _ = posterior.proposed(held)
+    assert len(u) == posterior.DRAWS
+    assert u.max() <= near.high
+
+
+def test_draws_are_the_same_for_any_number_of_threads(verdict):
+    again = Forward(verdict.found.forward.experiment, threads=2)
+    (one,), (two,) = verdict.posterior, posterior.posterior(again, verdict.found.final)
+    assert np.array_equal(one.value, two.value)
+    assert np.array_equal(one.weight, two.weight)
+
+
+def test_a_table_of_draws_is_read_as_it_was_written(verdict, tmp_path):
+    draws.write(tmp_path, verdict.posterior)
+    (kept,) = verdict.posterior
+    (back,) = draws.read(tmp_path).values()
+    assert (back.effect, back.parameter, back.how) == ("kuwabara-kono", "time_us", "sampled")
+    assert back.quantile(0.05) == pytest.approx(kept.quantile(0.05), rel=1e-3)  # weights to four digits
+    assert draws.pareto_k(back.weight) < draws.TRUSTED
+    given = verdict.verdict.parameters["kuwabara-kono"]["time_us"]
+    assert back.quantile(0.5) == pytest.approx(given.value, abs=0.2 * given.sigma)
+
+
+def test_where_draws_are_not_trusted_the_profile_is_told(verdict, monkeypatch):
+    monkeypatch.setattr(posterior, "TRUSTED", -np.inf)
+    (one,) = posterior.posterior(verdict.found.forward, verdict.found.final)
+    (drawn,) = verdict.posterior
+    assert one.how == draws.PROFILE
+    error = verdict.verdict.parameters["kuwabara-kono"]["time_us"].sigma
+    for share in (0.05, 0.95):
+        # Ten of 200 draws lie beyond either end: one more or less moves it by a tenth of a standard error.
+        assert one.quantile(share) == pytest.approx(drawn.quantile(share), abs=0.2 * error)
+
+
+def test_nothing_named_has_no_draws(tmp_path):
+    draws.write(tmp_path, ())
+    assert draws.read(tmp_path) == {}
+    assert list(tmp_path.iterdir()) == []
