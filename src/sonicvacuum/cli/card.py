@@ -5,22 +5,18 @@ import json
 import click
 
 from sonicvacuum.cli import existing
-from sonicvacuum.cli.helped import examples
+from sonicvacuum.cli.helped import WRITTEN, verb
 from sonicvacuum.cli.own_effects import catalogue, own_effects
 from sonicvacuum.files import InputError, replacing
 from sonicvacuum.outputs import check_apart
 
 
-@click.command(
-    epilog=examples(
-        "sonicvacuum card --case fig3a --variant matched --out card.json",
-    )
-)
+@verb("sonicvacuum card --case fig3a --variant matched --out card.json")
 @click.option("--config", "path", default="config.yaml", show_default=True, type=existing())
 @click.option("--case", help="Name of the case; without it, all cards are listed.")
 @click.option("--variant", default="nominal", show_default=True)
 @click.option("--model", type=existing(), help="model.json of discover, where the case asks for one.")
-@click.option("--out", type=click.Path(dir_okay=False), help="File to write; default: standard output.")
+@click.option("--out", type=WRITTEN, help="File to write; default: standard output.")
 @own_effects
 def card(path, case, variant, model, out, own):
     """Resolve one case of the configuration into a card (JSON, SI units)."""
@@ -58,11 +54,7 @@ def _cure(wanted):
     return f"takes the model of {wanted.record}; give --model with the model.json that discover wrote for it"
 
 
-@click.command(
-    epilog=examples(
-        "sonicvacuum materials",
-    )
-)
+@verb("sonicvacuum materials")
 def materials():
     """Print the built-in table of materials with its sources."""
     from sonicvacuum.materials import MATERIALS
@@ -74,13 +66,7 @@ def materials():
         click.echo(row)
 
 
-@click.command(
-    epilog=examples(
-        "sonicvacuum effects",
-        "sonicvacuum effects kuwabara-kono",
-        "sonicvacuum effects --effects my_law.py",
-    )
-)
+@verb("sonicvacuum effects", "sonicvacuum effects kuwabara-kono", "sonicvacuum effects --effects my_law.py")
 @click.argument("name", required=False)
 @own_effects
 def effects(name, own):
@@ -112,12 +98,8 @@ def effects(name, own):
         click.echo(f"{e.places:12} where it sits")
 
 
-@click.command(
-    epilog=examples(
-        "sonicvacuum schema --out config.schema.json",
-    )
-)
-@click.option("--out", type=click.Path(dir_okay=False), help="File to write; default: standard output.")
+@verb("sonicvacuum schema --out config.schema.json")
+@click.option("--out", type=WRITTEN, help="File to write; default: standard output.")
 def schema(out):
     """JSON schema of the configuration, for editors that complete and check while typing."""
     from sonicvacuum import config as configuration

@@ -5,18 +5,14 @@ from pathlib import Path
 import click
 
 from sonicvacuum.cli import existing
-from sonicvacuum.cli.helped import examples
+from sonicvacuum.cli.helped import WRITTEN, verb
 from sonicvacuum.cli.own_effects import catalogue, own_effects
 
 
-@click.command(
-    epilog=examples(
-        "sonicvacuum compare other-record --model found/model.json --json score.json",
-    )
-)
+@verb("sonicvacuum compare other-record --model found/model.json --json score.json")
 @click.argument("record", type=click.Path())
 @click.option("--model", required=True, type=existing(), help="model.json of sonicvacuum discover.")
-@click.option("--json", "path", required=True, type=click.Path(dir_okay=False), help="Score (JSON) to write.")
+@click.option("--json", "path", required=True, type=WRITTEN, help="Score (JSON) to write.")
 @click.option("--threads", type=click.IntRange(1), help="Threads; all processors by default.")
 @own_effects
 def compare(record, model, path, threads, own):

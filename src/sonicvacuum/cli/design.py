@@ -4,15 +4,13 @@ import json
 
 import click
 
-from sonicvacuum.cli.helped import examples
+from sonicvacuum.cli.helped import WRITTEN, verb
 from sonicvacuum.cli.predict import chain_options
 
 
-@click.command(
-    epilog=examples(
-        "sonicvacuum design --effects sensor-droop,kuwabara-kono --beads 12 --diameter 5mm "
-        "--material bearing-steel --speed 0.5"
-    )
+@verb(
+    "sonicvacuum design --effects sensor-droop,kuwabara-kono --beads 12 --diameter 5mm "
+    "--material bearing-steel --speed 0.5"
 )
 @click.option("--effects", required=True, metavar="A,B", help="To tell apart; ids: sonicvacuum effects.")
 @chain_options
@@ -21,7 +19,7 @@ from sonicvacuum.cli.predict import chain_options
 @click.option("--noise", type=float, default=0.01, show_default=True, help="Of a sample, over the peak.")
 @click.option("--echo/--no-echo", default=True, help="Whether the wall's reflection is recorded as well.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
-@click.option("--out", type=click.Path(dir_okay=False), help="Picture (.svg, .png, .pdf) to write as well.")
+@click.option("--out", type=WRITTEN, help="Picture (.svg, .png, .pdf) to write as well.")
 def design(as_json, out, **given):
     """Say where to put gauges and which runs to make, so that effects can be told apart, and from none."""
     if out:

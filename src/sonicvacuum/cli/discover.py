@@ -7,19 +7,17 @@ from pathlib import Path
 
 import click
 
-from sonicvacuum.cli.helped import examples
+from sonicvacuum.cli.helped import FOLDER, verb
 from sonicvacuum.cli.own_effects import catalogue, own_effects
 
 
-@click.command(
-    epilog=examples(
-        "sonicvacuum discover my-record --out found",
-        "sonicvacuum discover monday tuesday --together --out found",
-        "sonicvacuum discover records/* --out found --no-figures --quiet",
-    )
+@verb(
+    "sonicvacuum discover my-record --out found",
+    "sonicvacuum discover monday tuesday --together --out found",
+    "sonicvacuum discover records/* --out found --no-figures --quiet",
 )
 @click.argument("records", nargs=-1, required=True, type=click.Path())
-@click.option("--out", required=True, type=click.Path(file_okay=False), help="Folder to write.")
+@click.option("--out", required=True, type=FOLDER, help="Folder to write.")
 @click.option("--together", is_flag=True, help="RECORDS are of one chain and its gauges: one verdict on all.")
 @click.option(
     "--figures/--no-figures",

@@ -5,18 +5,16 @@ from pathlib import Path
 import click
 
 from sonicvacuum.cli import existing
-from sonicvacuum.cli.helped import examples
+from sonicvacuum.cli.helped import WRITTEN, verb
 from sonicvacuum.cli.own_effects import catalogue, own_effects
 
 NAMES = ("lammps", "liggghts", "yade", "mujoco", "drake", "all")
 
 
-@click.command(
+@verb(
+    "sonicvacuum export found/model.json --record my-record",
+    "sonicvacuum export --law tsuji --alpha 0.1 --mass_g 4 --diameter_mm 10 --material brass",
     context_settings={"ignore_unknown_options": True},
-    epilog=examples(
-        "sonicvacuum export found/model.json --record my-record",
-        "sonicvacuum export --law tsuji --alpha 0.1 --mass_g 4 --diameter_mm 10 --material brass",
-    ),
 )
 @click.argument("words", nargs=-1, type=click.UNPROCESSED, metavar="[MODEL]")
 @click.option("--record", type=click.Path(), help="Record of one ball (beads: 0) that the model is of.")
@@ -40,7 +38,7 @@ NAMES = ("lammps", "liggghts", "yade", "mujoco", "drake", "all")
     show_default=True,
     help="Of restitution, within which a nearest law counts as agreeing.",
 )
-@click.option("--out", type=click.Path(dir_okay=False), help="File to write; default: standard output.")
+@click.option("--out", type=WRITTEN, help="File to write; default: standard output.")
 @click.option("--json", "as_json", is_flag=True, help="For programs.")
 @own_effects
 def export(words, record, law, to, error, out, as_json, own, speeds, **ball):

@@ -1,7 +1,9 @@
-"""What help pages share: examples as they are typed, exit codes, completion; and which lock is in use."""
+"""What verbs share: examples as they are typed, exit codes, completion, types of paths; the lock in use."""
 
 import hashlib
 from pathlib import Path
+
+import click
 
 EXIT_CODES = """\b
 Exit codes:
@@ -12,6 +14,10 @@ Exit codes:
 COMPLETION = """\b
 Completion of verbs and options:
   eval "$(_SONICVACUUM_COMPLETE=bash_source sonicvacuum)"      # or zsh_source, fish_source"""
+# Paths: a file to write, a folder to write, a folder to read; a file to read is `sonicvacuum.cli.existing`.
+WRITTEN = click.Path(dir_okay=False)
+FOLDER = click.Path(file_okay=False)
+PRESENT = click.Path(exists=True, file_okay=False)
 # Digits of a SHA-256 that tell locks apart.
 DIGITS = 12
 
@@ -19,6 +25,11 @@ DIGITS = 12
 def examples(*lines: str) -> str:
     """Epilog of a verb: commands as they are typed, one a line, never wrapped."""
     return "\b\nExamples:\n" + "\n".join(f"  {line}" for line in lines)
+
+
+def verb(*lines: str, **settings):
+    """Decorator that makes a verb of a function, its examples at the end of its help."""
+    return click.command(epilog=examples(*lines), **settings)
 
 
 def locked() -> str:

@@ -4,16 +4,12 @@ from pathlib import Path
 
 import click
 
-from sonicvacuum.cli.helped import examples
+from sonicvacuum.cli.helped import PRESENT, verb
 from sonicvacuum.cli.own_effects import catalogue, own_effects
 
 
-@click.command(
-    epilog=examples(
-        "sonicvacuum page found",
-    )
-)
-@click.argument("folders", nargs=-1, required=True, type=click.Path(exists=True, file_okay=False))
+@verb("sonicvacuum page found")
+@click.argument("folders", nargs=-1, required=True, type=PRESENT)
 @own_effects
 def page(folders, own):
     """Draw the pictures of what discover wrote into FOLDERS, and write its page, index.html."""

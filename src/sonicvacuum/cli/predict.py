@@ -4,7 +4,7 @@ import json
 
 import click
 
-from sonicvacuum.cli.helped import examples
+from sonicvacuum.cli.helped import WRITTEN, verb
 
 # The chain to be built, as `predict` and `design` ask for it.
 _CHAIN = (
@@ -37,16 +37,14 @@ def chain_options(command):
     return command
 
 
-@click.command(
-    epilog=examples(
-        "sonicvacuum predict --beads 10 --diameter 20mm --material bearing-steel --speed 0.5",
-        "sonicvacuum predict --beads 10 --diameter 20mm --material bearing-steel --aim 5N --gauges 3,7,wall",
-    )
+@verb(
+    "sonicvacuum predict --beads 10 --diameter 20mm --material bearing-steel --speed 0.5",
+    "sonicvacuum predict --beads 10 --diameter 20mm --material bearing-steel --aim 5N --gauges 3,7,wall",
 )
 @chain_options
 @click.option("--aim", metavar="[GAUGE=]FORCE", help="Find the speed for this peak at the first gauge.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
-@click.option("--out", type=click.Path(dir_okay=False), help="Picture (.svg, .png, .pdf) to write as well.")
+@click.option("--out", type=WRITTEN, help="Picture (.svg, .png, .pdf) to write as well.")
 def predict(as_json, out, **given):
     """Say what a chain of equal beads will show: wave speed, forces, durations, arrivals, what to record."""
     if out:

@@ -2,7 +2,7 @@
 
 import click
 
-from sonicvacuum.cli.helped import examples
+from sonicvacuum.cli.helped import FOLDER, examples
 from sonicvacuum.cli.scope import import_
 
 
@@ -12,7 +12,7 @@ def record():
 
 
 @record.command(epilog=examples("sonicvacuum record new my-record"))
-@click.argument("folder", type=click.Path(file_okay=False))
+@click.argument("folder", type=FOLDER)
 def new(folder):
     """Write a commented record.yaml into FOLDER."""
     from sonicvacuum.records import commands

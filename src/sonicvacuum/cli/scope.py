@@ -5,22 +5,18 @@ import sys
 
 import click
 
-from sonicvacuum.cli.helped import examples
+from sonicvacuum.cli.helped import FOLDER, verb
 
 
-@click.command(
-    "import",
-    epilog=examples(
-        "sonicvacuum record import *.csv --list",
-        "sonicvacuum record import *.csv --record chain.yaml --channel CH1=g5 --scale g5=25N/V --out rec",
-    ),
+@verb(
+    "sonicvacuum record import *.csv --list",
+    "sonicvacuum record import *.csv --record chain.yaml --channel CH1=g5 --scale g5=25N/V --out rec",
+    name="import",
 )
 @click.argument("files", nargs=-1, type=click.Path())
 @click.option("--list", "listed", is_flag=True, help="Only say what is in FILES.")
 @click.option("--json", "as_json", is_flag=True, help="With --list: as JSON.")
-@click.option(
-    "--out", type=click.Path(file_okay=False), help="Folder to write record.yaml and CSV files into."
-)
+@click.option("--out", type=FOLDER, help="Folder to write record.yaml and CSV files into.")
 @click.option("--run", multiple=True, metavar="RUN=FILE,…", help="These files are one run of this name.")
 @click.option(
     "--channel",

@@ -4,16 +4,12 @@ import click
 
 from sonicvacuum.cli import existing, progress
 from sonicvacuum.cli.cards import read_card
-from sonicvacuum.cli.helped import examples
+from sonicvacuum.cli.helped import WRITTEN, verb
 from sonicvacuum.cli.own_effects import catalogue, own_effects
 from sonicvacuum.outputs import check_apart
 
 
-@click.command(
-    epilog=examples(
-        "sonicvacuum simulate card.json --out history.npz",
-    )
-)
+@verb("sonicvacuum simulate card.json --out history.npz")
 @click.argument("card", type=existing())
 @click.option(
     "--model",
@@ -23,7 +19,7 @@ from sonicvacuum.outputs import check_apart
 @click.option(
     "--no-limits", is_flag=True, help="Simulate even what seems to need more than a computer gives."
 )
-@click.option("--out", required=True, type=click.Path(dir_okay=False), help="History (.npz) to write.")
+@click.option("--out", required=True, type=WRITTEN, help="History (.npz) to write.")
 @own_effects
 def simulate(card, model, no_limits, out, own):
     """Integrate the chains of a CARD and keep the contact forces."""

@@ -4,23 +4,18 @@ from pathlib import Path
 
 import click
 
-from sonicvacuum.cli.helped import examples
+from sonicvacuum.cli.helped import PRESENT, WRITTEN, verb
 from sonicvacuum.outputs import check_apart
-from sonicvacuum_blind.cli.options import present
 
 _RULES = ("best-chi2", "bic", "nearest-shape", "forest", "state")
 
 
-@click.command(
-    epilog=examples(
-        "sonicvacuum blind baselines --records records --truth truth --verdicts found --out rules.csv",
-    )
-)
-@click.option("--records", required=True, type=present, help="Folder of the cases' records.")
-@click.option("--truth", required=True, type=present, help="Folder of truths.")
-@click.option("--verdicts", required=True, type=present, help="Folder of verdicts.")
-@click.option("--out", required=True, type=click.Path(dir_okay=False), help="Table (CSV) to write.")
-@click.option("--training", type=present, help="Folder with records/, truth/ and verdicts/ to learn from.")
+@verb("sonicvacuum blind baselines --records records --truth truth --verdicts found --out rules.csv")
+@click.option("--records", required=True, type=PRESENT, help="Folder of the cases' records.")
+@click.option("--truth", required=True, type=PRESENT, help="Folder of truths.")
+@click.option("--verdicts", required=True, type=PRESENT, help="Folder of verdicts.")
+@click.option("--out", required=True, type=WRITTEN, help="Table (CSV) to write.")
+@click.option("--training", type=PRESENT, help="Folder with records/, truth/ and verdicts/ to learn from.")
 @click.option(
     "--rule",
     "wanted",

@@ -4,16 +4,11 @@ from pathlib import Path
 
 import click
 
-from sonicvacuum.cli.helped import examples
-from sonicvacuum_blind.cli.options import present
+from sonicvacuum.cli.helped import FOLDER, PRESENT, verb
 
 
-@click.command(
-    epilog=examples(
-        "sonicvacuum blind draw figures/blind --picture accuracy --out pictures",
-    )
-)
-@click.argument("folder", type=present)
+@verb("sonicvacuum blind draw figures/blind --picture accuracy --out pictures")
+@click.argument("folder", type=PRESENT)
 @click.option(
     "--picture",
     "wanted",
@@ -21,7 +16,7 @@ from sonicvacuum_blind.cli.options import present
     type=click.Choice(["confusion", "accuracy", "reliability", "baselines"]),
     help="Only these; repeat.",
 )
-@click.option("--out", type=click.Path(file_okay=False), help="Folder for the pictures instead of FOLDER.")
+@click.option("--out", type=FOLDER, help="Folder for the pictures instead of FOLDER.")
 @click.option("--prefix", default="", help="Put before their names.")
 def draw(folder, wanted, out, prefix):
     """Draw the tables of a blind study in FOLDER: confusion, accuracy, reliability, baselines."""

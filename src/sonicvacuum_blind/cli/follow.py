@@ -5,20 +5,16 @@ from pathlib import Path
 import click
 
 from sonicvacuum.cli import existing
-from sonicvacuum.cli.helped import examples
+from sonicvacuum.cli.helped import FOLDER, PRESENT, verb
 from sonicvacuum.files import InputError
-from sonicvacuum_blind.cli.options import STUDIES, batch_of, folder, present
+from sonicvacuum_blind.cli.options import STUDIES, batch_of
 
 
-@click.command(
-    epilog=examples(
-        "sonicvacuum blind follow --study small --verdicts found --choice proposed --records further",
-    )
-)
+@verb("sonicvacuum blind follow --study small --verdicts found --choice proposed --records further")
 @click.option("--study", type=STUDIES, help="A fixed list of cases.")
 @click.option("--cases", "path", type=existing(), help="List of cases (CSV), instead of --study.")
-@click.option("--verdicts", required=True, type=present, help="Folder of the verdicts on their records.")
-@click.option("--records", "out", required=True, type=folder, help="Folder for the records of further runs.")
+@click.option("--verdicts", required=True, type=PRESENT, help="Folder of the verdicts on their records.")
+@click.option("--records", "out", required=True, type=FOLDER, help="Folder for the records of further runs.")
 @click.option(
     "--choice",
     required=True,

@@ -5,27 +5,23 @@ from pathlib import Path
 import click
 
 from sonicvacuum.cli import existing
-from sonicvacuum.cli.helped import examples
+from sonicvacuum.cli.helped import FOLDER, WRITTEN, verb
 from sonicvacuum.files import InputError
 from sonicvacuum.outputs import check_apart
-from sonicvacuum_blind.cli.options import STUDIES, batch_of, folder
+from sonicvacuum_blind.cli.options import STUDIES, batch_of
 
 
-@click.command(
-    epilog=examples(
-        "sonicvacuum blind hide --study small --list cases.csv",
-        "sonicvacuum blind hide --study small --batch 0/4 --records records --truth truth",
-    )
+@verb(
+    "sonicvacuum blind hide --study small --list cases.csv",
+    "sonicvacuum blind hide --study small --batch 0/4 --records records --truth truth",
 )
 @click.option("--study", type=STUDIES, help="A fixed list of cases.")
 @click.option("--cases", "path", type=existing(), help="List of cases (CSV), instead of --study.")
-@click.option(
-    "--list", "listing", type=click.Path(dir_okay=False), help="Write the list of cases (CSV) only."
-)
+@click.option("--list", "listing", type=WRITTEN, help="Write the list of cases (CSV) only.")
 @click.option("--batch", default="0/1", show_default=True, help="k/n: every n-th case from the k-th on.")
-@click.option("--records", "records_folder", type=folder, help="Folder for the records, one for each case.")
+@click.option("--records", "records_folder", type=FOLDER, help="Folder for the records, one for each case.")
 @click.option(
-    "--truth", "truth_folder", type=folder, help="Folder for the truth; keep it away from discover."
+    "--truth", "truth_folder", type=FOLDER, help="Folder for the truth; keep it away from discover."
 )
 def hide(study, path, listing, batch, records_folder, truth_folder):
     """Make records in which an effect is hidden, and keep the truth elsewhere."""

@@ -6,8 +6,6 @@ import click
 
 from sonicvacuum.files import InputError
 
-folder = click.Path(file_okay=False)
-present = click.Path(exists=True, file_okay=False)
 STUDIES = click.Choice(["small", "full", "training"])
 
 

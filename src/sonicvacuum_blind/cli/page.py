@@ -5,21 +5,15 @@ from pathlib import Path
 import click
 
 from sonicvacuum.cli import existing
-from sonicvacuum.cli.helped import examples
+from sonicvacuum.cli.helped import PRESENT, WRITTEN, verb
 from sonicvacuum.files import replacing
 
 
-@click.command(
-    epilog=examples(
-        "sonicvacuum blind page --small results/blind/small/summary.csv --out blind.html",
-    )
-)
+@verb("sonicvacuum blind page --small results/blind/small/summary.csv --out blind.html")
 @click.option("--small", type=existing(), help="Summary of the small study.")
-@click.option(
-    "--full", type=click.Path(exists=True, file_okay=False), help="Folder of the full one's tables."
-)
+@click.option("--full", type=PRESENT, help="Folder of the full one's tables.")
 @click.option("--picture", "pictures", multiple=True, type=existing(), help="SVG of the full study; repeat.")
-@click.option("--out", required=True, type=click.Path(dir_okay=False), help="Page (HTML) to write.")
+@click.option("--out", required=True, type=WRITTEN, help="Page (HTML) to write.")
 def page(small, full, pictures, out):
     """Write the page of the blind studies."""
     from sonicvacuum_blind import kept

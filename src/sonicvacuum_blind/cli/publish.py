@@ -5,19 +5,14 @@ from pathlib import Path
 import click
 
 from sonicvacuum.cli import existing
-from sonicvacuum.cli.helped import examples
+from sonicvacuum.cli.helped import FOLDER, PRESENT, verb
 from sonicvacuum.outputs import check_apart
-from sonicvacuum_blind.cli.options import present
 
 
-@click.command(
-    epilog=examples(
-        "sonicvacuum blind publish results/blind/full --page docs/study.md --keep figures/blind",
-    )
-)
-@click.argument("folder", type=present)
+@verb("sonicvacuum blind publish results/blind/full --page docs/study.md --keep figures/blind")
+@click.argument("folder", type=PRESENT)
 @click.option("--page", required=True, type=existing(), help="Page (Markdown) whose tables are renewed.")
-@click.option("--keep", required=True, type=click.Path(file_okay=False), help="Where the tables are kept.")
+@click.option("--keep", required=True, type=FOLDER, help="Where the tables are kept.")
 def publish(folder, page, keep):
     """Keep the tables of the blind study in FOLDER in git, and on their page."""
     from sonicvacuum_blind import report

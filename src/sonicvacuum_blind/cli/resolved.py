@@ -2,34 +2,30 @@
 
 import click
 
-from sonicvacuum.cli.helped import examples
+from sonicvacuum.cli.helped import PRESENT, WRITTEN, verb
 from sonicvacuum.outputs import check_apart
-from sonicvacuum_blind.cli.options import present, say
+from sonicvacuum_blind.cli.options import say
 
 
-@click.command(
-    epilog=examples(
-        "sonicvacuum blind resolved --truth truth --verdicts found --proposed further joint \\",
-        "    --random drawn joint-drawn --out resolved.csv --summary summary.csv",
-    )
+@verb(
+    "sonicvacuum blind resolved --truth truth --verdicts found --proposed further joint \\",
+    "    --random drawn joint-drawn --out resolved.csv --summary summary.csv",
 )
-@click.option("--truth", required=True, type=present, help="Folder of truths.")
-@click.option("--verdicts", required=True, type=present, help="Folder of verdicts on the first records.")
+@click.option("--truth", required=True, type=PRESENT, help="Folder of truths.")
+@click.option("--verdicts", required=True, type=PRESENT, help="Folder of verdicts on the first records.")
 @click.option(
     "--proposed",
     required=True,
     nargs=2,
-    type=present,
+    type=PRESENT,
     metavar="RECORDS JOINT",
     help="Folders of the proposed runs' records and of the verdicts on them together with the first ones.",
 )
 @click.option(
-    "--random", required=True, nargs=2, type=present, metavar="RECORDS JOINT", help="The same of random runs."
+    "--random", required=True, nargs=2, type=PRESENT, metavar="RECORDS JOINT", help="The same of random runs."
 )
-@click.option(
-    "--out", required=True, type=click.Path(dir_okay=False), help="Row of each case (CSV) to write."
-)
-@click.option("--summary", required=True, type=click.Path(dir_okay=False), help="Table (CSV) to write.")
+@click.option("--out", required=True, type=WRITTEN, help="Row of each case (CSV) to write.")
+@click.option("--summary", required=True, type=WRITTEN, help="Table (CSV) to write.")
 def resolved(truth, verdicts, proposed, random, out, summary):
     """Count the ambiguous cases that one more run decides: the proposed one, and a random one."""
     from sonicvacuum_blind import resolved as counting

@@ -4,25 +4,19 @@ from pathlib import Path
 
 import click
 
-from sonicvacuum.cli.helped import examples
+from sonicvacuum.cli.helped import FOLDER, PRESENT, WRITTEN, verb
 from sonicvacuum.outputs import check_apart
-from sonicvacuum_blind.cli.options import folder, present, say
+from sonicvacuum_blind.cli.options import say
 
 
-@click.command(
-    epilog=examples(
-        "sonicvacuum blind score --truth truth --verdicts found --out scores.csv --summary summary.csv",
-    )
-)
-@click.option("--truth", required=True, type=present, help="Folder of truths.")
-@click.option("--verdicts", required=True, type=present, help="Folder of verdicts.")
-@click.option(
-    "--out", required=True, type=click.Path(dir_okay=False), help="Score of each case (CSV) to write."
-)
-@click.option("--summary", required=True, type=click.Path(dir_okay=False), help="Table (CSV) to write.")
+@verb("sonicvacuum blind score --truth truth --verdicts found --out scores.csv --summary summary.csv")
+@click.option("--truth", required=True, type=PRESENT, help="Folder of truths.")
+@click.option("--verdicts", required=True, type=PRESENT, help="Folder of verdicts.")
+@click.option("--out", required=True, type=WRITTEN, help="Score of each case (CSV) to write.")
+@click.option("--summary", required=True, type=WRITTEN, help="Table (CSV) to write.")
 @click.option(
     "--tables",
-    type=folder,
+    type=FOLDER,
     help="Folder for the tables in detail: confusion, accuracy, reliability, coverage, seconds (CSV).",
 )
 def score(truth, verdicts, out, summary, tables):

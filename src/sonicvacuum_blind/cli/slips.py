@@ -6,28 +6,26 @@ from pathlib import Path
 
 import click
 
-from sonicvacuum.cli.helped import examples
+from sonicvacuum.cli.helped import FOLDER, PRESENT, WRITTEN, verb
 from sonicvacuum.outputs import check_apart
 from sonicvacuum_blind.cli.hide import check_truth
-from sonicvacuum_blind.cli.options import batch_of, folder, present, say
+from sonicvacuum_blind.cli.options import batch_of, say
 
 
-@click.command(
-    epilog=examples("sonicvacuum blind slips --records slips/records --truth slips/truth --batch 0/8")
-)
+@verb("sonicvacuum blind slips --records slips/records --truth slips/truth --batch 0/8")
 @click.option("--batch", default="0/1", show_default=True, help="k/n: every n-th case from the k-th on.")
 @click.option(
     "--records",
     "records_folder",
     required=True,
-    type=folder,
+    type=FOLDER,
     help="Folder for the records, one for each case.",
 )
 @click.option(
     "--truth",
     "truth_folder",
     required=True,
-    type=folder,
+    type=FOLDER,
     help="Folder for the truth; keep it away from discover.",
 )
 def slips(batch, records_folder, truth_folder):
@@ -45,19 +43,15 @@ def slips(batch, records_folder, truth_folder):
         click.echo(case.id)
 
 
-@click.command(
+@verb(
+    "sonicvacuum blind slips-score --truth slips/truth --verdicts slips/verdicts"
+    " --out slips/records.csv --summary slips/summary.csv",
     name="slips-score",
-    epilog=examples(
-        "sonicvacuum blind slips-score --truth slips/truth --verdicts slips/verdicts"
-        " --out slips/records.csv --summary slips/summary.csv"
-    ),
 )
-@click.option("--truth", required=True, type=present, help="Folder of truths.")
-@click.option("--verdicts", required=True, type=present, help="Folder of verdicts.")
-@click.option(
-    "--out", required=True, type=click.Path(dir_okay=False), help="Row of each record (CSV) to write."
-)
-@click.option("--summary", required=True, type=click.Path(dir_okay=False), help="Table (CSV) to write.")
+@click.option("--truth", required=True, type=PRESENT, help="Folder of truths.")
+@click.option("--verdicts", required=True, type=PRESENT, help="Folder of verdicts.")
+@click.option("--out", required=True, type=WRITTEN, help="Row of each record (CSV) to write.")
+@click.option("--summary", required=True, type=WRITTEN, help="Table (CSV) to write.")
 def slips_score(truth, verdicts, out, summary):
     """Count which slips are named, and which effects, rightly and wrongly."""
     from sonicvacuum_blind import slip_score

@@ -2,17 +2,13 @@
 
 import click
 
-from sonicvacuum.cli.helped import examples
+from sonicvacuum.cli.helped import WRITTEN, verb
 from sonicvacuum.files import replacing
 
 
-@click.command(
-    epilog=examples(
-        "sonicvacuum paper animate solitary --out solitary.svg",
-    )
-)
+@verb("sonicvacuum paper animate solitary --out solitary.svg")
 @click.argument("name")
-@click.option("--out", required=True, type=click.Path(dir_okay=False), help="Moving picture (SVG) to write.")
+@click.option("--out", required=True, type=WRITTEN, help="Moving picture (SVG) to write.")
 def animate(name, out):
     """Write the moving picture NAME (solitary or train)."""
     from sonicvacuum_paper.report.animation import animation

@@ -6,22 +6,16 @@ import click
 
 from sonicvacuum.cli import existing
 from sonicvacuum.cli.cards import read_card
-from sonicvacuum.cli.helped import examples
+from sonicvacuum.cli.helped import FOLDER, PRESENT, verb
 from sonicvacuum.outputs import check_apart
 
-_FOLDER = click.Path(exists=True, file_okay=False)
 
-
-@click.command(
-    epilog=examples(
-        "sonicvacuum paper draw fig3 --cards results/cards --histories results/histories --out figures",
-    )
-)
+@verb("sonicvacuum paper draw fig3 --cards results/cards --histories results/histories --out figures")
 @click.argument("figure")
-@click.option("--cards", required=True, type=_FOLDER, help="Folder of resolved cards.")
-@click.option("--histories", required=True, type=_FOLDER, help="Folder of their simulations.")
+@click.option("--cards", required=True, type=PRESENT, help="Folder of resolved cards.")
+@click.option("--histories", required=True, type=PRESENT, help="Folder of their simulations.")
 @click.option("--points", multiple=True, type=existing(), help="Points read off the paper (YAML); repeat.")
-@click.option("--out", required=True, type=click.Path(file_okay=False), help="Folder for CSV, SVG and PNG.")
+@click.option("--out", required=True, type=FOLDER, help="Folder for CSV, SVG and PNG.")
 def draw(figure, cards, histories, points, out):
     """Draw FIGURE (fig3, fig4, fig5 or fig6) of simulated cards."""
     from sonicvacuum import simulation
@@ -37,11 +31,7 @@ def draw(figure, cards, histories, points, out):
     figures.make(figure, simulations, out, [digitised.read(path) for path in points])
 
 
-@click.command(
-    epilog=examples(
-        "sonicvacuum paper digitised fig4-points.yaml --figure results/figures/fig4.csv",
-    )
-)
+@verb("sonicvacuum paper digitised fig4-points.yaml --figure results/figures/fig4.csv")
 @click.argument("points", type=existing())
 @click.option("--figure", required=True, type=existing(), help="Numbers of its figure (CSV).")
 def digitised(points, figure):

@@ -3,23 +3,19 @@
 import click
 
 from sonicvacuum.cli import existing
-from sonicvacuum.cli.helped import examples
+from sonicvacuum.cli.helped import WRITTEN, verb
 from sonicvacuum.outputs import check_apart
 
 _FILE = existing()
 _CONFIG = click.option("--config", "path", default="config.yaml", show_default=True, type=_FILE)
 
 
-@click.command(
-    epilog=examples(
-        "sonicvacuum paper ledger metrics.csv --claims workflow/resources/claims.csv --out ledger.csv",
-    )
-)
+@verb("sonicvacuum paper ledger metrics.csv --claims workflow/resources/claims.csv --out ledger.csv")
 @click.argument("metrics", type=_FILE)
 @click.option("--claims", required=True, type=_FILE, help="Table of the paper's claims.")
 @_CONFIG
 @click.option("--uncertainty", "probable", type=_FILE, help="Probabilities from `paper uncertainty`.")
-@click.option("--out", required=True, type=click.Path(dir_okay=False), help="Ledger (CSV) to write.")
+@click.option("--out", required=True, type=WRITTEN, help="Ledger (CSV) to write.")
 def ledger(metrics, claims, path, probable, out):
     """Hold the claims against METRICS."""
     from sonicvacuum import config as configuration
@@ -29,15 +25,11 @@ def ledger(metrics, claims, path, probable, out):
     write_ledger(metrics, claims, configuration.read(path), out, probable)
 
 
-@click.command(
-    epilog=examples(
-        "sonicvacuum paper audit metrics.csv --assumptions assumptions.csv --out audit.csv",
-    )
-)
+@verb("sonicvacuum paper audit metrics.csv --assumptions assumptions.csv --out audit.csv")
 @click.argument("metrics", type=_FILE)
 @click.option("--assumptions", required=True, type=_FILE, help="Table of the assumptions.")
 @_CONFIG
-@click.option("--out", required=True, type=click.Path(dir_okay=False), help="Audit (CSV) to write.")
+@click.option("--out", required=True, type=WRITTEN, help="Audit (CSV) to write.")
 def audit(metrics, assumptions, path, out):
     """Hold the assumptions against METRICS."""
     from sonicvacuum import config as configuration

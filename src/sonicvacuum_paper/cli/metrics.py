@@ -3,18 +3,14 @@
 import click
 
 from sonicvacuum.cli import existing
-from sonicvacuum.cli.helped import examples
+from sonicvacuum.cli.helped import WRITTEN, verb
 from sonicvacuum.outputs import check_apart
 
 
-@click.command(
-    epilog=examples(
-        "sonicvacuum paper metrics results/metrics/*.csv --out metrics.csv",
-    )
-)
+@verb("sonicvacuum paper metrics results/metrics/*.csv --out metrics.csv")
 @click.argument("files", nargs=-1, required=True, type=existing())
 @click.option("--config", "path", default="config.yaml", show_default=True, type=existing())
-@click.option("--out", required=True, type=click.Path(dir_okay=False), help="All metrics (CSV) to write.")
+@click.option("--out", required=True, type=WRITTEN, help="All metrics (CSV) to write.")
 def metrics(files, path, out):
     """Gather the metrics of all cards (FILES) and add those of theory, arithmetic, audit and comparison."""
     from sonicvacuum import config

@@ -4,23 +4,17 @@ import click
 
 from sonicvacuum.cli import existing
 from sonicvacuum.cli.cards import read_card
-from sonicvacuum.cli.helped import examples
+from sonicvacuum.cli.helped import WRITTEN, verb
 from sonicvacuum.cli.own_effects import catalogue, own_effects
 from sonicvacuum.files import replacing
 from sonicvacuum.outputs import check_apart
 
 
-@click.command(
-    epilog=examples(
-        "sonicvacuum paper observe card.json history.npz --signals signals.csv --metrics metrics.csv",
-    )
-)
+@verb("sonicvacuum paper observe card.json history.npz --signals signals.csv --metrics metrics.csv")
 @click.argument("card", type=existing())
 @click.argument("history", type=existing())
-@click.option(
-    "--signals", required=True, type=click.Path(dir_okay=False), help="Gauge readings (CSV) to write."
-)
-@click.option("--metrics", required=True, type=click.Path(dir_okay=False), help="Metrics (CSV) to write.")
+@click.option("--signals", required=True, type=WRITTEN, help="Gauge readings (CSV) to write.")
+@click.option("--metrics", required=True, type=WRITTEN, help="Metrics (CSV) to write.")
 @own_effects
 def observe(card, history, signals, metrics, own):
     """Read the gauges of a simulated CARD's HISTORY and measure the pulses."""

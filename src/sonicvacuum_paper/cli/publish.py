@@ -3,32 +3,26 @@
 import click
 
 from sonicvacuum.cli import existing
-from sonicvacuum.cli.helped import examples
+from sonicvacuum.cli.helped import WRITTEN, verb
 from sonicvacuum.files import InputError, replacing
 from sonicvacuum.outputs import check_apart
 
 _FILE = existing()
 
 
-@click.command(
-    epilog=examples(
-        "sonicvacuum paper publish --ledger results/ledger.csv --claims workflow/resources/claims.csv \\",
-        "    --readme README.md --guide figures/README.md --reference ledger.csv",
-    )
+@verb(
+    "sonicvacuum paper publish --ledger results/ledger.csv --claims workflow/resources/claims.csv \\",
+    "    --readme README.md --guide figures/README.md --reference ledger.csv",
 )
 @click.option("--ledger", required=True, type=_FILE)
 @click.option("--claims", required=True, type=_FILE, help="Table of the paper's claims.")
 @click.option("--readme", required=True, type=_FILE, help="README whose result table is renewed.")
-@click.option(
-    "--guide", required=True, type=click.Path(dir_okay=False), help="Guide to the figures (Markdown)."
-)
-@click.option(
-    "--reference", required=True, type=click.Path(dir_okay=False), help="Where the ledger is kept in git."
-)
+@click.option("--guide", required=True, type=WRITTEN, help="Guide to the figures (Markdown).")
+@click.option("--reference", required=True, type=WRITTEN, help="Where the ledger is kept in git.")
 @click.option("--benchmark", type=_FILE, help="Table of the benchmark (Markdown), where one was made.")
 @click.option("--speeds", type=_FILE, help="Page (Markdown) whose benchmark is renewed.")
 @click.option("--study", type=_FILE, help="Scores of the small blind study.")
-@click.option("--naming", type=click.Path(dir_okay=False), help="Where its naming is kept in git.")
+@click.option("--naming", type=WRITTEN, help="Where its naming is kept in git.")
 def publish(ledger, claims, readme, guide, reference, benchmark, speeds, study, naming):
     """Keep the ledger as the reference of later checks; renew the README's table and the figures' guide."""
     from sonicvacuum_paper.report import guide as figure_guide

@@ -6,21 +6,17 @@ import click
 
 from sonicvacuum.cli import existing
 from sonicvacuum.cli.cards import read_card
-from sonicvacuum.cli.helped import examples
+from sonicvacuum.cli.helped import PRESENT, WRITTEN, verb
 from sonicvacuum.files import replacing
 from sonicvacuum.outputs import check_apart
 from sonicvacuum_paper.cli.studies import loaded
 
 _FILE = existing()
-_FOLDER = click.Path(exists=True, file_okay=False)
-_OUT = click.Path(dir_okay=False)
 
 
-@click.command(
-    epilog=examples(
-        "sonicvacuum paper report --ledger ledger.csv --assumptions audit.csv --metrics metrics.csv \\",
-        "    --claims workflow/resources/claims.csv --figure figures/fig3.svg --out report.html",
-    )
+@verb(
+    "sonicvacuum paper report --ledger ledger.csv --assumptions audit.csv --metrics metrics.csv \\",
+    "    --claims workflow/resources/claims.csv --figure figures/fig3.svg --out report.html",
 )
 @click.option("--ledger", required=True, type=_FILE)
 @click.option("--assumptions", required=True, type=_FILE)
@@ -32,10 +28,10 @@ _OUT = click.Path(dir_okay=False)
 @click.option("--card", "cards", multiple=True, type=_FILE, help="Resolved card; repeat.")
 @click.option("--lock", "locks", multiple=True, type=_FILE, help="Lock file of the environment; repeat.")
 @click.option(
-    "--discovery", "discoveries", multiple=True, type=_FOLDER, help="Folder that discover wrote; repeat."
+    "--discovery", "discoveries", multiple=True, type=PRESENT, help="Folder that discover wrote; repeat."
 )
-@click.option("--blind-full", type=_FOLDER, help="Folder of the full blind study's tables.")
-@click.option("--histories", type=_FOLDER, help="Simulated cards; those of your own cases are shown.")
+@click.option("--blind-full", type=PRESENT, help="Folder of the full blind study's tables.")
+@click.option("--histories", type=PRESENT, help="Simulated cards; those of your own cases are shown.")
 @click.option("--animation", "animations", multiple=True, type=_FILE, help="SVG that moves; repeat.")
 @click.option("--linked", multiple=True, help="Name of a page beside this one; repeat.")
 @click.option("--map", "contours", type=_FILE, help="Map from `paper rivals`.")
@@ -44,7 +40,7 @@ _OUT = click.Path(dir_okay=False)
 @click.option("--relaxation", type=_FILE, help="Solids from `paper rivals`.")
 @click.option("--losses", type=_FILE, help="Laws of loss from `paper rivals`.")
 @click.option("--explained", type=_FILE, help="Fits to the paper's record from `paper rivals`.")
-@click.option("--out", required=True, type=_OUT, help="Page (HTML) to write.")
+@click.option("--out", required=True, type=WRITTEN, help="Page (HTML) to write.")
 def report(cards, histories, out, **given):
     """Write the self-contained page with figures, ledger, audit, discoveries and provenance."""
     from sonicvacuum_paper.report import page

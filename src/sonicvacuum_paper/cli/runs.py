@@ -3,25 +3,16 @@
 import click
 
 from sonicvacuum.cli import existing
-from sonicvacuum.cli.helped import examples
+from sonicvacuum.cli.helped import PRESENT, WRITTEN, verb
 from sonicvacuum.files import replacing
 from sonicvacuum_paper.cli.studies import loaded
 
 
-@click.command(
-    epilog=examples(
-        "sonicvacuum paper runs card.json --histories histories --metrics metrics.csv --out runs.html",
-    )
-)
+@verb("sonicvacuum paper runs card.json --histories histories --metrics metrics.csv --out runs.html")
 @click.argument("cards", nargs=-1, required=True, type=existing())
-@click.option(
-    "--histories",
-    required=True,
-    type=click.Path(exists=True, file_okay=False),
-    help="Folder of their simulations.",
-)
+@click.option("--histories", required=True, type=PRESENT, help="Folder of their simulations.")
 @click.option("--metrics", required=True, type=existing())
-@click.option("--out", required=True, type=click.Path(dir_okay=False), help="Page (HTML) to write.")
+@click.option("--out", required=True, type=WRITTEN, help="Page (HTML) to write.")
 def runs(cards, histories, metrics, out):
     """Write the page of every run of CARDS: space-time maps linked to the gauges, and numbers."""
     from sonicvacuum_paper.report import runs as page

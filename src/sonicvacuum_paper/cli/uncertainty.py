@@ -3,22 +3,18 @@
 import click
 
 from sonicvacuum.cli import existing
-from sonicvacuum.cli.helped import examples
+from sonicvacuum.cli.helped import WRITTEN, verb
 from sonicvacuum.outputs import check_apart
 
 _FILE = existing()
 
 
-@click.command(
-    epilog=examples(
-        "sonicvacuum paper uncertainty --claims workflow/resources/claims.csv --draws 50 --out probable.csv",
-    )
-)
+@verb("sonicvacuum paper uncertainty --claims workflow/resources/claims.csv --draws 50 --out probable.csv")
 @click.option("--claims", required=True, type=_FILE, help="Table of the paper's claims.")
 @click.option("--config", "path", default="config.yaml", show_default=True, type=_FILE)
 @click.option("--draws", type=click.IntRange(min=2), help="Number of draws; default as in the report.")
 @click.option("--named", multiple=True, type=_FILE, help="Card with the model that discover names; repeat.")
-@click.option("--out", required=True, type=click.Path(dir_okay=False), help="Probabilities (CSV) to write.")
+@click.option("--out", required=True, type=WRITTEN, help="Probabilities (CSV) to write.")
 def uncertainty(claims, path, draws, named, out):
     """Find how probable each statement of the paper is under each model."""
     from sonicvacuum import config as configuration
