@@ -11,7 +11,7 @@ import numpy as np
 from sonicvacuum.files import InputError
 from sonicvacuum_blind.followup import CHOICES, FILE
 from sonicvacuum_blind.score import Line, found_in, load
-from sonicvacuum_blind.shares import ratio_of_sums, share
+from sonicvacuum_blind.shares import counted, ratio_of_sums
 
 
 @dataclass(frozen=True)
@@ -125,24 +125,18 @@ def summary(rows: Iterable[Followed]) -> list[Line]:
     both = [id for id in of["proposed"] if id in of["random"]]
     goals = {"proposed": ">= 0.8"}
     lines = [
-        _line("resolved by one more run", c, [r.resolved for r in of[c].values()], goals.get(c, ""))
+        counted("resolved by one more run", c, (r.resolved for r in of[c].values()), goals.get(c, ""))
         for c in CHOICES
     ]
     if any(of["random"][id].resolved for id in both):
         hits = (np.array([of[c][id].resolved for id in both]) for c in CHOICES)
-        lines.append(_of("resolved, ratio", "proposed over random", len(both), ratio_of_sums(*hits), ">= 2"))
+        found = ratio_of_sums(*hits)
+        lines.append(Line("resolved, ratio", "proposed over random", len(both), *found, goal=">= 2"))
     for one, other in (CHOICES, CHOICES[::-1]):
         alone = [of[one][id].resolved and not of[other][id].resolved for id in both]
-        lines.append(_line("resolved by this run alone", one, alone))
+        lines.append(counted("resolved by this run alone", one, alone))
     before = {r.id: r.exact_before for r in rows}
-    lines.append(_line("exact name of ambiguous cases", "before", list(before.values())))
-    lines += [_line("exact name of ambiguous cases", c, [r.exact for r in of[c].values()]) for c in CHOICES]
-    return lines
-
-
-def _line(measure, group, hits, goal=""):
-    return _of(measure, group, len(hits), share(int(sum(hits)), len(hits)), goal)
-
-
-def _of(measure, group, count, found, goal):
-    return Line(measure, group, count, *found, math.nan, math.nan, goal)
+    lines.append(counted("exact name of ambiguous cases", "before", before.values()))
+    return lines + [
+        counted("exact name of ambiguous cases", c, (r.exact for r in of[c].values())) for c in CHOICES
+    ]

@@ -223,9 +223,9 @@ class Line:
     value: float
     low: float
     high: float
-    ideal: float
-    of_ideal: float
-    goal: str
+    ideal: float = math.nan
+    of_ideal: float = math.nan
+    goal: str = ""
 
 
 def write_table(lines: list, kind: type, path) -> None:

@@ -1,11 +1,12 @@
 """Shares and quantiles of the cases of a study with their 95 % intervals."""
 
 import math
+from collections.abc import Iterable
 
 import numpy as np
 from scipy import stats
 
-from sonicvacuum_blind.score import Row
+from sonicvacuum_blind.score import Line, Row
 from sonicvacuum_blind.study import STRENGTHS
 
 CONFIDENCE = 0.95
@@ -22,6 +23,12 @@ def wilson(successes: int, count: int) -> tuple[float, float]:
 def share(hits: int, count: int) -> tuple[float, float, float]:
     """A share with its interval; NaN without cases."""
     return (hits / count if count else math.nan, *wilson(hits, count))
+
+
+def counted(measure: str, group: str, hits: Iterable[int], goal: str = "") -> Line:
+    """A line of a summary: the share of ones among hits, 1 or 0 for each case."""
+    hits = list(hits)
+    return Line(measure, group, len(hits), *share(int(sum(hits)), len(hits)), goal=goal)
 
 
 def quantile(values, level: float) -> tuple[int, float, float, float]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from sonicvacuum.files import InputError
 from sonicvacuum_blind.hide import TRUTH
 from sonicvacuum_blind.score import UNKNOWN, Line, confidently, found_in, load
-from sonicvacuum_blind.shares import quantile, share
+from sonicvacuum_blind.shares import counted, quantile
 from sonicvacuum_blind.slips import SLIPS
 
 # A slip that the record's own errors explain up to this d′ cannot be told from them.
@@ -143,10 +143,8 @@ def summary(rows: Iterable[SlipRow]) -> list[Line]:
 
 
 def _share(measure, group, rows, what, goal=""):
-    found = share(sum(getattr(r, what) for r in rows), len(rows))
-    return Line(measure, group, len(rows), *found, math.nan, math.nan, goal)
+    return counted(measure, group, (getattr(r, what) for r in rows), goal)
 
 
 def _seconds(rows, group, level):
-    found = quantile([r.seconds for r in rows], level)
-    return Line("seconds per record", group, *found, math.nan, math.nan, "")
+    return Line("seconds per record", group, *quantile([r.seconds for r in rows], level))

@@ -1,13 +1,14 @@
 """The summary of a study: what is asked of the method, as measured, beside what an ideal rule could reach."""
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
+from dataclasses import replace
 
 import numpy as np
 
 from sonicvacuum_blind.breakdown import KINDS, ideal_share, reliability
 from sonicvacuum_blind.score import Line, Row
-from sonicvacuum_blind.shares import quantile, ratio_of_sums, share, strength_bin
+from sonicvacuum_blind.shares import counted, quantile, ratio_of_sums, share, strength_bin
 from sonicvacuum_blind.study import STRENGTHS
 
 
@@ -31,15 +32,15 @@ def summary(rows: Iterable[Row]) -> list[Line]:
 
 def _nulls(rows):
     for noise, goal in (("white", "<= 0.01"), ("ar1", "<= 0.02"), ("quantised", "<= 0.02")):
-        yield _share("named on null", noise, [r for r in rows if r.noise == noise], _false_alarm, goal)
-    yield _share("unknown on null", "all", rows, _says_unknown)
+        yield _share("named on null", noise, [r for r in rows if r.noise == noise], "false_alarm", goal)
+    yield _share("unknown on null", "all", rows, "says_unknown")
 
 
 def _singles(rows, strong):
     goals = dict(zip(STRENGTHS, (">= 0.77", ">= 0.91", ">= 0.95", ">= 0.99"), strict=True))
     for strength, goal in goals.items():
         chosen = [r for r in rows if r.design == "traces" and strength_bin(r) == strength]
-        yield _share("exact name", f"traces, d' {strength:g}", chosen, _exact, goal)
+        yield _share("exact name", f"traces, d' {strength:g}", chosen, "exact", goal)
     for design, goal in (
         ("one-speed", ">= 0.87"),
         ("scalars", ">= 0.83"),
@@ -47,22 +48,22 @@ def _singles(rows, strong):
         ("ball", ""),
     ):
         chosen = [r for r in rows if r.design == design]
-        yield _share("exact name", f"{design}, d' {_typical(chosen):.3g}", chosen, _exact, goal)
-    yield _share("class-level name", "d' 10 and more", strong, lambda r: r.class_level, ">= 0.97")
-    yield _share("confident wrong name", "singles", rows, _confident_wrong)
+        yield _share("exact name", f"{design}, d' {_typical(chosen):.3g}", chosen, "exact", goal)
+    yield _share("class-level name", "d' 10 and more", strong, "class_level", ">= 0.97")
+    yield _share("confident wrong name", "singles", rows, "confident_wrong")
 
 
 def _outside(rows):
     chosen = [r for r in rows if r.leftover >= 7.5]
     group = "outside the catalogue, leftover d' 8 and more"
-    yield _share("says unknown", group, chosen, _says_unknown, ">= 0.90")
-    yield _share("confident wrong name", "outside the catalogue", chosen, _confident_wrong, "<= 0.05")
+    yield _share("says unknown", group, chosen, "says_unknown", ">= 0.90")
+    yield _share("confident wrong name", "outside the catalogue", chosen, "confident_wrong", "<= 0.05")
 
 
 def _pairs(rows):
     for strength, goal in ((10.0, ">= 0.86"), (20.0, ">= 0.96")):
         chosen = [r for r in rows if strength_bin(r) == strength]
-        yield _share("exact pair", f"each d' {strength:g}", chosen, _exact, goal)
+        yield _share("exact pair", f"each d' {strength:g}", chosen, "exact", goal)
 
 
 def _gaps(rows):
@@ -81,22 +82,21 @@ def _gaps_together(rows):
         gaps = np.array([(r.before - 1.0, r.chi2 - 1.0) for r in chosen]).reshape(-1, 2)
         found = ratio_of_sums(gaps[:, 0] - gaps[:, 1], gaps[:, 0])
         group = f"white noise, d' {strength:g}, gaps added up"
-        yield Line("held-out gap closed", group, len(chosen), *found, math.nan, math.nan, "")
+        yield Line("held-out gap closed", group, len(chosen), *found)
 
 
 def _calibration(rows):
     bins = [b for b in reliability(rows) if b.count]
     count = sum(b.count for b in bins)
     error = sum(b.count * abs(b.stated - b.value) for b in bins) / count if count else math.nan
-    nothing = (math.nan,) * 4
-    return Line("calibration error (ECE)", "single verdicts", count, error, *nothing, "<= 0.03")
+    return Line(
+        "calibration error (ECE)", "single verdicts", count, error, math.nan, math.nan, goal="<= 0.03"
+    )
 
 
 def _intervals(rows):
     hits, count = sum(r.inside for r in rows), sum(r.intervals for r in rows)
-    found = share(hits, count)
-    goal = "0.87 to 0.93"
-    return Line("90 % interval holds truth", "named rightly", count, *found, math.nan, math.nan, goal)
+    return Line("90 % interval holds truth", "named rightly", count, *share(hits, count), goal="0.87 to 0.93")
 
 
 def _seconds(rows):
@@ -107,32 +107,15 @@ def _seconds(rows):
         yield _quantile("seconds per record", f"{kind}, 90th percentile", times, 0.9)
 
 
-def _exact(row):
-    return row.exact
-
-
-def _false_alarm(row):
-    return row.false_alarm
-
-
-def _says_unknown(row):
-    return row.says_unknown
-
-
-def _confident_wrong(row):
-    return row.confident_wrong
-
-
 def _typical(rows):
     return float(np.median([r.reached for r in rows])) if rows else math.nan
 
 
-def _share(measure, group, rows: list[Row], what: Callable, goal=""):
-    found = share(sum(what(r) for r in rows), len(rows))
+def _share(measure, group, rows: list[Row], what: str, goal=""):
+    found = counted(measure, group, (getattr(r, what) for r in rows), goal)
     ideal = ideal_share(rows) if measure in ("exact name", "exact pair") else math.nan
-    over = found[0] / ideal if ideal else math.nan
-    return Line(measure, group, len(rows), *found, ideal, over, goal)
+    return replace(found, ideal=ideal, of_ideal=found.value / ideal if ideal else math.nan)
 
 
 def _quantile(measure, group, values, level=0.5, goal=""):
-    return Line(measure, group, *quantile(values, level), math.nan, math.nan, goal)
+    return Line(measure, group, *quantile(values, level), goal=goal)
