@@ -2,6 +2,8 @@
 fits.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -63,6 +65,18 @@ def test_a_run_that_alone_shows_an_effect_is_not_predicted_by_the_others(setup):
     nominal = heldout.HeldOut(np.array([150.0, 40.01]), np.array([50, 40]))
     found = heldout.held_out(Fit(hypothesis, normal), nominal.size, nominal)
     assert found.chi2 == pytest.approx([150.0, 40.0], abs=1e-9)  # the nominal model's, the fit's own
+
+
+def test_a_strength_over_its_error_counts_from_off_and_need_not_be_shown_where_it_is_stated(setup):
+    """A logarithm is one unit from off wherever it stands, a deviation as far as it goes."""
+    drag, gain = effect("viscous-drag"), effect("sensor-gain")
+    stated = replace(drag, parameters=tuple(replace(p, known=(p.scale, 0.1)) for p in drag.parameters))
+    parts = [Component(one, variants(one, setup)[0], {}, 0) for one in (drag, gain, stated)]
+    u, error = np.array([-2.0, 0.3, 0.0]), np.array([0.5, 0.1, 0.5])
+    assert Hypothesis(tuple(parts)).strengths(u, error) == pytest.approx([2.0, 3.0, np.inf])
+    assert Hypothesis(tuple(parts[:2])).strengths(u[:2], error[:2], np.array([1.0, -0.5])) == pytest.approx(
+        [4.0, 2.0]
+    )
 
 
 @given(st.floats(1e-12, 0.3), st.floats(1e-12, 0.3))

@@ -64,7 +64,7 @@ def _further(forward: Forward, fit: Fit) -> Fit:
 
 def _off_below(c: Coordinate) -> bool:
     """Whether the lower bound of a coordinate leads to off."""
-    return (c.parameter.switches and c.kind in ("log", "inverse")) or (c.kind == "linear" and c.low == 0.0)
+    return (c.parameter.switches and c.endless) or (c.kind == "linear" and c.low == 0.0)
 
 
 def _wider(c: Coordinate) -> Coordinate:

@@ -45,15 +45,8 @@ def _seen_without(fit: Fit, run: int) -> bool:
     cross, rest = others[:free, free:], others[free:, free:]
     # What the others say of the parameters, nuisances fitted (the complement of Schur).
     known = np.diag(others[:free, :free] - cross @ np.linalg.solve(rest, cross.T)) if free else np.zeros(0)
-    for component, own in zip(fit.hypothesis.components, fit.hypothesis.columns, strict=True):
-        sizes = [
-            precision * (1.0 if c.kind in ("log", "inverse") else u**2) if not c.parameter.known else np.inf
-            for precision, u, c in zip(known[own], fit.u[own], component.free, strict=True)
-            if c.parameter.switches
-        ]
-        if max(sizes, default=0.0) < 1.0:
-            return False
-    return True
+    error = np.maximum(known, 1e-300) ** -0.5
+    return all(strength >= 1.0 for strength in fit.hypothesis.strengths(fit.u, error))
 
 
 def _without(normal: Normal, run: int) -> float:
@@ -94,7 +87,7 @@ def _width(fit):
     """(p,) width of the prior of each coordinate."""
     return np.array(
         [
-            2.0 if c.kind in ("log", "inverse") else 2.0 * abs(u) + 1e-3
+            2.0 if c.endless else 2.0 * abs(u) + 1e-3
             for c, u in zip(fit.hypothesis.coordinates, fit.u, strict=True)
         ]
     )

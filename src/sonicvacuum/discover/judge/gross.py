@@ -170,15 +170,7 @@ def _wider(forward, fit: Fit) -> float:
 def _seen(forward, fit: Fit) -> list[bool]:
     """Whether the strength of each effect of a fit stands off from zero by a few of its errors."""
     error = _wider(forward, fit) * np.maximum(fit.sigma, 1e-300)
-    found = []
-    for component, own in zip(fit.hypothesis.components, fit.hypothesis.columns, strict=True):
-        z = [
-            (1.0 if c.kind in ("log", "inverse") else abs(u)) / e
-            for c, u, e in zip(component.free, fit.u[own], error[own], strict=True)
-            if c.parameter.switches
-        ]
-        found.append(max(z, default=0.0) > policy.SEEN)
-    return found
+    return [strength > policy.SEEN for strength in fit.hypothesis.strengths(fit.u, error)]
 
 
 def weighed(forward: Forward, null: Fit, found: Iterable[Combination]) -> list[Combination]:

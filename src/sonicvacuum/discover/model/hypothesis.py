@@ -1,6 +1,7 @@
 """A hypothesis: which effects are in force, which of their parameters are free, where they sit."""
 
 import itertools
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
@@ -73,6 +74,24 @@ class Hypothesis:
     def ids(self) -> tuple[str, ...]:
         """Ids of the effects in order."""
         return tuple(c.effect.id for c in self.components)
+
+    def strengths(self, u: np.ndarray, error: np.ndarray, shift: np.ndarray | float = 0.0) -> list[float]:
+        """Of each effect, its strength over its standard error: the largest, where it has several strengths.
+
+        Infinite where the record itself states the strength, which data need not show.
+
+        Args:
+            u, error: (p,) coordinates and their standard errors.
+            shift: (p,) added to the coordinates.
+        """
+        ends = [1.0 if c.endless else x for c, x in zip(self.coordinates, u, strict=True)]
+        sizes = np.abs(np.asarray(ends) + shift) / error
+        told = [math.inf if c.parameter.known else z for c, z in zip(self.coordinates, sizes, strict=True)]
+        own = [
+            [z for c, z in zip(part.free, told[at], strict=True) if c.parameter.switches]
+            for part, at in zip(self.components, self.columns, strict=True)
+        ]
+        return [float(max(z, default=0.0)) for z in own]
 
     def with_component(self, component: Component) -> "Hypothesis":
         """This hypothesis with one effect more."""

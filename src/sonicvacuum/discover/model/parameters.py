@@ -41,6 +41,11 @@ class Coordinate:
     high: float
     two_sided: bool
 
+    @property
+    def endless(self) -> bool:
+        """Whether off lies at minus infinity: one unit of u is then a strength over its error of one."""
+        return self.kind in ("log", "inverse")
+
     def value(self, u):
         """The parameter's value at u (any shape)."""
         if self.kind == "inverse":
@@ -69,7 +74,7 @@ class Coordinate:
         """Values of u at which a search may start, over the whole range."""
         if self.parameter.known:
             return np.linspace(self.low, self.high, 5)[1:-1]
-        if self.kind in ("log", "inverse"):
+        if self.endless:
             weakest = self.low + (math.log(TOWARDS_OFF) if self.parameter.switches else 0.0)
             return np.linspace(weakest, self.high, 14)[1:-1]
         if self.kind == "ratio":

@@ -209,13 +209,5 @@ def irreplaceable(shapes: ShapeTest, fit: Fit, needed: float) -> list[int]:
     right = np.concatenate([gradient, scores.score.sum(axis=0)[at] / length])
     covariance = np.linalg.pinv(whole, rcond=1e-11, hermitian=True)
     step, error = (covariance @ right)[:free], np.sqrt(np.maximum(np.diag(covariance)[:free], 1e-300))
-    kept = []
-    for k, (component, own) in enumerate(zip(fit.hypothesis.components, fit.hypothesis.columns, strict=True)):
-        z = [
-            (1.0 + d if c.kind in ("log", "inverse") else u + d) / e
-            for c, u, d, e in zip(component.free, fit.u[own], step[own], error[own], strict=True)
-            if c.parameter.switches
-        ]
-        if max((abs(x) for x in z), default=0.0) ** 2 > needed:
-            kept.append(k)
-    return kept
+    strengths = fit.hypothesis.strengths(fit.u, error, step)
+    return [k for k, strength in enumerate(strengths) if strength**2 > needed]

@@ -190,7 +190,7 @@ def _start(c, direction, shape, size):
         return c.inverse(shape[p.name])
     if p.name != direction.strength:
         return 1e-3 if c.kind in ("ratio", "linear") else c.low
-    if c.kind in ("log", "inverse"):
+    if c.endless:
         return float(np.log(max(abs(size), 1e-12)))
     if p.acts_like == "modulus":
         # Its slope is that of the modulus as a nuisance, which is log-normal.
