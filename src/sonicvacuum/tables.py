@@ -16,12 +16,23 @@ def write_csv(path: str | PathLike, columns: Sequence[str], rows: Iterable[Itera
         table.writerows(rows)
 
 
-def read_csv(path: str | PathLike, cure: str = "give the path of a table") -> list[dict[str, str]]:
+def read_csv(
+    path: str | PathLike, cure: str = "give the path of a table", columns: Iterable[str] = ()
+) -> list[dict[str, str]]:
     """Rows below the first line, by column, every cell as text.
 
     Raises:
-        InputError: for a file that cannot be read; it names `cure`.
+        InputError: for a file that cannot be read, that lacks one of `columns`, or whose lines have more or
+            fewer cells than the first; it names `cure`.
     """
     check_file(path)
     with reading(path, cure), open(path, encoding="utf-8", newline="") as stream:
-        return list(csv.DictReader(stream))
+        table = csv.DictReader(stream, strict=True)
+        rows = list(table)
+        missing = [c for c in columns if c not in (table.fieldnames or ())]
+        if missing:
+            raise ValueError(f"no column {missing[0]}")
+        for line, row in enumerate(rows, 2):
+            if None in row or None in row.values():
+                raise ValueError(f"line {line} has another number of cells than the header")
+    return rows

@@ -3,14 +3,13 @@
 A study is a fixed list: case k of a study of one seed is the same whatever else is made, on any machine.
 """
 
-import csv
 from collections.abc import Iterable
 from dataclasses import asdict, fields
 
 import numpy as np
 
-from sonicvacuum.files import InputError, read_text, reading
-from sonicvacuum.tables import write_csv
+from sonicvacuum.files import InputError
+from sonicvacuum.tables import read_csv, write_csv
 from sonicvacuum_blind import catalogue, foreign
 from sonicvacuum_blind.hide import Spec
 
@@ -133,11 +132,8 @@ def read_cases(path) -> list[Spec]:
         InputError: naming file and line of what is wrong.
     """
     names = [f.name for f in fields(Spec)]
-    with reading(path, f"write {','.join(names)} and one line for each case"):
-        reader = csv.DictReader(read_text(path).splitlines())
-        if reader.fieldnames != names:
-            raise InputError(f"{path}: columns are {reader.fieldnames}; write {','.join(names)}")
-        return [_spec(row, path, line) for line, row in enumerate(reader, start=2)]
+    rows = read_csv(path, f"write {','.join(names)} and one line for each case", names)
+    return [_spec(row, path, line) for line, row in enumerate(rows, start=2)]
 
 
 def _spec(row, path, line):

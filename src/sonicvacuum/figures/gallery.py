@@ -5,7 +5,6 @@ such a chain cannot have (a coating's, a resting load's) is shown on one that ca
 the picture drawn from them.
 """
 
-import csv
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -14,11 +13,12 @@ import numpy as np
 from sonicvacuum.card import CaseBlock, resolve
 from sonicvacuum.effects import CATALOGUE, Effect, Setup
 from sonicvacuum.figures.style import DOUBLE, canvas, context, panel, save
-from sonicvacuum.files import convert, replacing
+from sonicvacuum.files import convert
 from sonicvacuum.gauges import needed, reading
 from sonicvacuum.physics.run import simulate
 from sonicvacuum.physics.scales import passage_of, sampling_of
 from sonicvacuum.simulation import set_up
+from sonicvacuum.tables import read_csv, write_csv
 
 COLUMNS = ("gauge", "time_us", "nominal_N", "effect_N")
 _STRENGTH = 1.0
@@ -64,10 +64,7 @@ def write(folder) -> list[str]:
     for effect in CATALOGUE:
         setup = next((s for s in known if effect.why_not(s) is None), known[0])
         path = Path(folder) / f"{effect.id}.csv"
-        with replacing(path) as stream:
-            table = csv.writer(stream, lineterminator="\n")
-            table.writerow(COLUMNS)
-            table.writerows(_rows(effect, setup))
+        write_csv(path, COLUMNS, _rows(effect, setup))
         draw(path, path.with_suffix(".svg"))
     return [effect.id for effect in CATALOGUE]
 
@@ -94,8 +91,7 @@ def _readings(setup: Setup, interval, duration):
 
 def draw(table, path) -> None:
     """Draw a table that `write` wrote: both gauges side by side, the nominal chain in grey."""
-    with open(table, encoding="utf-8", newline="") as stream:
-        rows = list(csv.DictReader(stream))
+    rows = read_csv(table)
     with context():
         figure = canvas(DOUBLE, _HEIGHT)
         for k, gauge in enumerate(dict.fromkeys(row["gauge"] for row in rows)):

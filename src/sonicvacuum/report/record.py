@@ -3,7 +3,6 @@
 Made from the folder that `sonicvacuum discover` wrote; the same section stands in the report of the pipeline.
 """
 
-import csv
 from pathlib import Path
 
 import msgspec
@@ -15,6 +14,7 @@ from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.files import InputError, read_text, reading, replacing
 from sonicvacuum.report import bench, inline, origin, plots, rows, words
 from sonicvacuum.report.sketch import sketch
+from sonicvacuum.tables import read_csv
 
 # Drawing → what it shows.
 PICTURES = {
@@ -142,16 +142,7 @@ def _quantities(folder):
 
 def _rows(path):
     """Rows of a table; InputError where it lacks a column."""
-    with reading(path, "run sonicvacuum discover again"):
-        table = csv.DictReader(read_text(path).splitlines(), strict=True)
-        rows = list(table)
-        missing = [c for c in _COLUMNS[path.stem] if c not in (table.fieldnames or ())]
-        if missing:
-            raise ValueError(f"no column {missing[0]}")
-        for line, row in enumerate(rows, 2):
-            if None in row or None in row.values():
-                raise ValueError(f"line {line} has another number of cells than the header")
-    return rows
+    return read_csv(path, "run sonicvacuum discover again", _COLUMNS[path.stem])
 
 
 def _pictures(folder, name):
