@@ -1,4 +1,4 @@
-"""Exact and series solutions of one ball on a wall: restitution and duration of an impact by law of damping.
+"""Exact solutions of one ball on a wall: restitution and duration of an impact by law of damping.
 
 The contact ends when its force is zero, as nothing pulls; that is a little before the ball has left its dent.
 Units are SI, arrays of any shape unless stated otherwise.
@@ -9,33 +9,22 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.integrate import solve_ivp
-from scipy.optimize import brentq
-from scipy.special import beta, lambertw
 
-# First coefficient 1.15344 of the viscoelastic series: what weak damping takes from a Hertz impact.
-# Ramirez, Pöschel, Brilliantov & Schwager, Phys. Rev. E 60, 4465 (1999), Eqs. 22 and 24.
-FIRST = 2.0 * 1.25**0.6 * float(beta(0.6, 1.5)) / 2.5
 # Padé approximant of the viscoelastic restitution in the root of x: Müller & Pöschel, Phys. Rev. E 84, 021302
 # (2011), in powers 0, 1, 2 …
 _NUMERATOR = (1.0, 1.07232, 0.574198, 0.141552)
 _DENOMINATOR = (1.0, 1.07232, 1.72765, 1.37842, 1.19449, 0.467273, 0.235585)
-# Below this c v the closed form of Hunt and Crossley loses digits, and the series has all of them.
-_SMALL = 1e-3
 
 
-def oscillator_restitution(ratio: float) -> float:
-    """Restitution of a linear spring and dashpot that does not pull: the same at every speed.
+def oscillator_duration(ratio: float) -> float:
+    """Time for which a linear spring and dashpot that does not pull bears force, over √(m/k).
 
-    Schwager & Pöschel, Granular Matter 9, 465 (2007), Eqs. 20 to 22.
+    π without damping. The ball keeps exp(−ratio × this) of its speed: Schwager & Pöschel, Granular Matter 9,
+    465 (2007), Eqs. 20 to 22.
 
     Args:
         ratio: damping over critical damping, 0 or more; beyond 1 the ball creeps out.
     """
-    return math.exp(-ratio * oscillator_duration(ratio))
-
-
-def oscillator_duration(ratio: float) -> float:
-    """Time for which such a contact bears force, over √(m/k); π without damping. Reference: see there."""
     if abs(ratio - 1.0) < 1e-9:
         return 2.0
     if ratio > 1.0:
@@ -43,15 +32,6 @@ def oscillator_duration(ratio: float) -> float:
         return math.log((ratio + root) / (ratio - root)) / root
     root = math.sqrt(1.0 - ratio**2)
     return (math.pi - math.atan2(2.0 * ratio * root, root**2 - ratio**2)) / root
-
-
-def oscillator_ratio(restitution: float) -> float:
-    """Damping over critical at which `oscillator_restitution` is that; ValueError outside (0.001, 1]."""
-    if not 1e-3 < restitution <= 1.0:
-        raise ValueError(f"restitution is {restitution:g}; use a value above 0.001, at most 1")
-    if restitution == 1.0:
-        return 0.0
-    return float(brentq(lambda ratio: oscillator_restitution(ratio) - restitution, 0.0, 1e3, xtol=1e-14))
 
 
 def uncut_restitution(ratio: float) -> float:
@@ -70,32 +50,6 @@ def tsuji_ratio(alpha: float) -> float:
     Antypov & Elliott, EPL 94, 50004 (2011).
     """
     return alpha / math.sqrt(5.0)
-
-
-def tsuji_restitution(alpha: float) -> float:
-    """Restitution of K δ^{3/2} + α √(m K) δ^{1/4} v, the same at every speed; reference: `tsuji_ratio`."""
-    return oscillator_restitution(tsuji_ratio(alpha))
-
-
-def tsuji_alpha(restitution: float) -> float:
-    """The α that gives a restitution; ValueError as `oscillator_ratio`."""
-    return math.sqrt(5.0) * oscillator_ratio(restitution)
-
-
-def hunt_crossley_restitution(damping: ArrayLike, speed: ArrayLike) -> np.ndarray:
-    """Restitution of f(δ)(1 + d v), whatever the elastic force f; 1 − (2/3) d v for weak damping.
-
-    m v dv = −f (1 + d v) dδ separates, so that d v − ln(1 + d v) is the same before and after (Hunt &
-    Crossley, J. Appl. Mech. 42, 440, 1975); its root is a Lambert function.
-
-    Args:
-        damping: d in s/m, which is 3/2 of the effect's `damping_s_per_m`.
-        speed: at impact in m/s.
-    """
-    y = np.asarray(damping, dtype=float) * np.asarray(speed, dtype=float)
-    large = np.maximum(y, _SMALL)
-    closed = (1.0 + np.real(lambertw(-(1.0 + large) * np.exp(-1.0 - large)))) / large
-    return np.where(y < _SMALL, 1.0 - y * (2.0 / 3.0 - y * 4.0 / 9.0), closed)
 
 
 def hunt_crossley_duration(number: float, exponent: float) -> float:
@@ -129,15 +83,6 @@ def viscoelastic_number(
     """
     ratio = np.asarray(stiffness, dtype=float) / np.asarray(mass, dtype=float)
     return 1.5 * np.asarray(time, dtype=float) * ratio**0.4 * np.asarray(speed, dtype=float) ** 0.2
-
-
-def viscoelastic_series(number: ArrayLike) -> np.ndarray:
-    """Restitution 1 − C1 x + (3/5) C1² x² for small x = `viscoelastic_number`.
-
-    Ramirez, Pöschel, Brilliantov & Schwager, Phys. Rev. E 60, 4465 (1999).
-    """
-    x = FIRST * np.asarray(number, dtype=float)
-    return 1.0 - x + 0.6 * x**2
 
 
 def viscoelastic_restitution(number: ArrayLike) -> np.ndarray:
