@@ -41,7 +41,7 @@ def _double_hit(plan, place, force):
 
 
 def _adhesion(plan, place, share):
-    """Contacts stick: a pull k δ^{3/4}, `share` of the elastic force at the impact's own compression."""
+    """Contacts stick: an attraction k δ^{3/4}, `share` of the elastic force at the impact's own depth."""
     depth = plan.contact_time * plan.speed
     return plan.with_law(adhesion=share * plan.force_scale / depth**0.75)
 

@@ -221,7 +221,7 @@ def _relax(n, y, at, slopes, s, table, room):
 
 @njit(nogil=True, error_model="numpy")
 def _stick(n, table, room):
-    """Adhesion, a pull as a^{3/2} of the contact radius (Johnson, Kendall & Roberts 1971)."""
+    """Adhesion, an attraction as a^{3/2} of the contact radius (Johnson, Kendall & Roberts 1971)."""
     for c in range(n):
         room[FORCE, c + 1] -= table[_ADHESION, c] * room[ROOT, c] * math.sqrt(room[ROOT, c])
 

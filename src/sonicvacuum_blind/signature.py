@@ -124,7 +124,7 @@ class Fit:
         return self.seen[: len(self.slopes)]
 
     def step(self) -> np.ndarray:
-        """(errors,) to the minimum if data were linear in the errors, whose prior pulls them back to zero."""
+        """(errors,) to the minimum if data were linear in the errors, whose prior holds them near zero."""
         slopes = self.slopes
         normal = slopes.T @ slopes + np.eye(slopes.shape[1])
         return np.linalg.solve(normal, slopes.T @ (self.rest + slopes @ self.vector)) - self.vector

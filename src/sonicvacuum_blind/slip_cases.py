@@ -112,7 +112,9 @@ def _random(case):
 
 
 def _d_prime(own: Laboratory, slip: Slip, place: Place) -> float | None:
-    """Of what truly was otherwise, refitted; of what acts like an error of the record, linear."""
+    """d′ of a slip: refitted where something truly was otherwise, linear where it acts like an error of the
+    record.
+    """
     frame = own.case.frame
     truly = _as_slow if slip.id == "clock" else slip.plan
     if truly:

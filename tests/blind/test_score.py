@@ -178,7 +178,7 @@ def test_coverage_by_effect_and_seconds_by_kind():
 
 
 def test_interval_of_a_median():
-    """Of ten values the binomial interval of the median is from the third to the ninth; binom(10, 1/2) holds
+    """The binomial interval of the median of ten values is from the third to the ninth; binom(10, 1/2) holds
     1.07 % below 2 and 5.47 % up to 2, so 2 and 8 are its 2.5 % and 97.5 % points.
     """
     assert quantile(range(10), 0.5) == (10, 4.5, 2.0, 8.0)

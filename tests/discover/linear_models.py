@@ -95,7 +95,7 @@ class Imagined:
 
     @property
     def layout(self) -> Layout:
-        """Of one run."""
+        """The layout of one run."""
         return Layout(1, self.gauges)
 
     @property

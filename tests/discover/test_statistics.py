@@ -49,7 +49,7 @@ def test_correlation_of_neighbours_is_found():
 
 
 def test_a_run_that_alone_shows_an_effect_is_not_predicted_by_the_others(setup):
-    """Slope 10 in the first run, 0.1 in the second: without the first, the departure is below its error."""
+    """Slope 10 in the first run, 0.1 in the second: without the first, the deviation is below its error."""
     drag = effect("viscous-drag")
     free = variants(drag, setup)[0]
     hypothesis = Hypothesis((Component(drag, free),))

@@ -42,7 +42,7 @@ def test_narrow_contact_is_hertz_on_the_coating(poisson, core, bonded):
     found = solve(layer, [1e-5, 1e-3, 2e-3])
     assert found.factor[0] == pytest.approx(1.0, rel=1e-4)
     assert found.force[0] == pytest.approx(4.0 / 3.0, rel=1e-4)
-    # Linear in a/t where narrow: twice the radius, twice the departure, to the next order.
+    # Linear in a/t where narrow: twice the radius, twice the deviation, to the next order.
     assert (found.factor[2] - 1.0) / (found.factor[1] - 1.0) == pytest.approx(2.0, rel=0.01)
 
 

@@ -1,4 +1,4 @@
-"""Slips of the set-up that traces betray: each is made on purpose, and must be the one that is named."""
+"""Slips of the set-up that traces show: each is made on purpose, and must be the one that is named."""
 
 import json
 from dataclasses import replace

@@ -82,7 +82,7 @@ def test_static_forces_carry_the_beads_above():
     assert c.static_forces(5)[:, 0] == pytest.approx(expected, rel=1e-14)  # sums of five terms
 
 
-def test_departures_change_one_body_or_contact():
+def test_deviations_change_one_body_or_contact():
     c = chain().with_defect("mass", 2, 1.5).with_defect("stiffness", 4, 0.5).with_defect("gap", 1, 1e-6)
     plain = chain()
     assert c.masses(5)[:, 0] / plain.masses(5)[:, 0] == pytest.approx([1, 1, 1.5, 1, 1])

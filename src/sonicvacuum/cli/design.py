@@ -15,7 +15,7 @@ from sonicvacuum.cli.predict import chain_options
 @click.option("--effects", required=True, metavar="A,B", help="To tell apart; ids: sonicvacuum effects.")
 @chain_options
 @click.option("--most", type=int, default=3, show_default=True, help="Largest number of gauges.")
-@click.option("--strength", type=float, default=0.3, show_default=True, help="In typical departures.")
+@click.option("--strength", type=float, default=0.3, show_default=True, help="In typical deviations.")
 @click.option("--noise", type=float, default=0.01, show_default=True, help="Of a sample, over the peak.")
 @click.option("--echo/--no-echo", default=True, help="Whether the wall's reflection is recorded as well.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")

@@ -29,7 +29,7 @@ def check(folders, as_json):
     """Say what is in the records in FOLDERS, what the nominal model expects, what looks suspicious.
 
     Arrival, amplitude, speed and width of each gauge and run stand beside those of the nominal model; slips
-    of the set-up that they betray are named. The window to record, what discover cuts off and thins of long
+    of the set-up that they show are named. The window to record, what discover cuts off and thins of long
     traces, and the time that it will take, are told beforehand.
     """
     from sonicvacuum.report import checked

@@ -208,7 +208,7 @@ for _function, _emit in (
     (operator.truediv, _emit_divide),
     (operator.neg, _emit_negate),
 ):
-    # Of Python's own operators only those with a lane among the operands are new.
+    # Python's own operators are new only where a lane is among the operands.
     _teach(_function, _emit, among=(LaneType,))
 
 for _function, _emit in (

@@ -29,7 +29,7 @@ from sonicvacuum.simulation import check_extent, set_up
 NONE = "none"
 # What is told apart with so many standard errors counts as told apart.
 TARGET = 5.0
-# Of its typical departure, how far an effect is off.
+# How far an effect is from off, over its typical deviation.
 STRENGTH = 0.3
 # Crossings of the chain in a record that ends when the slowest pulse is at the wall.
 _TO_WALL = 0.9
@@ -104,7 +104,7 @@ def design(
         speed: as in `predict`.
         gauges: places that can be had; by default five beads along the chain and the wall.
         most: the largest number of gauges.
-        strength: how strong the effects are, in their typical departures (`sonicvacuum effects`).
+        strength: how strong the effects are, in their typical deviations (`sonicvacuum effects`).
         noise: of one sample, over the largest reading of the gauge that reads most.
         echo: whether the record goes on until the wall's reflection has passed every gauge; without, it
             ends when the slowest pulse is at the wall.
@@ -250,8 +250,8 @@ class _Blocks:
             # Nuisances are known to one of their standard errors; parameters of the rival are free.
             free = len(total) - 1 - (1 + 2 * self.runs + self.gauges)
             prior = np.diag([0.0] * free + [1.0] * (len(total) - 1 - free))
-            pull = total[0, 1:]
-            followed = pull @ np.linalg.lstsq(total[1:, 1:] + prior, pull, rcond=1e-12)[0]
+            cross = total[0, 1:]
+            followed = cross @ np.linalg.lstsq(total[1:, 1:] + prior, cross, rcond=1e-12)[0]
             found[pair] = math.sqrt(max(float(total[0, 0] - followed), 0.0))
         return found
 

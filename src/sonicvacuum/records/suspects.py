@@ -1,4 +1,4 @@
-"""What a colleague at the bench would say of a record: slips of the set-up that its traces betray.
+"""What a colleague at the bench would say of a record: slips of the set-up that its traces show.
 
 Traces differ from the nominal model for two reasons: a slip (a trigger, volts, a bead counted wrongly, the
 wrong ball), or physics that the model lacks, which is what `discover` is for. Only differences that no effect

@@ -9,7 +9,7 @@ from sonicvacuum.cli.cards import read_card
 from sonicvacuum.cli.helped import PRESENT, WRITTEN, verb
 from sonicvacuum.files import replacing
 from sonicvacuum.outputs import check_apart
-from sonicvacuum_paper.cli.studies import loaded
+from sonicvacuum_paper.cli.simulated import loaded
 
 _FILE = existing()
 

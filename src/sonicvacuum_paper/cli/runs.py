@@ -5,7 +5,7 @@ import click
 from sonicvacuum.cli import existing
 from sonicvacuum.cli.helped import PRESENT, WRITTEN, verb
 from sonicvacuum.files import replacing
-from sonicvacuum_paper.cli.studies import loaded
+from sonicvacuum_paper.cli.simulated import loaded
 
 
 @verb("sonicvacuum paper runs card.json --histories histories --metrics metrics.csv --out runs.html")

@@ -85,7 +85,7 @@ def build(given: Sources) -> str:
         totals={t.model: t for t in ladder.totals(ledger.to_dict("records"))},
         figures=[_figure(Path(svg)) for svg in given.figures],
         cards=[_card_row(card, metrics) for card in given.cards],
-        own=[runs.told(study, metrics) for study in given.own],
+        own=[runs.told(one, metrics) for one in given.own],
         columns=list(runs.AT_GAUGES.values()),
         catalogue=len(IDS),
         discoveries=[record.section(folder) for folder in given.discoveries],

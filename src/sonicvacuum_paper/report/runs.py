@@ -26,11 +26,11 @@ AT_GAUGES = {
 BETWEEN = {"speed": "speed"}
 
 
-def build(studies: Iterable[Simulation], metrics_path) -> str:
+def build(simulations: Iterable[Simulation], metrics_path) -> str:
     """The page as HTML text.
 
     Args:
-        studies: the simulated cards, each loaded when it is its turn.
+        simulations: the simulated cards, each loaded when it is its turn.
         metrics_path: `results/metrics.csv`.
 
     Raises:
@@ -39,30 +39,30 @@ def build(studies: Iterable[Simulation], metrics_path) -> str:
     metrics = read(metrics_path, COLUMNS)
     template = inline.environment("sonicvacuum_paper.report").get_template("runs.html.j2")
     return template.render(
-        cards=[told(s, metrics) for s in studies],
+        cards=[told(s, metrics) for s in simulations],
         columns=list(AT_GAUGES.values()),
         script=interactive.script(),
     )
 
 
-def told(study: Simulation, metrics: pd.DataFrame) -> dict:
+def told(simulation: Simulation, metrics: pd.DataFrame) -> dict:
     """What the page says of one card: its runs, each with drawing and numbers."""
-    card = study.card
-    lanes = range(len(study.speeds))
+    card = simulation.card
+    lanes = range(len(simulation.speeds))
     single = len(lanes) == 1
     runs = []
     for lane in lanes:
-        speed = float(study.speeds[lane])
+        speed = float(simulation.speeds[lane])
         name = card.name if single else f"{card.name}@{speed:g}"
         anchor = f"run-{name.replace('@', '-at-')}"
-        # Of a sweep a case's own name is that of the whole.
+        # In a sweep a case's own name is that of the whole.
         rows = metrics[metrics["case"] == name]
         runs.append(
             {
                 "speed": f"{speed:.4g}",
                 "anchor": anchor,
-                **space_time.drawing(study, lane, anchor),
-                **_numbers(rows, [g.id for g in study.sensors]),
+                **space_time.drawing(simulation, lane, anchor),
+                **_numbers(rows, [g.id for g in simulation.sensors]),
             }
         )
     return {
@@ -70,7 +70,7 @@ def told(study: Simulation, metrics: pd.DataFrame) -> dict:
         "title": card.title,
         "own": own(card.name),
         "runs": runs,
-        "warnings": study.warnings,
+        "warnings": simulation.warnings,
     }
 
 

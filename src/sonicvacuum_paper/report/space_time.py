@@ -17,7 +17,7 @@ from sonicvacuum.gauges import contacts_of
 from sonicvacuum.report.interactive import Line, Panel, scales
 from sonicvacuum.simulation import Simulation
 
-# Of the drawing, in its own units.
+# Sizes in the units of the drawing.
 WIDTH, LEFT, RIGHT, TOP = 720.0, 70.0, 712.0, 6.0
 _MAP, _TRACE, _GAP, _AXIS = 120.0, 46.0, 6.0, 30.0
 # Pixels of the map along time; deviation of a thinned line, in units of the drawing.
@@ -25,15 +25,20 @@ _PIXELS, _DEVIATION = 321, 0.12
 _COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#8C6D1F")
 
 
-def drawing(study: Simulation, lane: int, name: str) -> dict[str, str]:
+def drawing(simulation: Simulation, lane: int, name: str) -> dict[str, str]:
     """`svg`, `scales` of one run; ids begin with `name`."""
-    time_us, force = 1e6 * study.time, study.force[:, :, lane]
+    time_us, force = 1e6 * simulation.time, simulation.force[:, :, lane]
     last = float(time_us[-1])
-    gauges, readings = study.sensors, study.readings()
+    gauges, readings = simulation.sensors, simulation.readings()
     bottom = TOP + _MAP
-    parts = [_picture(force), *_marks(study, bottom)]
+    parts = [_picture(force), *_marks(simulation, bottom)]
     space = Panel(
-        (LEFT, TOP, RIGHT, bottom), (0.0, last, False), (0.0, 1.0, False), "µs", "N", map=_map(study, force)
+        (LEFT, TOP, RIGHT, bottom),
+        (0.0, last, False),
+        (0.0, 1.0, False),
+        "µs",
+        "N",
+        map=_map(simulation, force),
     )
     panels = [space]
     for k, gauge in enumerate(gauges):
@@ -45,7 +50,7 @@ def drawing(study: Simulation, lane: int, name: str) -> dict[str, str]:
         color, own = _COLORS[k % len(_COLORS)], f"{name}-{gauge.id}"
         parts.append(_frame(box, f"{gauge.id}, {high:.3g} {gauge.unit}"))
         parts.append(f'<polyline id="{escape(own)}" class="trace" stroke="{color}" points="{points}"/>')
-        line = Line(own, gauge.id, rows=_rows(study, gauge))
+        line = Line(own, gauge.id, rows=_rows(simulation, gauge))
         panels.append(Panel(box, space.x, (low, high, False), "µs", gauge.unit, (line,)))
     end = bottom + len(gauges) * (_TRACE + _GAP)
     parts += _axis(last, end)
@@ -54,16 +59,16 @@ def drawing(study: Simulation, lane: int, name: str) -> dict[str, str]:
     return {"svg": Markup("\n".join([head, *parts, "</svg>"])), "scales": scales(panels)}
 
 
-def _rows(study, gauge):
+def _rows(simulation, gauge):
     """Rows of the map that a gauge reads."""
-    felt = contacts_of(gauge, study.card.beads) or ((gauge.bead - 1, gauge.bead) if gauge.bead else ())
-    return tuple(k for k, contact in enumerate(study.contacts) if contact in felt)
+    felt = contacts_of(gauge, simulation.card.beads) or ((gauge.bead - 1, gauge.bead) if gauge.bead else ())
+    return tuple(k for k, contact in enumerate(simulation.contacts) if contact in felt)
 
 
-def _map(study, force):
-    beads = study.card.beads
+def _map(simulation, force):
+    beads = simulation.card.beads
     ends = ["striker", *range(1, beads + 1), "wall"]
-    rows = [f"{ends[c]}–{ends[c + 1]}" for c in study.contacts]
+    rows = [f"{ends[c]}–{ends[c + 1]}" for c in simulation.contacts]
     return {"most": round(float(max(force.max(), 0.0)), 6), "rows": rows}
 
 
@@ -82,14 +87,14 @@ def _picture(force):
     )
 
 
-def _marks(study, bottom):
+def _marks(simulation, bottom):
     """Frame of the map, its first and last contact, and a bar beside the rows of each gauge."""
-    high = _MAP / len(study.contacts)
+    high = _MAP / len(simulation.contacts)
     yield _frame((LEFT, TOP, RIGHT, bottom), "")
-    names = _map(study, study.force[:, :, 0])["rows"]
+    names = _map(simulation, simulation.force[:, :, 0])["rows"]
     yield _text(LEFT - 6, TOP + 8, names[0], "end") + _text(LEFT - 6, bottom - 1, names[-1], "end")
-    for k, gauge in enumerate(study.sensors):
-        rows = _rows(study, gauge)
+    for k, gauge in enumerate(simulation.sensors):
+        rows = _rows(simulation, gauge)
         if rows:
             top, color = TOP + min(rows) * high, _COLORS[k % len(_COLORS)]
             tall = (max(rows) - min(rows) + 1) * high

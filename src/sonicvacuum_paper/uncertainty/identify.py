@@ -88,7 +88,7 @@ def _refined(seen, fine):
 
 
 def _log_likelihood(seen):
-    """Of the printed numbers, up to a constant."""
+    """Log likelihood of the printed numbers, up to a constant."""
     speeds = np.log([PRINTED.speed_coated, PRINTED.speed_low])
     off = np.moveaxis(seen[:2], 0, -1) - speeds
     inverse = np.linalg.inv(np.diag([HIGH**2, LOW**2]) + SHARED**2)

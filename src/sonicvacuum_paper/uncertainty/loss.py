@@ -7,7 +7,7 @@ from sonicvacuum_paper.printed import PRINTED
 from sonicvacuum_paper.uncertainty.batch import LOSS, Batch, Draws, set_up
 from sonicvacuum_paper.uncertainty.reading import of_lanes
 
-# Of the ladder's own time; then parts of the gap between the two that enclose the duration.
+# Shares of the ladder's own time; then parts of the gap between the two that enclose the duration.
 FACTORS = (0.3, 0.6, 0.9, 1.2, 1.6)
 PARTS = (0.25, 0.5, 0.75)
 DURATION = ("duration_02", "g9")

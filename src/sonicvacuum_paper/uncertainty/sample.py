@@ -46,7 +46,7 @@ CASES = {
     "ratio-5": COUNT,
 }
 BARE = ("fig3b", "fig5b", "fig4b")
-# Of cases whose contacts matter.
+# Cases whose contacts matter.
 LOADED = ("fig3a", "fig6a")
 # Time simulated, in nominal arrivals at the wall: until the reflection is back, or the train is in.
 LASTING = {"fig3a": 1.7, "fig3b": 1.7, "fig4a": 1.5, "fig4b": 1.5, "ratio-5": 3.2}

@@ -37,7 +37,7 @@ def examine(record: Record, predicted: dict[str, dict[str, np.ndarray]] | None =
     return look.bench(), look.findings()
 
 
-# Of a level that differs from run to run, this share may change within a run.
+# Share of a level that differs from run to run by which it may change within a run.
 MOVING = 0.3
 
 

@@ -59,7 +59,7 @@ class Forward:
 
     @cached_property
     def _norm(self) -> float:
-        """Of all data, in standard errors."""
+        """Length of all data together, in standard errors."""
         return float(np.sqrt(sum(float(d @ d) for d in self._whitened)))
 
     @cached_property

@@ -76,7 +76,7 @@ class Hypothesis:
         return tuple(c.effect.id for c in self.components)
 
     def strengths(self, u: np.ndarray, error: np.ndarray, shift: np.ndarray | float = 0.0) -> list[float]:
-        """Of each effect, its strength over its standard error: the largest, where it has several strengths.
+        """Strength over standard error, effect by effect: the largest, where one has several strengths.
 
         Infinite where the record itself states the strength, which data need not show.
 
