@@ -1,10 +1,5 @@
 """What the rules of the blind study share: its parts and batches."""
 
-from sonicvacuum_blind import kept
-
-# Pictures of the full study and its tables as kept in git.
-STUDY = kept.PICTURES
-STUDY_TABLES = home(kept.TABLES)
 # Study → number of batches.
 BATCHES = {"small": 4, "training": 4, "full": 24}
 # Study → of how many batches ambiguous records get one more run, which takes two joint verdicts for every such record.

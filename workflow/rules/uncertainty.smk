@@ -17,7 +17,7 @@ rule uncertainty:
         sources=sources("paper uncertainty"),
         config=CONFIG_FILE,
         # An edit of a case or of the models makes it anew.
-        cases=lambda wildcards: msgspec.json.encode([CONFIG.cases, CONFIG.ledger]).decode(),
+        cases=lambda wildcards: text(CONFIG.cases, CONFIG.ledger),
         named=lambda wildcards, input: repeated("--named", input.named),
     message:
         "Drawing what the paper leaves open"
@@ -45,9 +45,9 @@ rule rivals:
     params:
         sources=sources("paper rivals"),
         config=CONFIG_FILE,
-        cases=lambda wildcards: msgspec.json.encode(
-            [*(CONFIG.cases.get(case) for case in ("fig3a", "fig5a", "fig6b")), CONFIG.ledger]
-        ).decode(),
+        cases=lambda wildcards: text(
+            *(CONFIG.cases.get(case) for case in ("fig3a", "fig5a", "fig6b")), CONFIG.ledger
+        ),
     message:
         "Comparing the rival models of the coating"
     shell:
