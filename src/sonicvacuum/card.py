@@ -13,12 +13,11 @@ from msgspec.structs import replace
 
 from sonicvacuum.gauges import KINDS, Gauge
 from sonicvacuum.gauges.base import misplaced
-from sonicvacuum.laboratory import blocks, ranges
+from sonicvacuum.laboratory import blocks, checks, ranges
 from sonicvacuum.laboratory.blocks import (
     BeadBlock,
     ChainBlock,
     MaterialBlock,
-    bead_blocks,
     material_of,
     specimen_of,
     striker_of,
@@ -28,6 +27,8 @@ from sonicvacuum.laboratory.ranges import LaboratoryError
 from sonicvacuum.laboratory.specimen import Bead, Material, NonNegative, Positive, Specimen, Striker
 
 GaugeKind = Annotated[str, Meta(extra_json_schema={"enum": list(KINDS)})]
+# What stands beside the gauges in the table of a card's traces.
+COLUMNS = {checks.TIME: "times", "run": "numbers of runs", "speed_m_s": "striker's speeds"}
 Name = Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]*$")]
 
 
@@ -105,6 +106,16 @@ class CardSensor(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     bead: int | None = None
     droop_s: Positive | None = None
     lowpass_s: NonNegative = 0.0
+
+    @property
+    def droop_us(self) -> float | None:
+        """The same in us."""
+        return None if self.droop_s is None else 1e6 * self.droop_s
+
+    @property
+    def lowpass_us(self) -> float:
+        """The same in us."""
+        return 1e6 * self.lowpass_s
 
     @property
     def gauge(self) -> Gauge:
@@ -186,14 +197,15 @@ def resolve(case: str, variant: str, block: CaseBlock) -> Card:
         LaboratoryError: for a bead outside the chain, a sphere without diameter, an unknown material …
     """
     written = block.striker
-    _check_ranges(block)
+    checks.check_chain(block.chain)
+    checks.check_materials(block.materials)
     specimen = specimen_of(block.chain, block.materials)
     surface = material_of(written.material, block.materials, "striker.material")
     speeds = written.speed_m_s if isinstance(written.speed_m_s, list) else [written.speed_m_s]
     striker = striker_of(written, surface, specimen, "striker", speeds[0])
     bodies = specimen.bodies
-    lightest = min(bead.mass_g for _, bead in bead_blocks(block.chain).kinds)
-    _check_striker(written, lightest, speeds, "striker.speed_m_s")
+    checks.check_striker("striker", written, checks.lightest_g(block.chain))
+    checks.check_speeds("striker.speed_m_s", *speeds)
     card = Card(
         case=case,
         variant=variant,
@@ -221,33 +233,12 @@ def resolve(case: str, variant: str, block: CaseBlock) -> Card:
     return card
 
 
-def _check_ranges(block):
-    """What a record must satisfy as well: sizes, densities and moduli that a laboratory has."""
-    ranges.STATIC_FORCE.check("chain.static_force_N", block.chain.static_force_N)
-    for key, bead in bead_blocks(block.chain).kinds:
-        ranges.check_bead(key, bead)
-    for name, given in block.materials.items():
-        if given.modulus_GPa is not None:
-            ranges.check_modulus(f"materials.{name}", name, given.modulus_GPa)
-
-
-def _check_striker(striker, lightest_g, speeds, key):
-    """A striker's block beside beads of so many g; `key` is where its speeds stand."""
-    if striker.diameter_mm is not None:
-        ranges.DIAMETER.check("striker.diameter_mm", striker.diameter_mm)
-    if striker.shape == "sphere":
-        ranges.check_mass("striker", striker.mass_g, striker.diameter_mm)
-    else:
-        ranges.check_striker_mass("striker", striker.mass_g, lightest_g)
-    for speed in speeds:
-        ranges.SPEED.check(key, speed)
-
-
 def check_gauges(card: Card) -> None:
-    """LaboratoryError for two gauges of one id, one that is nowhere, or an aim at none of them."""
+    """LaboratoryError for a gauge that is nowhere, a name or times that none can have, an aim at no gauge."""
     ids = [s.id for s in card.sensors]
     for place, sensor in enumerate(card.sensors):
         key = f"sensors[{place}]"
+        checks.check_sensor(key, sensor, COLUMNS)
         if sensor.kind not in KINDS:
             known = ", ".join(KINDS)
             raise LaboratoryError(f"{key}.kind", f"is {sensor.kind!r}; the kinds of gauges are {known}")
@@ -276,17 +267,17 @@ def check(card: Card) -> None:
         block = _as_block(bead)
         ranges.check_coating(key, block)
         ranges.check_bead(key, block)
-        ranges.MODULUS.check(f"{key}.surface.modulus", bead.surface.modulus_Pa / 1e9)
     s = card.striker
-    for key, surface in (("wall", card.wall), ("striker.surface", s.surface)):
-        ranges.MODULUS.check(f"{key}.modulus", surface.modulus_Pa / 1e9)
+    surfaces = {f"{key}.surface": bead.surface for key, bead in places.items()}
+    for key, surface in (surfaces | {"wall": card.wall, "striker.surface": s.surface}).items():
+        ranges.check_material(key, "", _as_material(surface))
     size = None if s.radius_m is None else 2e3 * s.radius_m
     shape = "flat" if size is None else "sphere"
     striker = StrikerBlock(
         shape=shape, material=s.surface.name, mass_g=1e3 * s.mass_kg, diameter_mm=size, speed_m_s=1.0
     )
-    lightest = 1e3 * min(bead.mass_kg for bead in places.values())
-    _check_striker(striker, lightest, s.speeds_m_s, "striker.speeds_m_s")
+    checks.check_striker("striker", striker, 1e3 * min(bead.mass_kg for bead in places.values()))
+    checks.check_speeds("striker.speeds_m_s", *s.speeds_m_s)
 
 
 def _as_block(bead):
@@ -298,6 +289,13 @@ def _as_block(bead):
         core=None if bead.core is None else bead.core.name,
         faces="flat" if bead.flat else "sphere",
     )
+
+
+def _as_material(surface):
+    """Without its name: the model of a record may have moved a modulus away from the table's."""
+    known = {"density_kg_m3": surface.density_kg_m3}
+    known["yield_MPa"] = None if surface.yield_Pa is None else surface.yield_Pa / 1e6
+    return MaterialBlock(modulus_GPa=surface.modulus_Pa / 1e9, **known)
 
 
 def _sensor(block):

@@ -149,9 +149,19 @@ def check_extent(card: Card, catalogue: Catalogue = CATALOGUE) -> None:
         raise InputError(f"{card.name}: {error}") from None
 
 
-def check_times(card: Card, catalogue: Catalogue = CATALOGUE) -> None:
-    """InputError for a duration or a sampling interval that shows nothing of the impact, as of records."""
-    contact = 1e6 * impact_scales(set_up(card, catalogue=catalogue).chain)[1]
+def check_scales(card: Card, catalogue: Catalogue = CATALOGUE) -> None:
+    """InputError for times that show nothing of the impact, or an aim far from its force, as of records."""
+    force, contact = impact_scales(set_up(card, catalogue=catalogue).chain)
+    if aim := card.striker.aim:
+        try:
+            ranges.force_range(force).check("striker.aim.amplitude_N", aim.amplitude_N)
+        except ranges.LaboratoryError as error:
+            raise InputError(f"{card.name}: {error}") from None
+    _check_times(card, 1e6 * contact)
+
+
+def _check_times(card, contact):
+    """Duration and sampling interval beside a contact of so many us."""
     shortest, longest = ranges.SHORTEST_RECORD * contact, ranges.LONGEST_INTERVAL * contact
     duration, interval = 1e6 * card.duration_s, 1e6 * card.interval_s
     told = ""
@@ -175,7 +185,7 @@ def simulate(card: Card, catalogue: Catalogue = CATALOGUE, limits: bool = True) 
     """
     if limits:
         check_extent(card, catalogue)
-        check_times(card, catalogue)
+        check_scales(card, catalogue)
     speeds = np.array(card.striker.speeds_m_s)
     if card.striker.aim is not None:
         speeds = _aimed(card, speeds, catalogue)

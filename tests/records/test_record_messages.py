@@ -21,6 +21,8 @@ WRONG_KEYS = [
     ({"sensors__0__rc_us": 1000.0}, ["sensors[0].rc_us", "unknown key"]),
     ({"sensors__0__droop_us": 1e-3}, ["sensors[0].droop_us", "0.001", "convert it to us"]),
     ({"runs__1__observables__0__sensor": "near"}, ["runs[1].observables[0].sensor", "unknown key"]),
+    ({"materials": {"brass": {"density_kg_m3": 8.5}}}, ["materials.brass.density_kg_m3", "in g/cm3"]),
+    ({"materials": {"brass": {"yield_MPa": 2e8}}}, ["materials.brass.yield_MPa", "in Pa"]),
     ({"format": None}, ["format", "missing"]),
     ({"format": 2}, ["format", "2", "format: 1"]),
     ({"chain__wall": None}, ["chain.wall", "missing"]),

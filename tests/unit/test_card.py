@@ -113,7 +113,74 @@ UNLIKELY = [
     (["materials"], {"parylene-c": {"modulus_GPa": 2.76e9}}, "materials.parylene-c.modulus_GPa", "in Pa"),
     (["chain", "static_force_N"], 2e5, "chain.static_force_N", "convert it to N"),
     (["duration_us"], math.inf, "duration_us", "inf"),
+    (
+        ["materials"],
+        {"parylene-c": {"density_kg_m3": 1.289}},
+        "materials.parylene-c.density_kg_m3",
+        "in g/cm3",
+    ),
+    (["materials"], {"parylene-c": {"yield_MPa": 59e6}}, "materials.parylene-c.yield_MPa", "in Pa"),
+    (["sensors", 0, "droop_us"], 1e-3, "sensors[0].droop_us", "in s or ms: convert it to us"),
+    (["sensors", 0, "lowpass_us"], 2e4, "sensors[0].lowpass_us", "in ns: convert it to us"),
+    (["sensors", 0, "id"], "time_us", "sensors[0].id", "column of the times"),
+    (["sensors", 0, "id"], "run", "sensors[0].id", "column of the numbers of runs"),
 ]
+# Keys of a case that hold a number which no range limits, and why.
+FREE = {
+    "beads", "bead", "bodies",  # counts and places, checked against the chain
+    "duration_us", "sample_us", "amplitude_N",  # held against the impact, which takes the engine: check_scales
+    "poisson",  # limited by its type
+}  # fmt: skip
+
+
+def numbers(schema, kind, path=()):
+    """Paths of all numbers in a JSON schema, through the blocks that it refers to."""
+    properties = schema["$defs"][kind].get("properties", {})
+    for key, found in properties.items():
+        text = json.dumps(found)
+        if '"number"' in text or '"integer"' in text:
+            yield (*path, key)
+        for inner in re.findall(r"#/\$defs/(\w+)", text):
+            if inner not in path:
+                yield from numbers(schema, inner, (*path, key))
+
+
+def test_no_number_of_a_case_is_without_a_range():
+    """A number that no laboratory has is refused wherever it stands, so that no key was forgotten."""
+    solid = {"modulus_GPa": 3.0, "poisson": 0.3}
+    case = altered(["materials"], {"rubber": solid})
+    places = {
+        "chain": ["chain"],
+        "materials": ["materials", "rubber"],
+        "striker": ["striker"],
+        "sensors": ["sensors", 0],
+    }
+    seen = set()
+    for path in numbers(schema(), "CaseBlock"):
+        if path[-1] in FREE or path[0] not in places or path[-1] in seen:
+            continue
+        seen.add(path[-1])
+        inside = [*places[path[0]], *(key for key in path[1:-1] if key in ("bead",)), path[-1]]
+        for value in (1e12, *([1e-12] if path[-1] not in ("static_force_N", "lowpass_us") else [])):
+            block = copy.deepcopy(case)
+            place = block
+            for key in inside[:-1]:
+                place = place[key]
+            place[inside[-1]] = value
+            if path == ("striker", "diameter_mm"):
+                block["striker"]["shape"] = "sphere"
+            with pytest.raises(InputError, match=path[-1].replace("_mm", "")):
+                resolved(block)
+    assert seen >= {
+        "diameter_mm",
+        "mass_g",
+        "coating_um",
+        "static_force_N",
+        "speed_m_s",
+        "droop_us",
+        "lowpass_us",
+    }
+    assert seen >= {"modulus_GPa", "density_kg_m3", "yield_MPa"}
 
 
 @pytest.mark.parametrize(("path", "value", "place", "hint"), UNLIKELY, ids=lambda p: str(p)[:30])

@@ -69,10 +69,19 @@ def test_the_aimed_amplitude_is_met():
 
 def test_an_aim_out_of_reach_is_said():
     striker = CardStriker(
-        mass_kg=0.5e-3, surface=STEEL, speeds_m_s=(0.5,), aim=AimBlock(sensor="wall", amplitude_N=1e-9)
+        mass_kg=0.5e-3, surface=STEEL, speeds_m_s=(0.5,), aim=AimBlock(sensor="wall", amplitude_N=1.0)
     )
+    # The wave is not at the wall by then.
     with pytest.raises(InputError, match=r"c\.nominal: striker\.aim: no speed found"):
         simulation.simulate(card(striker=striker, duration_s=20e-6))
+
+
+@pytest.mark.parametrize(("amplitude", "cure"), [(5e4, "one in mN: convert it to N"), (2e-2, "one in kN")])
+def test_an_aim_in_another_unit_is_suspected(amplitude, cure):
+    aim = AimBlock(sensor="g", amplitude_N=amplitude)
+    striker = CardStriker(mass_kg=0.5e-3, surface=STEEL, speeds_m_s=(0.5,), aim=aim)
+    with pytest.raises(InputError, match=r"c\.nominal: striker\.aim\.amplitude_N: is .*" + cure):
+        simulation.simulate(card(striker=striker))
 
 
 def test_effects_of_a_card_are_simulated():
@@ -132,5 +141,5 @@ def test_a_card_with_effects_survives_its_file():
 )
 def test_times_in_another_unit_are_suspected(times, told):
     with pytest.raises(InputError, match=told):
-        simulation.check_times(card(**times))
-    simulation.check_times(card())
+        simulation.check_scales(card(**times))
+    simulation.check_scales(card())

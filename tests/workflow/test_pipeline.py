@@ -259,10 +259,10 @@ def test_the_workflow_passes_its_lint(pytestconfig, snakemake):
 
 @pytest.fixture
 def alone(tmp_path, pytestconfig):
-    """Call of snakemake in the project's root, where Snakemake is installed and neither library nor engine."""
+    """Call of snakemake in the project's root, where neither library nor engine are installed."""
     (tmp_path / "sitecustomize.py").write_text(
         "import sys\n"
-        f"for name in {['sonicvacuum', 'sonicvacuum_paper', 'sonicvacuum_blind', 'msgspec', 'grimp', 'numba']}:\n"
+        "for name in 'sonicvacuum sonicvacuum_paper sonicvacuum_blind msgspec grimp numba'.split():\n"
         "    sys.modules[name] = None\n"
     )
     command = [sys.executable, "-m", "snakemake", "--cores", "1"]

@@ -14,8 +14,8 @@ from sonicvacuum.materials import MATERIALS
 # Solids from aerogel-like shells to osmium, with room for wires and glue.
 DENSITY = (50.0, 30000.0)
 LIKELY_DENSITY = (500.0, 20000.0)
-# A handbook modulus and one for the same material in a record differ by less.
-MODULUS_FACTOR = 100.0
+# A handbook's number and one for the same material in a record differ by less.
+TABLE_FACTOR = 100.0
 # Largest force of a record over that of the same impact on one contact.
 FORCE = (3e-3, 100.0)
 # Over the contact time: a duration, the whole record, one sampling interval.
@@ -78,15 +78,24 @@ STATIC_FORCE = Range("N", 0.0, 1e4, {"mN": 1e3})
 RELATIVE = Range("(a fraction)", 0.0, 2.0, {"%": 1e2})
 TRIGGER = Range("us", 0.0, 1e4, {"ns": 1e3})
 DROOP = Range("us", 1.0, 1e9, {"s": 1e-6, "ms": 1e-3})
+LOWPASS = Range("us", 0.0, 1e4, {"ns": 1e3})
+SOLID = Range("kg/m3", *DENSITY, {"g/cm3": 1e-3})
+STRENGTH = Range("MPa", 1e-2, 2e5, {"Pa": 1e6, "GPa": 1e-3})
 # A quartz clock is good to 1e-4, a badly set time base to a few per cent.
 CLOCK = Range("(a fraction)", 0.0, 0.2, {"%": 1e2, "ppm": 1e6})
 TOLERANCE = Range("(a fraction)", 0.0, 1.0, {"%": 1e2})
 ODDS = Range("(odds)", 0.0, 1e6, {})
+_FORCES = {"mN": 1e3, "kN": 1e-3}
 WAVE_SPEED = Range("m/s", 1.0, 6000.0, {"km/s": 1e-3, "mm/s": 1e3, "cm/s": 1e2})
 RATIO = Range("(a ratio)", 0.0, 100.0, {"%": 1e2})
 RESTITUTION = Range("(a ratio)", -1.0, 1.2, {"%": 1e2})
 COUNT = Range("(a count)", 0.0, 1000.0, {})
 WIDTH = Range("diameters", 0.3, 1e3, {"m": 5e-3, "mm": 5.0})
+
+
+def force_range(impact_N: float) -> Range:
+    """What a peak may be, given the force of the same impact on one contact."""
+    return Range("N", FORCE[0] * impact_N, FORCE[1] * impact_N, _FORCES)
 
 
 def check_mass(key: str, mass_g: float, diameter_mm: float) -> None:
@@ -150,18 +159,31 @@ def check_striker_mass(key: str, mass_g: float, bead_g: float) -> None:
         )
 
 
-def check_modulus(key: str, name: str, modulus_GPa: float) -> None:
-    """LaboratoryError for a modulus outside the range, or far from the table's for a material it knows."""
-    MODULUS.check(f"{key}.modulus_GPa", modulus_GPa)
-    if name not in MATERIALS:
-        return
-    table = MATERIALS[name].modulus / 1e9
-    if table / MODULUS_FACTOR <= modulus_GPa <= table * MODULUS_FACTOR:
+def check_material(key: str, name: str, given) -> None:
+    """LaboratoryError for numbers that no solid has, or far from the table's for a material that it knows."""
+    table = MATERIALS.get(name)
+    for part, value, limits, known in (
+        ("modulus_GPa", given.modulus_GPa, MODULUS, table and table.modulus / 1e9),
+        ("density_kg_m3", given.density_kg_m3, SOLID, table and table.density),
+        (
+            "yield_MPa",
+            given.yield_MPa,
+            STRENGTH,
+            table and table.yield_strength and table.yield_strength / 1e6,
+        ),
+    ):
+        if value is not None:
+            limits.check(f"{key}.{part}", value)
+            _check_known(f"{key}.{part}", name, value, limits, known)
+
+
+def _check_known(key, name, value, limits, table):
+    if table is None or table / TABLE_FACTOR <= value <= table * TABLE_FACTOR:
         return
     raise LaboratoryError(
-        f"{key}.modulus_GPa",
-        f"is {modulus_GPa:g} GPa; the table has {table:g} GPa for {name}"
-        + suspicion("GPa", modulus_GPa, table / 10.0, table * 10.0, MODULUS.others),
+        key,
+        f"is {value:g} {limits.unit}; the table has {table:g} {limits.unit} for {name}"
+        + suspicion(limits.unit, value, table / 10.0, table * 10.0, limits.others),
     )
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from sonicvacuum.files import InputError, check_finite, convert, read_yaml
 from sonicvacuum.gauges import KINDS
+from sonicvacuum.laboratory.checks import TIME
 from sonicvacuum.laboratory.ranges import FORCE, LONGEST_INTERVAL, SHORTEST_RECORD, LaboratoryError
 from sonicvacuum.physics.scales import impact_scales
 from sonicvacuum.records import signals
@@ -159,16 +160,16 @@ def _check_times(traces, contact, path):
         ]
         look = f"times look like {' or '.join(units)}" if units else "the record is too short"
         raise InputError(
-            f"{path}, column {signals.TIME}: the record lasts {span * 1e6:.3g} us, while {shown}: {look}; "
+            f"{path}, column {TIME}: the record lasts {span * 1e6:.3g} us, while {shown}: {look}; "
             "convert times to microseconds"
         )
     if interval > LONGEST_INTERVAL * contact:
         raise InputError(
-            f"{path}, column {signals.TIME}: samples are {interval * 1e6:.3g} us apart, while {shown}: times "
+            f"{path}, column {TIME}: samples are {interval * 1e6:.3g} us apart, while {shown}: times "
             "look like ns, or the sampling is too coarse; convert times to microseconds"
         )
     if traces.start_s > span or traces.start_s < -0.9 * span:
         raise InputError(
-            f"{path}, column {signals.TIME}: the record starts at {traces.start_s * 1e6:g} us; count time "
+            f"{path}, column {TIME}: the record starts at {traces.start_s * 1e6:g} us; count time "
             "from about the moment of impact"
         )

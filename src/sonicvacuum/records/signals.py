@@ -15,9 +15,9 @@ from functools import cached_property
 import numpy as np
 
 from sonicvacuum.files import InputError, read_text, replacing
+from sonicvacuum.laboratory.checks import TIME
 from sonicvacuum.observe.trace import Trace
 
-TIME = "time_us"
 FEWEST = 16
 # Times may be off the equidistant ones by this fraction of the interval, or by the rounding of the digits
 # printed while that is below the second fraction (a missing row puts times off by half an interval or more).

@@ -4,8 +4,8 @@ from collections.abc import Iterable
 
 from sonicvacuum.gauges import KINDS
 from sonicvacuum.gauges.base import misplaced
-from sonicvacuum.laboratory import ranges
-from sonicvacuum.laboratory.blocks import bead_blocks, material_of, specimen_of, striker_of
+from sonicvacuum.laboratory import checks, ranges
+from sonicvacuum.laboratory.blocks import material_of, specimen_of, striker_of
 from sonicvacuum.laboratory.ranges import LaboratoryError
 from sonicvacuum.physics.scales import impact_scales
 from sonicvacuum.records.assemble import assemble
@@ -19,7 +19,6 @@ from sonicvacuum.records.blocks import (
     SpeedAtAmplitudeBlock,
 )
 from sonicvacuum.records.record import Record
-from sonicvacuum.records.signals import TIME
 
 _RANGE_OF = {
     "speed": ranges.WAVE_SPEED,
@@ -50,18 +49,15 @@ def validate(block: RecordBlock) -> None:
 
 
 def _check_chain(block):
-    ranges.STATIC_FORCE.check("chain.static_force_N", block.chain.static_force_N)
-    for key, bead in bead_blocks(block.chain).kinds:
-        ranges.check_bead(key, bead)
+    checks.check_chain(block.chain)
     return specimen_of(block.chain, block.materials)
 
 
 def _check_materials(block):
     for k, run in enumerate(block.runs):
         material_of(run.striker.material, block.materials, f"runs[{k}].striker.material")
+    checks.check_materials(block.materials)
     for name, given in block.materials.items():
-        if given.modulus_GPa is not None:
-            ranges.check_modulus(f"materials.{name}", name, given.modulus_GPa)
         ranges.RELATIVE.check(f"materials.{name}.modulus_rel_sigma", given.modulus_rel_sigma or 0.0)
 
 
@@ -72,8 +68,7 @@ def _check_sensors(block):
     _check_unique("sensors", [s.id for s in block.sensors])
     for k, s in enumerate(block.sensors):
         key = f"sensors[{k}]"
-        if s.id == TIME:
-            raise LaboratoryError(f"{key}.id", f"is {TIME!r}, the column of the times; choose another")
+        checks.check_sensor(key, s)
         if s.kind not in KINDS:
             raise LaboratoryError(f"{key}.kind", f"is {s.kind!r}; write {' or '.join(KINDS)}")
         if problem := misplaced(s.kind, s.bead, beads):
@@ -82,8 +77,6 @@ def _check_sensors(block):
         if s.gain_rel_sigma != "unknown":
             ranges.RELATIVE.check(f"{key}.gain_rel_sigma", s.gain_rel_sigma)
         ranges.TRIGGER.check(f"{key}.delay_sigma_us", s.delay_sigma_us)
-        if s.droop_us is not None:
-            ranges.DROOP.check(f"{key}.droop_us", s.droop_us)
         _check_units(s, key)
 
 
@@ -118,8 +111,7 @@ def _check_apparatus(block):
     given = block.apparatus
     if given is None:
         return
-    for speed in given.speed_m_s or ():
-        ranges.SPEED.check("apparatus.speed_m_s", speed)
+    checks.check_speeds("apparatus.speed_m_s", *(given.speed_m_s or ()))
     if given.speed_m_s and given.speed_m_s[0] > given.speed_m_s[1]:
         slow, fast = given.speed_m_s
         raise LaboratoryError("apparatus.speed_m_s", f"is [{slow:g}, {fast:g}]; give the slowest first")
@@ -148,26 +140,21 @@ def _check_run(block, specimen, run, key):
         raise LaboratoryError(
             key, f"run {run.id!r} has neither signals nor observables; give one or remove the run"
         )
-    _check_striker(specimen, run.striker, f"{key}.striker")
+    _check_striker(specimen, block.chain, run.striker, f"{key}.striker")
     if run.signals is not None:
         _check_traced(block, run, key)
     for j, observable in enumerate(run.observables):
         _check_observable(block, observable, f"{key}.observables[{j}]")
 
 
-def _check_striker(specimen, striker, key):
+def _check_striker(specimen, chain, striker, key):
     striker_of(striker, specimen.first.surface, specimen, key, striker.speed_m_s)
     if specimen.beads == 0 and striker.shape != "sphere":
         raise LaboratoryError(
             f"{key}.shape", f"is {striker.shape!r}; with beads: 0 the striker is the ball: sphere"
         )
-    if striker.diameter_mm is not None:
-        ranges.DIAMETER.check(f"{key}.diameter_mm", striker.diameter_mm)
-    if striker.shape == "sphere":
-        ranges.check_mass(key, striker.mass_g, striker.diameter_mm)
-    else:
-        ranges.check_striker_mass(key, striker.mass_g, 1e3 * specimen.first.mass_kg)
-    ranges.SPEED.check(f"{key}.speed_m_s", striker.speed_m_s)
+    checks.check_striker(key, striker, checks.lightest_g(chain))
+    checks.check_speeds(f"{key}.speed_m_s", striker.speed_m_s)
     ranges.RELATIVE.check(f"{key}.speed_rel_sigma", striker.speed_rel_sigma)
 
 
@@ -258,8 +245,7 @@ def _range(entry, force, contact):
     if quantity == "amplitude" and entry.unit != "N":
         return ranges.Range(entry.unit, 0.0, 1e9, {})
     if quantity == "amplitude":
-        low, high = ranges.FORCE
-        return ranges.Range("N", low * force, high * force, {"mN": 1e3, "kN": 1e-3})
+        return ranges.force_range(force)
     if quantity in ("duration", "contact_duration", "echo_delay"):
         low, high = (f * contact * 1e6 for f in ranges.DURATION)
         return ranges.Range("us", low, high, {"s": 1e-6, "ms": 1e-3, "ns": 1e3})
