@@ -128,7 +128,7 @@ UNLIKELY = [
 # Keys of a case that hold a number which no range limits, and why.
 FREE = {
     "beads", "bead", "bodies",  # counts and places, checked against the chain
-    "duration_us", "sample_us", "amplitude_N",  # held against the impact, which takes the engine: check_scales
+    "duration_us", "sample_us", "amplitude_N",  # held against the impact, in simulation.check_scales
     "poisson",  # limited by its type
 }  # fmt: skip
 

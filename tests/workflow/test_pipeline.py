@@ -4,6 +4,7 @@ The pipeline is run once on two small cases and a small record; what a change wo
 plan.
 """
 
+import hashlib
 import json
 import os
 import re
@@ -207,6 +208,34 @@ def test_deleting_an_output_rebuilds_it_and_its_descendants(project, snakemake, 
         assert planned(project) == {}
 
 
+def test_each_folder_of_products_says_where_they_come_from(project, pytestconfig):
+    """Each file's digest, rule, command, sources and inputs, back to what a user wrote; no times."""
+    script = pytestconfig.rootpath / "workflow/scripts/provenance.py"
+    folders = [project / "results", (project / PAGE).parent, (project / ODD_PAGE).parent]
+    out = [str(folder.relative_to(project) / "provenance.json") for folder in folders]
+    command = [sys.executable, script, TARGET, PAGE, ODD_PAGE, "--out", *out, "--given", "config.yaml"]
+    texts = []
+    for _ in range(2):
+        subprocess.run(command, cwd=project, check=True)
+        texts.append([(project / path).read_bytes() for path in out])
+    assert texts[0] == texts[1]
+    found = [json.loads(text) for text in texts[0]]
+    files = {path: made for one in found for path, made in one["files"].items()}
+    for path, digest in [
+        *((path, made["sha256"]) for path, made in files.items()),
+        *(pair for made in files.values() for pair in made["inputs"].items()),
+        *found[0]["given"].items(),
+    ]:
+        assert hashlib.sha256((project / path).read_bytes()).hexdigest() == digest, path
+    assert {made["rule"] for made in files.values()} == {*ALL, "record_page"}
+    assert all(re.fullmatch("[0-9a-f]{64}", made["sources"]) for made in files.values())
+    assert files[TARGET]["command"].startswith("sonicvacuum paper metrics results/metrics/coated.soft.csv")
+    assert found[1]["files"][PAGE.replace("index.html", "verdict.json")]["inputs"].keys() == {
+        "records/ball/record.yaml"
+    }
+    assert all(path.startswith(os.path.dirname(PAGE)) for path in found[1]["files"])
+
+
 def test_a_bad_configuration_stops_with_one_sentence(project, snakemake):
     (project / "config.yaml").write_text(CONFIG.replace("beads: 5", "beads: five"))
     done = snakemake(project, "--dry-run", TARGET)
@@ -218,7 +247,17 @@ def test_a_bad_configuration_stops_with_one_sentence(project, snakemake):
 def test_the_root_makes_by_default_all_that_the_workflow_makes(pytestconfig, snakemake):
     done = snakemake(pytestconfig.rootpath, "--dry-run", "--forceall", "--quiet", "host")
     jobs = set(re.findall(r"^(\w+)\s+\d+$", done.said, flags=re.MULTILINE))
-    assert {"pipeline", "page", "ledger", "draw", "record_page", "timings", "draw_kept", "score"} <= jobs
+    assert {
+        "pipeline",
+        "provenance",
+        "page",
+        "ledger",
+        "draw",
+        "record_page",
+        "timings",
+        "draw_kept",
+        "score",
+    } <= jobs
 
 
 def test_another_workflow_can_use_this_one_as_a_module(tmp_path, pytestconfig, planned):

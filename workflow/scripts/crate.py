@@ -29,6 +29,7 @@ PRODUCTS = ("figures/*.csv", "figures/*.svg", "figures/*.png", "results/*.csv", 
 PRODUCTS += tuple(
     f"results/discover/*/{name}" for name in ("verdict.json", "model.json", "*.csv", "index.html")
 )
+PRODUCTS += ("figures/provenance.json", "results/provenance.json", "results/discover/*/provenance.json")
 
 
 def described(crate, root: Path, patterns: Iterable[str]) -> list:

@@ -26,6 +26,8 @@ from sonicvacuum_paper.report.publish import naming
 PARTS = ("Snakefile", "config.yaml", "workflow", "src", "requirements.lock", "requirements-build.lock")
 # Times, by their nature different in every run.
 UNLIKE = ("results/logs", "results/benchmarks", "results/benchmarks.csv", ".snakemake")
+# Says the digests of verdicts, which hold such times.
+PROVENANCE = "provenance.json"
 STUDY = "results/blind"
 REFERENCE = "workflow/resources/reference"
 
@@ -59,7 +61,8 @@ def products(folder: Path) -> set[str]:
     paths = (
         p.relative_to(folder).as_posix() for top in ("results", "figures") for p in (folder / top).rglob("*")
     )
-    return {p for p in paths if (folder / p).is_file() and not p.startswith((*UNLIKE, STUDY))}
+    made = {p for p in paths if (folder / p).is_file() and not p.startswith((*UNLIKE, STUDY))}
+    return {p for p in made if not p.endswith(PROVENANCE)}
 
 
 def unequal(one: Path, other: Path) -> list[str]:
