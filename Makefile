@@ -2,6 +2,8 @@
 
 PYTHON ?= python3
 CORES ?= 2
+# Of the full blind study, for `make slurm`.
+RECORDS ?= 4
 # Snakemake, also after a run that was killed.
 START = $(BIN)/python workflow/scripts/start.py
 UV_VERSION := 0.13.8
@@ -82,8 +84,8 @@ fuzz: env  ## try 5500 damaged files of every kind that users hand over; table i
 crash: env  ## disturb 60 runs of a small pipeline and let `make` recover; table in results/crash.csv
 	$(BIN)/python workflow/scripts/crash.py --moments 60 --out results/crash.csv
 
-slurm: .venv/clustered  ## a small pipeline on a Slurm of one node, started here, against a local run; table in results/slurm.csv
-	$(BIN)/python workflow/scripts/cluster.py --out results/slurm.csv
+slurm: .venv/clustered  ## a small pipeline and RECORDS of the full study (2034: all) on a Slurm of one node, started here, against a local run
+	$(BIN)/python workflow/scripts/cluster.py --records $(RECORDS) --out results/slurm.csv
 
 crate: .venv/clustered  ## the finished run as an RO-Crate in results/crate
 	$(BIN)/python workflow/scripts/crate.py --out results/crate

@@ -8,7 +8,7 @@ import msgspec
 from msgspec import Meta, Struct
 
 from sonicvacuum.card import Card, CaseBlock, ModelBlock, Name, merged, resolve, variant_names
-from sonicvacuum.files import InputError, check_finite, convert, read_yaml
+from sonicvacuum.files import InputError, check_values, convert, read_yaml
 from sonicvacuum.laboratory.ranges import LaboratoryError
 
 
@@ -39,7 +39,7 @@ def read(path) -> Config:
         InputError: naming the file, the key, the value and the cure.
     """
     content = read_yaml(path)
-    check_finite(content, path)
+    check_values(content, path)
     config = convert(content, Config, path)
     for place, folder in enumerate(config.discover):
         _check_folder(folder, f"{path}: discover[{place}]")

@@ -24,6 +24,9 @@ MOST_VALUES = 200_000
 DEEPEST = 50
 
 
+# What moves a terminal's cursor or turns its writing round; tabs and new lines aside.
+_CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069]")
+
 # What parsers raise at content that is not theirs; programming errors elsewhere stay visible.
 _DAMAGED = (
     ArithmeticError,
@@ -211,18 +214,30 @@ def convert(content: Any, kind: type, path: str | os.PathLike, prefix: str = "")
         raise InputError(explain(error, content, path, prefix, kind)) from None
 
 
-def check_finite(content: Any, path: str | os.PathLike, place: str = "") -> None:
-    """InputError for a number that is none: YAML knows .nan and .inf, which pass many a comparison."""
+def in_one_line(text: str) -> str:
+    """A text to be printed, whoever wrote it: control characters and new lines as Python writes them."""
+    return re.sub(r"[\t\n]|" + _CONTROL.pattern, lambda found: repr(found[0])[1:-1], text)
+
+
+def check_values(content: Any, path: str | os.PathLike, place: str = "") -> None:
+    """InputError for a number that is none (YAML knows .nan and .inf) or a text with control characters."""
     if isinstance(content, dict):
+        for key in content:
+            if in_one_line(str(key)) != str(key):
+                raise InputError(
+                    f"{path}: {place or 'top level'}: key {key!r} holds control characters; remove them"
+                )
         parts = [(f"{place}.{k}" if place else str(k), v) for k, v in content.items()]
     elif isinstance(content, list):
         parts = [(f"{place}[{k}]", v) for k, v in enumerate(content)]
     else:
         if isinstance(content, float) and not math.isfinite(content):
             raise InputError(f"{path}: {place}: is {content}; write a finite number, or leave the key out")
+        if isinstance(content, str) and _CONTROL.search(content):
+            raise InputError(f"{path}: {place}: is {content!r}, which holds control characters; remove them")
         return
     for key, value in parts:
-        check_finite(value, path, key)
+        check_values(value, path, key)
 
 
 def explain(

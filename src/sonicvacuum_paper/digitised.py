@@ -13,7 +13,7 @@ import numpy as np
 import pandas as pd
 from msgspec import Meta, Struct
 
-from sonicvacuum.files import InputError, check_finite, convert, read_yaml
+from sonicvacuum.files import InputError, check_values, convert, read_yaml
 
 SERIES = "digitised"
 # Figure → panels, and what stands on its axes.
@@ -63,7 +63,7 @@ class Digitised(_Block):
 def read(path) -> Digitised:
     """The points in a file; InputError names file, key, value and cure."""
     content = read_yaml(path)
-    check_finite(content, path)
+    check_values(content, path)
     found = convert(content, Digitised, path)
     trace = found.figure != "fig4"
     if trace and found.sensor is None:

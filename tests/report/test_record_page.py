@@ -1,16 +1,20 @@
 """The page of a record says what its verdict says, whatever the outcome, and needs nothing but itself."""
 
+import dataclasses
+import json
 import re
 from html.parser import HTMLParser
+from xml.etree import ElementTree
 
 import pytest
 from made_verdicts import KINDS, WITHOUT_TRACES, gaps, model, verdict, write
 from msgspec.structs import replace
 
 from sonicvacuum.discover.verdict import write_json
+from sonicvacuum.effects import CATALOGUE, Catalogue, Effect, Source
 from sonicvacuum.figures import disagreement, discovery, posterior, style
 from sonicvacuum.files import InputError
-from sonicvacuum.report import bench, record, words
+from sonicvacuum.report import bench, plots, record, words
 from sonicvacuum.report.record import write_page
 from sonicvacuum.tables import read_csv
 
@@ -270,6 +274,14 @@ def test_a_name_of_any_kind_leaves_ids_whole(tmp_path):
     assert f'href="#{id}"' in page
 
 
+def test_data_for_a_script_hold_nothing_that_ends_or_hides_it():
+    hostile = "</script><!--<script>"
+    text = str(plots.script([{"title": hostile}]))
+    data = text.split(">", 1)[1].split("</script>", 1)[0]
+    assert "<" not in data
+    assert json.loads(data) == [{"title": hostile}]
+
+
 class Tags(HTMLParser):
     """Names of tags in order, and of attributes that would run something."""
 
@@ -281,6 +293,27 @@ class Tags(HTMLParser):
     def handle_starttag(self, tag, attributes):
         self.tags.append(tag)
         self.handlers += [name for name, _ in attributes if name.startswith("on")]
+
+
+def test_words_of_an_effect_of_ones_own_are_text(folders, tmp_path):
+    hostile = "\"'><img src=x onerror=alert(1)>&amp; <!--<script> ${x} a_{<b>} $\\\\frac{$"
+    words = {f.name: hostile for f in dataclasses.fields(Effect) if f.type in ("str", str) and f.name != "id"}
+    own = tuple(
+        dataclasses.replace(e, **words, source=Source(hostile, "0" * 64)) if e.id == "kuwabara-kono" else e
+        for e in CATALOGUE
+    )
+    known = Catalogue(own, CATALOGUE.besides)
+    folder = write(tmp_path / "made", "class")
+    discovery.draw(folder, known)
+    found, usual = (
+        Tags(path.read_text(encoding="utf-8"))
+        for path in (write_page(folder, known), folders["class"] / "index.html")
+    )
+    assert set(found.tags) <= {*usual.tags, "sub", "i"}  # formulas have subscripts
+    assert found.handlers == []
+    assert "onerror=alert(1)" in told(folder)
+    for picture in folder.glob("*.svg"):
+        ElementTree.parse(picture)
 
 
 def test_hostile_names_of_runs_gauges_and_the_rest_are_text(folders, tmp_path):

@@ -10,7 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sonicvacuum import files
-from sonicvacuum.files import InputError, check_finite, convert, read_text, read_yaml, replacing
+from sonicvacuum.cli import main
+from sonicvacuum.files import InputError, check_values, convert, read_text, read_yaml, replacing
 
 
 def test_a_failure_leaves_what_stood_there(tmp_path):
@@ -161,4 +162,30 @@ def test_keys_that_users_choose_are_named(parts, told):
 def test_numbers_that_are_none_are_named(number):
     content = yaml.safe_load(f"a: [{{b: 1.0}}, {{b: {number}}}]")
     with pytest.raises(InputError, match=r"c.yaml: a\[1\].b: is .*finite"):
-        check_finite(content, "c.yaml")
+        check_values(content, "c.yaml")
+
+
+@pytest.mark.parametrize(
+    ("content", "told"),
+    [
+        ({"title": "a\x1b[2J"}, r"c\.yaml: title: is 'a\\x1b\[2J'"),
+        ({"runs": [{"id": "\u202ea"}]}, r"c\.yaml: runs\[0\]\.id: .*u202e"),
+        ({"materials": {"brass\n": {}}}, r"c\.yaml: materials: key 'brass\\n'"),
+    ],
+)
+def test_what_moves_a_terminals_cursor_is_refused(content, told):
+    with pytest.raises(InputError, match=told):
+        check_values(content, "c.yaml")
+
+
+def test_a_text_of_several_lines_is_a_text():
+    check_values({"note": "two\n\tlines of µ"}, "c.yaml")
+
+
+def test_whatever_stands_in_a_path_is_told_in_one_line(monkeypatch, capsys):
+    monkeypatch.setattr("sys.argv", ["sonicvacuum", "discover", "no\nsuch\x1b[31m folder", "--out", "x"])
+    with pytest.raises(SystemExit) as done:
+        main()
+    told = capsys.readouterr().err
+    assert done.value.code == 2
+    assert "\x1b" not in told and "Error" in told.splitlines()[-1]

@@ -1,7 +1,9 @@
 """What the rules of the blind study share: its parts and batches."""
 
-# Study → number of batches.
-BATCHES = {"small": 4, "training": 4, "full": 24}
+# Study → number of batches, and how many of them are made. For a part of the full study, that is to see it run:
+# `--config full_batches=1017 full_taken=2` makes four of its records in two jobs.
+BATCHES = {"small": 4, "training": 4, "full": int(config.get("full_batches", 24))}
+TAKEN = BATCHES | {"full": int(config.get("full_taken", BATCHES["full"]))}
 # Study → of how many batches ambiguous records get one more run, which takes two joint verdicts for every such record.
 # Effects take turns among the cases, so that a batch holds every second one: an even number of batches holds all alike.
 FOLLOWED = {"small": 4, "training": 4, "full": 4}
@@ -16,7 +18,7 @@ CHOICES = ["proposed", "random"]
 def batches(part):
     """Input function: the folders of all batches of a part (records, truth, verdicts, …) of a study."""
     return lambda wildcards: expand(
-        f"{BLIND}/{part}/{{batch}}", study=wildcards.study, batch=range(BATCHES[wildcards.study])
+        f"{BLIND}/{part}/{{batch}}", study=wildcards.study, batch=range(TAKEN[wildcards.study])
     )
 
 

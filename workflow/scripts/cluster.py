@@ -2,7 +2,7 @@
 
 Four times: undisturbed, with a job put back as by preemption, with a job that is killed, with the node's
 daemon killed in the middle and started again. One row each, exit code 1 where products differ or a run does
-not end well.
+not end well. With `--records`, so many of the full blind study after it (2034: all), see `cluster_study`.
 """
 
 import argparse
@@ -13,6 +13,7 @@ import time
 from datetime import datetime
 from pathlib import Path
 
+import cluster_study
 from crash import Run, project
 from one_node import Slurm
 from reproduce import unequal
@@ -84,29 +85,51 @@ def attempt(slurm: Slurm, folder: Path, trial: str, whole: Path) -> dict:
     return dict(zip(COLUMNS, (*values, round(commands(folder), 1)), strict=True))
 
 
+def tried(slurm: Slurm, place: Path, trials, stream) -> int:
+    """Write the table of the small pipeline; how many trials did not end as they should."""
+    local = Run(project(place / "local"), TARGET)
+    if local.end():
+        sys.exit(f"the local run failed:\n{local.log.read_text()[-4000:]}")
+    failed, table = 0, csv.DictWriter(stream, COLUMNS, lineterminator="\n")
+    table.writeheader()
+    for number, trial in enumerate(trials):
+        row = attempt(slurm, place / f"run-{number}", trial, place / "local")
+        table.writerow(row)
+        stream.flush()
+        print(*row.values(), flush=True)
+        failed += row["exit"] != 0 or not row["same_bytes"]
+    return failed
+
+
+def studied(slurm: Slurm, place: Path, records: int, stream) -> int:
+    """Write the row of the blind study; 1 where it did not end as it should."""
+    row = cluster_study.row(slurm, place, records, OPTIONS, finished)
+    table = csv.DictWriter(stream, row, lineterminator="\n")
+    table.writeheader()
+    table.writerow(row)
+    print(*(f"{key}: {value}" for key, value in row.items()), sep=", ", flush=True)
+    return int(row["exit"] != 0 or not row["same_bytes"])
+
+
 def main() -> int:
     """The table; 1 where a trial did not end as it should."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--trials", nargs="+", choices=TRIALS, default=TRIALS)
-    parser.add_argument("--out", type=Path, required=True)
+    parser.add_argument("--trials", nargs="*", choices=TRIALS, default=TRIALS)
+    parser.add_argument("--records", type=int, default=0, help="Of the full blind study; 2034 are all.")
+    parser.add_argument("--out", type=Path, required=True, help="Table; that of the study gets -study.")
     asked = parser.parse_args()
     failed = 0
     asked.out.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as name:
         place = Path(name).resolve()
         place.chmod(0o755)
-        with Slurm(place / "slurm") as slurm, open(asked.out, "w", newline="") as stream:
-            local = Run(project(place / "local"), TARGET)
-            if local.end():
-                sys.exit(f"the local run failed:\n{local.log.read_text()[-4000:]}")
-            table = csv.DictWriter(stream, COLUMNS, lineterminator="\n")
-            table.writeheader()
-            for number, trial in enumerate(asked.trials):
-                row = attempt(slurm, place / f"run-{number}", trial, place / "local")
-                table.writerow(row)
-                stream.flush()
-                print(*row.values(), flush=True)
-                failed += row["exit"] != 0 or not row["same_bytes"]
+        with Slurm(place / "slurm") as slurm:
+            if asked.trials:
+                with open(asked.out, "w", newline="") as stream:
+                    failed += tried(slurm, place, asked.trials, stream)
+            if asked.records:
+                with open(asked.out.with_stem(f"{asked.out.stem}-study"), "w", newline="") as stream:
+                    failed += studied(slurm, place, asked.records, stream)
     return int(failed > 0)
 
 

@@ -1,7 +1,7 @@
 """Where each product comes from, in a file beside it: `provenance.json` in every folder of products.
 
-For each file its SHA-256, the rule and the command that made it, the digest of the sources which that command
-runs, and the SHA-256 of each input; the inputs that were made themselves are listed with theirs, back to what a
+For each file its SHA-256, the rule and the command that made it, the digest of the sources that this command
+runs, and the SHA-256 of each input; inputs that were made themselves are listed with theirs, back to what a
 user wrote. No times: the same run gives the same bytes. Read off what Snakemake keeps of its jobs.
 """
 

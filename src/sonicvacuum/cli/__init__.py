@@ -12,7 +12,7 @@ from importlib import import_module
 import click
 
 from sonicvacuum.cli.helped import COMPLETION, EXIT_CODES, locked
-from sonicvacuum.files import MACHINE, InputError, check_file
+from sonicvacuum.files import MACHINE, InputError, check_file, in_one_line
 
 # Verb → where it stands; the order is the order of the work. The two groups at the end belong to packages
 # that the library does not import.
@@ -118,10 +118,11 @@ def main():
         error.show()
         sys.exit(2)
     except InputError as error:
-        click.echo(f"Error: {error}", err=True)
+        click.echo(f"Error: {in_one_line(str(error))}", err=True)
         sys.exit(2)
     except OSError as error:  # a full disk is the machine's fault, a place that cannot be written is not
-        click.echo(f"Error: {error.filename or 'output'}: {error.strerror or error}", err=True)
+        told = f"{error.filename or 'output'}: {error.strerror or error}"
+        click.echo(f"Error: {in_one_line(told)}", err=True)
         _forget_output()
         sys.exit(1 if error.errno in MACHINE else 2)
     except ModuleNotFoundError as error:

@@ -4,7 +4,7 @@ import hashlib
 import re
 from pathlib import Path
 
-from sonicvacuum.files import InputError, check_finite, convert, read_yaml
+from sonicvacuum.files import InputError, check_values, convert, read_yaml
 from sonicvacuum.gauges import KINDS
 from sonicvacuum.laboratory.checks import TIME
 from sonicvacuum.laboratory.ranges import FORCE, LONGEST_INTERVAL, SHORTEST_RECORD, LaboratoryError
@@ -68,7 +68,7 @@ def _digest(files):
 
 def parse(content: dict, path=FILE) -> RecordBlock:
     """The checked block of a YAML mapping; InputError as in `read`."""
-    check_finite(content, path)
+    check_values(content, path)
     _check_observables(content, path)
     lacking = missing(content, RecordBlock)
     if len(lacking) > 1:

@@ -77,7 +77,8 @@ def script(found: list[dict]) -> Markup:
     """Data, library and program for the bottom of a page; nothing without traces."""
     if not found:
         return Markup("")
-    data = json.dumps(found, separators=(",", ":"), allow_nan=False).replace("</", "<\\/")
+    # Within a script neither </script> nor <!-- may stand.
+    data = json.dumps(found, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
     parts = [
         f'<script type="application/json" id="traces-data">{data}</script>',
         f"<script>{_text('vendor/uPlot-1.6.32.min.js')}</script>",
