@@ -20,7 +20,7 @@ COMPILE := pip compile --quiet --universal --generate-hashes --no-emit-index-url
 	--custom-compile-command "make lock"
 
 .DELETE_ON_ERROR:
-.PHONY: always all env test browser bare fuzz crash slurm crate generic reproduce bench study slips docs lock clean help
+.PHONY: always all env test browser bare fuzz crash slurm crate generic reproduce bench study slips extras docs lock clean help
 
 all: env  ## build the environment, then run the whole pipeline
 	$(START) --cores $(CORES)
@@ -106,6 +106,9 @@ study: .venv/studied  ## the full blind study with its baselines and further run
 
 slips: env  ## slips of the laboratory in 270 records, searched and counted; takes hours
 	$(START) --cores $(CORES) results/blind_slips/summary.csv
+
+extras: env  ## smooth systematic errors, three and four effects: 139 records, searched and counted; takes hours
+	$(START) --cores $(CORES) results/blind_extras/summary.csv
 
 docs: .venv/documented  ## build the documentation into results/docs
 	$(BIN)/mkdocs build --quiet --config-file workflow/mkdocs.yml

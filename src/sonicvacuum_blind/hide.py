@@ -22,7 +22,7 @@ from sonicvacuum_blind.record import as_record
 from sonicvacuum_blind.signature import Frame
 from sonicvacuum_blind.strength import Rival, ceiling, leftover, nearest, pair_ceiling, rivals, scale
 
-KINDS = ("null", "single", "pair", "foreign")
+KINDS = ("null", "single", "pair", "set", "foreign")
 TRUTH = "truth.json"
 NOISES = ("white", "ar1", "quantised")
 # Error of the integrator for the data themselves: 1e-7 of a peak.
@@ -45,7 +45,8 @@ class Spec:
         kind: one of `KINDS`.
         design: one of `design.KINDS`.
         noise: one of `NOISES`.
-        effects: ids of the catalogue (kind single: one, pair: two) or of `foreign` (one); none for null.
+        effects: ids of the catalogue (kind single: one, pair: two, set: three or four) or of `foreign` (one);
+            none for null.
         d_prime: wanted d′ of each effect; for foreign ones, of what no single effect of the catalogue
             explains.
         seed: of the study, and the case's own place in it.
@@ -70,9 +71,10 @@ class Spec:
             if value not in allowed:
                 raise ValueError(f"case {self.id}: {name} is {value!r}; use one of {', '.join(allowed)}")
         known = foreign.BY_ID if self.kind == "foreign" else catalogue.BY_ID
-        wanted = {"null": 0, "single": 1, "pair": 2, "foreign": 1}[self.kind]
-        if len(self.effects) != wanted:
-            raise ValueError(f"case {self.id}: kind {self.kind} hides {wanted} effects, got {self.effects}")
+        wanted = {"null": (0,), "single": (1,), "pair": (2,), "set": (3, 4), "foreign": (1,)}[self.kind]
+        if len(self.effects) not in wanted:
+            number = " or ".join(map(str, wanted))
+            raise ValueError(f"case {self.id}: kind {self.kind} hides {number} effects, got {self.effects}")
         for name in self.effects:
             if name not in known:
                 raise ValueError(f"case {self.id}: effect {name!r} is not one of {', '.join(known)}")

@@ -10,6 +10,8 @@ blind = Verbs(
         "score": "sonicvacuum_blind.cli.score:score",
         "slips": "sonicvacuum_blind.cli.slips:slips",
         "slips-score": "sonicvacuum_blind.cli.slips:slips_score",
+        "extras": "sonicvacuum_blind.cli.extras:extras",
+        "extras-score": "sonicvacuum_blind.cli.extras:extras_score",
         "follow": "sonicvacuum_blind.cli.follow:follow",
         "resolved": "sonicvacuum_blind.cli.resolved:resolved",
         "calibrate": "sonicvacuum_blind.cli.calibrate:calibrate",
