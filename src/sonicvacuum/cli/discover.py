@@ -66,7 +66,9 @@ def discover(records, out, together, figures, threads, own, quiet, no_limits):
         for folder, paths in groups.items():
             with stages_shown(", ".join(paths), quiet):
                 result = session.discover(*(read(p) for p in paths), threads=threads, catalogue=known)
-            with renewed(folder, last="verdict.json", stale=(*page_files(), "law.csv", "posterior.csv")) as fresh:
+            with renewed(
+                folder, last="verdict.json", stale=(*page_files(), "law.csv", "posterior.csv")
+            ) as fresh:
                 session.write(result, fresh)
                 if figures:
                     illustrate(fresh, known, pool)

@@ -63,7 +63,9 @@ PICTURES = {
     "scalars": lambda folder: disagreement.scalars(read_csv(folder / "where.csv")),
     "traces": lambda folder: traces(read_csv(folder / "traces.csv"), _verdict(folder)["named"]),
     "candidates": lambda folder: candidates(_verdict(folder)["probabilities"]),
-    "parameters": lambda folder: posterior.parameters(read_csv(folder / "parameters.csv"), draws.read(folder)),
+    "parameters": lambda folder: posterior.parameters(
+        read_csv(folder / "parameters.csv"), draws.read(folder)
+    ),
     "gap": lambda folder: gap(read_csv(folder / "gap.csv")),
     "law": lambda folder: force_law.law(_law(folder)),
 }
