@@ -274,9 +274,10 @@ class Forward:
             value, timing = traces[run]
             measured = self._scalars(batch, k, seen, gain, nu)
             flat = e.whitened_on(run, value, measured)
-            rates, times = timing.reshape(-1, *timing.shape[2:]), timing.shape[1]
+            rated, times, *shape = timing.shape
+            rates = timing.reshape(rated * times, *shape)
             rates = e.whitened_on(run, rates, np.zeros((len(rates), measured.shape[1])))
-            yield run, flat, rates.reshape(-1, times, rates.shape[1])
+            yield run, flat, rates.reshape(rated, times, rates.shape[1])
 
     def _recorded_alike(self, batch) -> list[list[int]]:
         """Places of the batch's runs, those together whose samples were taken, and count, alike."""
