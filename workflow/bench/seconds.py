@@ -1,0 +1,129 @@
+"""Where the seconds of a verdict go, in the sources here and in those of an earlier commit, in turns.
+
+Every verdict is made in a process of its own, on one thread, by the verb that users type. Processor time is
+told apart into: what is loaded before the search (Python, libraries, compiled code), the compiled stepper,
+what surrounds it in a prediction, the rest of the search, tables, pictures and page. Compiled code is in its
+cache already: each version's first verdict is not counted.
+
+    python workflow/bench/seconds.py RECORD… --before COMMIT [--repeats 3] [--out results/seconds.csv]
+"""
+
+import argparse
+import json
+import os
+import statistics
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from sonicvacuum.tables import write_csv
+
+ROOT = Path(__file__).resolve().parents[2]
+PARTS = ("start", "stepper", "around the stepper", "search", "tables", "pictures and page")
+COLUMNS = ("sources", "record", "named", "chains", *PARTS, "sum")
+
+MEASURED = """
+import json, sys, time
+record, out = sys.argv[1:]
+spent = {}
+
+def timed(owner, name, part):
+    own = getattr(owner, name)
+    def call(*arguments, **options):
+        begun = time.process_time()
+        try:
+            return own(*arguments, **options)
+        finally:
+            spent[part] = spent.get(part, 0.0) + time.process_time() - begun
+    setattr(owner, name, call)
+
+from sonicvacuum.cli import main
+from sonicvacuum.cli import page
+from sonicvacuum.discover import session
+from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.physics import compiled, run
+
+timed(run, "prepare", "prepare")
+timed(run._Batch, "run", "stepper")
+timed(Forward, "sampled", "sampled")
+timed(session, "discover", "discover")
+timed(session, "write", "tables")
+timed(page, "illustrate", "pictures")
+sys.argv = ["sonicvacuum", "discover", record, "--out", out, "--threads", "1", "--quiet"]
+try:
+    main()
+except SystemExit as ended:
+    assert not ended.code, ended.code
+finally:
+    spent["all"] = time.process_time()
+    with open(out + ".json", "w") as file:
+        json.dump(spent, file)
+"""
+
+
+def verdict(source: Path, record: Path, folder: Path) -> dict:
+    """Seconds of one verdict by part, what it named, and the chains that it simulated."""
+    out = folder / "out"
+    environment = os.environ | {"PYTHONPATH": str(source)}
+    subprocess.run(
+        [sys.executable, "-c", MEASURED, str(record), str(out)],
+        check=True,
+        env=environment,
+        stdout=subprocess.DEVNULL,
+    )
+    spent = json.loads(out.with_name("out.json").read_text())
+    found = json.loads((out / "verdict.json").read_text(encoding="utf-8"))
+    stepper = spent["stepper"] - spent["prepare"]
+    around = spent["sampled"] - spent["stepper"]
+    own = {
+        "stepper": stepper,
+        "around the stepper": around,
+        "search": spent["discover"] - spent["sampled"],
+        "tables": spent["tables"],
+        "pictures and page": spent["pictures"],
+    }
+    own["start"] = spent["all"] - sum(own.values())
+    return {**own, "sum": spent["all"], "named": "+".join(found["named"]), "chains": found["simulations"]}
+
+
+def measured(sources: dict[str, Path], records: list[Path], repeats: int) -> list[dict]:
+    """Medians of each record in each version of the sources, versions in turns."""
+    rows = []
+    with tempfile.TemporaryDirectory() as folder:
+        for record in records:
+            found = {name: [] for name in sources}
+            for turn in range(repeats + 1):
+                for name, source in sources.items():
+                    one = verdict(source, record, Path(folder))
+                    found[name] += [one] if turn else []
+            for name, several in found.items():
+                medians = {p: f"{statistics.median(one[p] for one in several):.3f}" for p in (*PARTS, "sum")}
+                own = {"sources": name, "record": record.name, **medians}
+                rows.append(own | {key: several[0][key] for key in ("named", "chains")})
+                print(*(rows[-1][c] for c in COLUMNS), flush=True)
+    return rows
+
+
+def main() -> None:
+    """The table."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("records", nargs="+", type=Path)
+    parser.add_argument("--before", required=True, help="an earlier commit")
+    parser.add_argument("--repeats", type=int, default=3)
+    parser.add_argument("--out", type=Path, default=Path("results/seconds.csv"))
+    given = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        earlier = Path(folder) / "earlier"
+        git = ("git", "-C", str(ROOT), "worktree")
+        subprocess.run([*git, "add", "--quiet", "--detach", str(earlier), given.before], check=True)
+        try:
+            sources = {"before": earlier / "src", "now": ROOT / "src"}
+            rows = measured(sources, given.records, given.repeats)
+        finally:
+            subprocess.run([*git, "remove", "--force", str(earlier)], check=True)
+    write_csv(given.out, COLUMNS, ([row[c] for c in COLUMNS] for row in rows))
+
+
+if __name__ == "__main__":
+    main()
