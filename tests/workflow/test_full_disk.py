@@ -3,10 +3,11 @@
 The disk is played by the largest size that a file may have, which each verb exceeds at its first bytes.
 """
 
-import os
 import resource
+import shutil
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 from ball import RECORD
@@ -14,7 +15,13 @@ from test_command_line import CONFIG, call
 
 MOST = 8  # bytes
 CHAIN = ["--beads", "8", "--diameter", "5mm", "--material", "bearing-steel", "--speed", "0.5"]
-EXAMPLE = os.path.join(os.path.dirname(__file__), "../../docs/example")
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.append(str(ROOT / "tests/fuzz"))
+
+from tables import Tables  # noqa: E402
+
+EXAMPLE = ROOT / "docs/example"
+FULL = ROOT / "workflow/resources/reference/blind_full"
 # Verb → its call, in a folder where all of them have run once, in this order.
 CALLS = {
     "card": "card --case small --out small.nominal.json",
@@ -31,7 +38,25 @@ CALLS = {
     "paper observe": "paper observe small.nominal.json history.npz --signals signals.csv --metrics one.csv",
     "paper metrics": "paper metrics one.csv --config config.yaml --out metrics.csv",
     "paper animate": "paper animate solitary --out wave.svg",
+    "paper ledger": f"paper ledger t/metrics.csv --claims t/claims.csv --config {ROOT}/config.yaml "
+    "--uncertainty t/probable.csv --out ledger.csv",
+    "paper audit": f"paper audit t/metrics.csv --assumptions t/assumptions.csv --config {ROOT}/config.yaml "
+    "--out audit.csv",
+    "paper runs": "paper runs small.nominal.json --histories histories --metrics one.csv --out runs.html",
+    "paper timings": "paper timings benchmarks --out timings.csv",
+    "paper report": "paper report --ledger ledger.csv --assumptions audit.csv --metrics t/metrics.csv "
+    "--claims t/claims.csv --out report.html",
+    "paper publish": "paper publish --ledger ledger.csv --claims t/claims.csv --readme t/README.md "
+    "--guide guide.md --reference kept.csv --study t/score.csv --naming naming.csv",
     "blind hide": "blind hide --study small --list cases.csv",
+    "blind score": "blind score --truth t/truth --verdicts t/verdict --out scores.csv --summary summary.csv "
+    "--tables scored",
+    "blind draw": "blind draw scored --picture confusion --out pictures",
+    "blind page": f"blind page --full {FULL} --out blind.html",
+    "blind publish": f"blind publish {FULL} --page t/study.md --keep kept",
+    "design": f"design --effects kuwabara-kono,gravity {' '.join(CHAIN)} --most 1 --out design.svg",
+    "export": "export --law hunt-crossley --damping_s_per_m 0.1 --mass_g 4 --diameter_mm 10 --material brass "
+    "--speeds 0.5 2 --to lammps --out law.txt",
 }
 
 
@@ -47,10 +72,17 @@ def made(tmp_path_factory):
     (folder / "config.yaml").write_text(CONFIG)
     (folder / "ball").mkdir()
     (folder / "ball/record.yaml").write_text(RECORD)
+    Tables(folder / "t")
+    shutil.copy(ROOT / "docs/study.md", folder / "t")
+    for name in ("histories", "benchmarks/rule"):
+        (folder / name).mkdir(parents=True)
+    (folder / "benchmarks/rule/job.tsv").write_text("s\tmax_rss\tcpu_time\n1.0\t10.0\t1.0\n")
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder)
         for line in CALLS.values():
             assert call(patch, *line.format("").split()) == 0, line
+            if line.startswith("simulate"):
+                shutil.copy("history.npz", "histories/small.nominal.npz")
     return folder
 
 
