@@ -42,7 +42,7 @@ CALLS = {
     "--uncertainty t/probable.csv --out ledger.csv",
     "paper audit": f"paper audit t/metrics.csv --assumptions t/assumptions.csv --config {ROOT}/config.yaml "
     "--out audit.csv",
-    "paper runs": "paper runs small.nominal.json --histories histories --metrics one.csv --out runs.html",
+    "paper runs": "paper runs small.nominal.json --histories histories --metrics metrics.csv --out runs.html",
     "paper timings": "paper timings benchmarks --out timings.csv",
     "paper report": "paper report --ledger ledger.csv --assumptions audit.csv --metrics t/metrics.csv "
     "--claims t/claims.csv --out report.html",
