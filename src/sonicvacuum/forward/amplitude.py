@@ -1,64 +1,109 @@
-"""The speed of a wave of given amplitude at a gauge, whatever struck the chain: striker speeds are swept."""
+"""The speed of a wave of given amplitude at a gauge, whatever struck the chain.
+
+The striker's speed at which the gauge reads that amplitude is sought, for all chains of a batch side by side.
+"""
 
 import math
 from dataclasses import replace
 
 import numpy as np
 
-from sonicvacuum.gauges import Gauge, needed, position, reading
+from sonicvacuum.effects import Setup
+from sonicvacuum.forward.motion import see
+from sonicvacuum.gauges import Gauge, position
 from sonicvacuum.laboratory.bodies import Bodies
-from sonicvacuum.observe.quantities import measure
-from sonicvacuum.observe.run import Geometry
-from sonicvacuum.observe.sweep import speed_at_amplitude as interpolated
+from sonicvacuum.observe.quantities import measure_run
+from sonicvacuum.observe.run import Geometry, Run
 from sonicvacuum.observe.trace import Measured, missing
 from sonicvacuum.physics.chain import Chain
-from sonicvacuum.physics.run import simulate
-from sonicvacuum.physics.scales import CROSSINGS, impact_scales, passage_of, sampling_of
+from sonicvacuum.physics.scales import impact_scales, passage_of, sampling_of
 
-# Striker speeds tried, over the one expected to give the amplitude.
-LADDER = np.geomspace(0.5, 2.0, 8)
-TRIES = 6
+# The search ends once all amplitudes are so near (natural log): what the slope between the last two strikes
+# then errs by, a few hundredths, moves a speed by a few parts in 1e4 at most.
+NEAR = 0.01
+TRIES = 8
+# Steps in the logarithm of the striker's speed go no further than this.
+STRIDE = math.log(4.0)
 # The speed is taken over this many beads on either side of the gauge, where the chain has them.
 REACH = 2
 # Beads before the wall in which the reflection lies on the pulse.
 CLEAR = 2
-# Amplitudes grow about as striker speed to the power 6/5.
-_POWER = 5.0 / 6.0
+# The wave has reached the wall, and has passed all gauges, after so many crossings of the chain.
+CROSSED = 1.7
+# Amplitudes grow about as striker speed to the power 6/5, speeds as amplitudes to the power 1/6 (Hertz).
+_POWER, _SLOPE = 5.0 / 6.0, 1.0 / 6.0
+# Within these the exponent that two strikes show is believed; strikes nearer than this show none.
+_LEAST, _MOST, _APART = 0.4, 1.6, 1e-4
 # Roughly the share of the striker's force on a rigid surface that a gauge inside a bead reads.
 _SHARE = 0.45
 
 
 def speed_at_amplitude(
     chain: Chain, diameters: Bodies | float, sensor: Gauge, amplitude: float, refine: float = 1.0
-) -> Measured:
-    """Speed in m/s of the wave that peaks at `amplitude` N at a gauge.
+) -> list[Measured]:
+    """Speed in m/s of the wave that peaks at `amplitude` N at a gauge, one for each lane.
 
     Args:
-        chain: one lane, with its effects; its striker's speed is the first guess.
+        chain: with its effects; the strikers' speeds do not matter.
         diameters: of the beads in m.
         sensor: the gauge, with its electronics and gain.
         amplitude: reading in N.
         refine: divides the step of the simulation.
 
     Returns:
-        Peak-to-peak speed between gauges 2 beads before and behind (near the wall: over the last 4 beads that
-        are clear of the reflection), interpolated between striker speeds; NaN with a reason if there is none.
+        Peak-to-peak speeds between gauges 2 beads before and behind (near the wall: over the last 4 beads
+        that are clear of the reflection), a power law of the amplitude between the last two strikes; NaN with
+        a reason where there is none.
     """
     pair = _pair(sensor, chain.beads)
     if pair is None:
-        return missing("short: the chain has too few beads for a speed at this gauge")
-    centre = float(chain.speed[0]) * (amplitude / (_SHARE * impact_scales(chain)[0])) ** _POWER
-    found = missing("outside: no striker speed gives this amplitude")
+        return [missing("short: the chain has too few beads for a speed at this gauge")] * chain.lanes
+    target = math.log(amplitude)
+    strike = last = np.log(_first_guess(chain, amplitude))
+    before = None
     for _ in range(TRIES):
-        amplitudes, speeds = _sweep(chain, diameters, sensor, pair, centre * LADDER, refine)
-        known = amplitudes[np.isfinite(amplitudes)]
-        if not len(known):
-            return missing(f"absent: no pulse at {sensor.id}")
-        found = interpolated(amplitude, amplitudes, speeds)
-        if found.known:
-            return found
-        centre *= (amplitude / np.exp(np.log(known).mean())) ** _POWER
-    return found
+        seen = np.log(_struck(chain, diameters, sensor, pair, np.exp(strike), refine))
+        off = seen[0] - target
+        known = np.isfinite(off)
+        if not known.any():
+            return [missing(f"absent: no pulse at {sensor.id}")] * chain.lanes
+        if before is not None and np.abs(off[known]).max() < NEAR:
+            break
+        power = _exponent(before, seen, strike, last) if before is not None else _POWER
+        before, last = seen, strike
+        # Those without a pulse stay as they are.
+        strike = strike - np.where(known, np.clip(power * off, -STRIDE, STRIDE), 0.0)
+    return _between(before, seen, off, sensor)
+
+
+def _first_guess(chain, amplitude):
+    """(lanes,) striker speeds at which a Hertz chain would read about that amplitude."""
+    forces = np.array([impact_scales(chain.take([k]))[0] for k in range(chain.lanes)])
+    return chain.speed * (amplitude / (_SHARE * forces)) ** _POWER
+
+
+def _exponent(before, now, strike, last):
+    """(lanes,) d log striker speed / d log amplitude between two strikes, the usual one for strikes alike."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        power = (strike - last) / (now[0] - before[0])
+    return np.where(np.abs(now[0] - before[0]) > _APART, np.clip(power, _LEAST, _MOST), _POWER)
+
+
+def _between(before, now, off, sensor):
+    """The speeds at the amplitude wanted, `off` (lanes,) away from the last strike's (natural log)."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        slope = (now[1] - before[1]) / (now[0] - before[0])
+    slope = np.where(np.abs(now[0] - before[0]) > _APART, slope, _SLOPE)
+    return [_told(x, o, sensor) for x, o in zip(now[1] - slope * off, off, strict=True)]
+
+
+def _told(log_speed, off, sensor) -> Measured:
+    """One speed, or why there is none."""
+    if not math.isfinite(off):
+        return missing(f"absent: no pulse at {sensor.id}")
+    if abs(off) > NEAR:
+        return missing("outside: no striker speed gives this amplitude")
+    return Measured(float(np.exp(log_speed))) if math.isfinite(log_speed) else missing("no passage")
 
 
 def _pair(sensor, beads):
@@ -71,15 +116,21 @@ def _pair(sensor, beads):
     return Gauge("(before)", "embedded", first), Gauge("(behind)", "embedded", last)
 
 
-def _sweep(chain, diameters, sensor, pair, speeds, refine):
-    """(n,) amplitudes at the gauge and speeds across the pair, for n striker speeds."""
-    lanes = replace(chain.take(np.zeros(len(speeds), dtype=int)), speed=speeds)
+def _struck(chain, diameters, sensor, pair, speeds, refine):
+    """(2, lanes) amplitude at the gauge and speed across the pair, of chains struck at these speeds."""
+    lanes = replace(chain, speed=speeds)
     gauges = (replace(sensor, id="(gauge)"), *pair, Gauge("(end)", "wall", None))
-    contacts, bodies = needed(gauges, chain.beads)
-    interval = sampling_of(lanes)
-    history = simulate(lanes, contacts, passage_of(lanes, CROSSINGS), interval, bodies=bodies, refine=refine)
-    readings = {s.id: reading(s, history, chain.beads) for s in gauges}
+    seen = see(
+        Setup(lanes, gauges), passage_of(lanes, CROSSED), sampling_of(lanes), refine=refine, forgiving=True
+    )
     geometry = Geometry(chain.beads, diameters, gauges)
-    heights = measure("amplitude", readings, history.time, geometry, sensor="(gauge)")
-    fast = measure("speed", readings, history.time, geometry, from_=pair[0].id, to=pair[1].id)
-    return np.array([m.value for m in heights]), np.array([m.value for m in fast])
+    return np.array([_one(lane, gauges, seen.history.time, geometry) for lane in seen.readings]).T
+
+
+def _one(signals, gauges, time, geometry):
+    """Amplitude and speed of one chain; NaN where it shows none, or numbers that are not finite."""
+    if not np.isfinite(signals).all():
+        return math.nan, math.nan
+    run = Run({g.id: one for g, one in zip(gauges, signals, strict=True)}, time, geometry)
+    height = measure_run("amplitude", run, sensor="(gauge)").value
+    return height, measure_run("speed", run, from_="(before)", to="(behind)").value

@@ -66,6 +66,14 @@ def measured(
         striker = (float(n[lane]) for n in (chain.striker_mass, chain.speed, chain.gravity))
         return restitution(history.time, history.of(0)[:, lane], *striker)
     if observable.quantity == "speed_at_amplitude":
-        gauge = next(g for g in seen.setup.sensors if g.id == options["sensor"]).lane(lane)
-        return speed_at_amplitude(chain.take([lane]), diameters, gauge, options["amplitude"], refine)
+        return of_amplitude(observable, seen, np.array([lane]), diameters, refine)[0]
     return measure_run(observable.quantity, passage, **options)
+
+
+def of_amplitude(
+    observable, seen: Seen, lanes: np.ndarray, diameters: Bodies | float, refine: float = 1.0
+) -> list[Measured]:
+    """Speeds of waves of one amplitude in the chains of some lanes, whatever struck them."""
+    options = observable.options
+    gauge = next(g for g in seen.setup.sensors if g.id == options["sensor"]).take(lanes)
+    return speed_at_amplitude(seen.setup.chain.take(lanes), diameters, gauge, options["amplitude"], refine)

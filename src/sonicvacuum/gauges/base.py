@@ -154,11 +154,11 @@ class Gauge:
         """Standard error of the logarithm of the gain."""
         return self.gain_rel_sigma if self.calibrated else UNKNOWN_GAIN
 
-    def lane(self, lane: int) -> "Gauge":
-        """The gauge as one of the chains has it."""
+    def take(self, lanes: np.ndarray) -> "Gauge":
+        """The gauge as some of the chains have it."""
         names = ("droop_s", "lowpass_s", "offset_fraction", "gain")
         numbers = {n: np.ravel(getattr(self, n)) for n in names}
-        own = {n: float(v[lane] if len(v) > 1 else v[0]) for n, v in numbers.items()}
+        own = {n: v[lanes] if len(v) > 1 else float(v[0]) for n, v in numbers.items()}
         return Gauge(self.id, self.kind, self.bead, **own)
 
 

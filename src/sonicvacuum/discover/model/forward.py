@@ -325,7 +325,8 @@ class Forward:
         if not wanted:
             return np.zeros((len(nu), 0))
         signals = seen.readings[own] * gain[..., None]
-        measured = scalars.predict(e, run, own, seen, signals)
+        refine = accuracy.refinement(self._norm)
+        measured = scalars.predict(e, run, own, seen, signals, refine)
         return scalars.read(wanted, measured, {layout.named(p): nu[:, p] for p in layout.other("shared")})
 
     def _gain(self, nu):

@@ -2,8 +2,10 @@
 
 import numpy as np
 
-from sonicvacuum.forward import STRIKER, measured, passages
+from sonicvacuum.forward import STRIKER, measured, of_amplitude, passages
 
+# What needs further strikes, of all lanes side by side.
+SOLITARY = "speed_at_amplitude"
 # Speeds grow as force to the power 1/6: a larger gain makes a given reading a smaller force.
 _SPEED_POWER = -1.0 / 6.0
 
@@ -15,7 +17,7 @@ def gain_power(scalar, gauge: str) -> float:
         return float(options["sensor"] == gauge)
     if scalar.quantity == "decay":
         return float(options["to"] == gauge) - float(options["from"] == gauge)
-    if scalar.quantity == "speed_at_amplitude" and options["sensor"] == gauge:
+    if scalar.quantity == SOLITARY and options["sensor"] == gauge:
         return _SPEED_POWER
     return 0.0
 
@@ -73,7 +75,7 @@ def shared_column(experiment, run: int, value: np.ndarray, source: str) -> np.nd
     return columns
 
 
-def predict(experiment, run: int, lanes: slice, seen, signals: np.ndarray) -> np.ndarray:
+def predict(experiment, run: int, lanes: slice, seen, signals: np.ndarray, refine: float = 1.0) -> np.ndarray:
     """(L, n) values of the scalars of a run in SI, 0 where the readings show no such thing.
 
     Args:
@@ -82,20 +84,28 @@ def predict(experiment, run: int, lanes: slice, seen, signals: np.ndarray) -> np
         lanes: the run's lanes in the simulation.
         seen: the simulation.
         signals: (L, S, T') readings of this run in N.
+        refine: divides the step of further simulations.
     """
     wanted = experiment.runs[run].scalars
     if not wanted:
         return np.zeros((len(signals), 0))
-    inside = any(s.quantity not in (*STRIKER, "speed_at_amplitude") for s in wanted)
+    inside = any(s.quantity not in (*STRIKER, SOLITARY) for s in wanted)
     runs = [None] * len(signals)
     if inside:
         runs = passages(seen, lanes, signals, experiment.gauges, experiment.diameter)
     chosen = np.arange(seen.setup.chain.lanes)[lanes]
-    rows = [
-        [_value(experiment, one, seen, lane, passage) for one in wanted]
-        for lane, passage in zip(chosen, runs, strict=True)
-    ]
-    return np.nan_to_num(np.array(rows, dtype=float), nan=0.0, posinf=0.0, neginf=0.0)
+    columns = [_column(experiment, one, seen, chosen, runs, refine) for one in wanted]
+    return np.nan_to_num(np.array(columns, dtype=float).T, nan=0.0, posinf=0.0, neginf=0.0)
+
+
+def _column(experiment, scalar, seen, lanes, passages, refine):
+    """One scalar of all lanes."""
+    if scalar.quantity == SOLITARY:
+        try:
+            return [one.value for one in of_amplitude(scalar, seen, lanes, experiment.diameter, refine)]
+        except ValueError:
+            pass  # of which lane, is found one by one
+    return [_value(experiment, scalar, seen, k, p) for k, p in zip(lanes, passages, strict=True)]
 
 
 def _value(experiment, scalar, seen, lane, passage):
