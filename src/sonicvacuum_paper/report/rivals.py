@@ -4,9 +4,12 @@ All numbers come from the tables of `sonicvacuum paper rivals`; the sentences ar
 `uncertainty.html.j2`.
 """
 
+import math
+
 import pandas as pd
 
-from sonicvacuum.effects import CATALOGUE
+from sonicvacuum.discover.fit import evidence
+from sonicvacuum.effects import CATALOGUE, IDS
 from sonicvacuum.files import reading
 from sonicvacuum.report.rows import in_words
 from sonicvacuum.report.tables import number
@@ -18,6 +21,11 @@ from sonicvacuum_paper.verdict import BOUND
 WITHIN = 0.95
 # Errors of the ledger: of the printed duration in us, and of 130 m/s.
 DURATION, LOW = 14.0, 7.35
+# Columns of the fits to the record.
+SHOWN = (formats.MODULUS, formats.LAYER, formats.LOSS)
+WORDS = {formats.LAYER: "the layer", formats.MODULUS: "a stiffer polymer"}
+# Prior of one effect, as discover has it.
+PRIOR = (1.0 - evidence.PRIOR_NONE - evidence.PRIOR_UNKNOWN) / len(IDS)
 CELLS = ("speed_m_s", "half_duration_us", "decay")
 
 
@@ -34,7 +42,8 @@ def context(contours, experiments, relaxation, losses, explained) -> dict:
         "series": _series(series),
         "apart": [(name, number(r.speeds_sigma, 2), number(r.all_sigma, 2)) for name, r in apart.iterrows()],
         "decisive": apart.speeds_sigma.idxmax(),
-        "explained": of_sets(_read(explained, formats.EXPLAINED, dtype=str, keep_default_na=False)),
+        "explained": of_sets(fits := _read(explained, formats.EXPLAINED, dtype=str, keep_default_na=False)),
+        "weighed": weighed(fits),
         **of_laws(_read(losses, formats.LOSSES)),
         "relaxing": relaxing(_read(relaxation, formats.RELAXATION)),
     }
@@ -77,8 +86,9 @@ def of_sets(table: pd.DataFrame) -> dict:
     """Fits of single effects and pairs to the paper's record: heads of the columns, a row for each number.
 
     `table` is text. Each cell is what the fit gives and, after a bar, what it gives fitted to all others.
+    Shown are modulus and layer, each without and with the ladder's loss.
     """
-    sets = list(dict.fromkeys(table.effects))
+    sets = [name for name in dict.fromkeys(table.effects) if set(name.split("+")) <= set(SHOWN)]
     first = {name: table[table.effects == name].iloc[0] for name in sets}
     heads = [" with ".join(CATALOGUE.effect(n).title.lower() for n in name.split("+")) for name in sets]
     rows = []
@@ -95,6 +105,51 @@ def of_sets(table: pd.DataFrame) -> dict:
         "misfits": [number(first[n].misfit, 3) for n in sets],
         "worth": [number(first[n].log10_bayes, 3) for n in sets],
     }
+
+
+def weighed(table: pd.DataFrame) -> dict:
+    """How probable modulus and layer are, without and with a loss (any of those tried), by their evidence.
+
+    Every effect has the catalogue's prior, that of the layer also ten times it and a tenth; last, the layer
+    is known to be there, as the record says. `table` is text. Nothing else of the catalogue is in it.
+
+    Returns:
+        Kind of explanation → the best of it in words, its misfit, and its probability under each prior.
+    """
+    of_set = table.groupby("effects", sort=False).first()
+    worth = {name: float(value) for name, value in of_set.log10_bayes.items()}
+    kinds: dict[str, list[str]] = {}
+    for name in worth:
+        kinds.setdefault(_kind(name.split("+")), []).append(name)
+    rows = {}
+    for kind, own in kinds.items():
+        best = of_set.loc[max(own, key=worth.get)]
+        rows[kind] = [in_words(best.parameters, CATALOGUE), number(best.misfit, 3)]
+    for odds in (1.0, 10.0, 0.1, None):
+        weights = _weights(worth, odds)
+        for kind, own in kinds.items():
+            rows[kind].append(number(sum(weights[name] for name in own) / sum(weights.values()), 2))
+    return rows
+
+
+def _weights(worth: dict[str, float], odds: float | None) -> dict[str, float]:
+    """Set of effects → prior times evidence, the largest 1; `odds` are the layer's, None: it is there."""
+    logs = {}
+    for name, value in worth.items():
+        effects = name.split("+")
+        layer = formats.LAYER in effects
+        if odds is None and layer:
+            logs[name] = value + (len(effects) - 1) * math.log10(PRIOR)
+        elif odds is not None:
+            logs[name] = value + len(effects) * math.log10(PRIOR) + layer * math.log10(odds)
+    top = max(logs.values())
+    return {name: 10.0 ** (logs[name] - top) if name in logs else 0.0 for name in worth}
+
+
+def _kind(effects) -> str:
+    """What a set of effects is: the contact, and whether it loses."""
+    contact = [WORDS[name] for name in (formats.LAYER, formats.MODULUS) if name in effects]
+    return " and ".join(contact) + " with a loss" * (not set(effects) <= set(WORDS))
 
 
 def of_laws(table: pd.DataFrame) -> dict:

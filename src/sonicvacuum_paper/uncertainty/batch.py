@@ -16,11 +16,11 @@ from sonicvacuum.observe.trace import Measured
 from sonicvacuum.physics.assemble import assemble
 from sonicvacuum.simulation import sensors
 from sonicvacuum_paper.one_run import LOWER, UPPER
+from sonicvacuum_paper.uncertainty.formats import LAYER, LOSS
 
 Draws = Mapping[str, np.ndarray]
 GRAM = 1e-3
 INTERVAL = 1e-6  # s; peaks are found between samples to a hundredth of it
-LAYER, LOSS = "coating-thickness", "kuwabara-kono"
 
 
 def set_up(card: Card, draws: Draws, speed=None, loss_us=None) -> Setup:

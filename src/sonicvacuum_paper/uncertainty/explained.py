@@ -1,14 +1,17 @@
 """Single effects and pairs on the paper's own record: what each makes of the printed numbers, and predicts.
 
-`discover` stops at the simplest explanation that leaves nothing significant; few numbers with large errors
-are soon explained. Here the readings of the paper that the ladder knows are fitted to the record one by one:
-a modulus or the layer of the printed thickness, each without and with a loss.
+The record says that the coating is there as a layer, and `discover` judges all else beside it. Here nothing
+is taken as known: the readings of the paper that the ladder knows are fitted one by one to Hertz's chain of
+the handbook: a modulus, the layer of the printed thickness, or both; the first two also with each law of
+loss.
 """
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import product
 
+import msgspec
 import numpy as np
 import pandas as pd
 
@@ -22,20 +25,39 @@ from sonicvacuum.discover.model.problem import experiment
 from sonicvacuum.discover.rounds import nominal
 from sonicvacuum.discover.search.singles import setup_of
 from sonicvacuum.records import Record
-from sonicvacuum_paper.uncertainty.batch import LAYER, LOSS
-from sonicvacuum_paper.uncertainty.formats import EXPLAINED
+from sonicvacuum_paper.uncertainty.formats import EXPLAINED, LAYER, LOSS, MODULUS
+from sonicvacuum_paper.uncertainty.losses import LAWS
 
-MODULUS = "dynamic-modulus"
-SETS = ((MODULUS,), (LAYER,), (MODULUS, LOSS), (LAYER, LOSS))
+SETS = (
+    (MODULUS,),
+    (LAYER,),
+    (MODULUS, LOSS),
+    (LAYER, LOSS),
+    (MODULUS, LAYER),
+    *((contact, law) for contact in (MODULUS, LAYER) for law in LAWS if law != LOSS),
+)
 # Values of the one parameter of each from which a fit starts.
-STARTS = {MODULUS: (3.0, 5.0), LAYER: (50.0,), LOSS: (1.0, 5.0)}
+STARTS = {
+    MODULUS: (3.0, 5.0),
+    LAYER: (50.0,),
+    LOSS: (1.0, 5.0),
+    "linear-dashpot": (0.6, 1.3),
+    "tsuji": (0.1, 0.25),
+    "hunt-crossley": (0.2, 0.4),
+}
 
 
 def table(record: Record) -> pd.DataFrame:
     """One row for each set of effects and printed number; columns in `formats.EXPLAINED`."""
-    forward = Forward(experiment(record))
+    forward = Forward(experiment(nothing_known(record)))
     null = nominal(forward)
     return pd.DataFrame([row for names in SETS for row in _rows(forward, null, names)], columns=EXPLAINED)
+
+
+def nothing_known(record: Record) -> Record:
+    """The record as it is without what it says of effects that act for sure."""
+    block = msgspec.structs.replace(record.block, priors=record.priors)
+    return replace(record, block=block)
 
 
 def _rows(forward, null, names) -> Iterator[tuple]:

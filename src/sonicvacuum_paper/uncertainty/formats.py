@@ -2,6 +2,8 @@
 
 # The two models that the experiments are to tell apart: columns of the ledger.
 MODELS = ("layer_loss", "matched_loss")
+# Effects of the readings that are held against each other: what the contact is, and the ladder's loss.
+MODULUS, LAYER, LOSS = "dynamic-modulus", "coating-thickness", "kuwabara-kono"
 # Solids that relax.
 BROAD, SINGLE = "even over all decades", "one relaxation time"
 MAP = ["x", "y", "x_value", "y_value", "content"]
