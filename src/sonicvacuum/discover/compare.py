@@ -116,7 +116,10 @@ def compare(model: Model, record: Record, threads: int = 1, catalogue: Catalogue
     """The model's score on a record; the catalogue knows its effects."""
     forward = Forward(experiment(window.fitted(record)[0], catalogue), threads)
     sizes = np.array([forward.experiment.size(k) for k in range(len(forward.experiment.runs))])
-    nominal, extended = (_fit(forward, h) for h in (Hypothesis(), hypothesis(model, catalogue)))
+    known = forward.experiment.present
+    more = {name: given for name, given in model.effects.items() if name not in known}
+    whole = hypothesis(msgspec.structs.replace(model, effects=more), catalogue)
+    nominal, extended = (_fit(forward, h) for h in (Hypothesis(), whole))
     before, after = nominal.normal.chi2[:, 0], extended.normal.chi2[:, 0]
     runs = {
         run.id: gap(float(before[k] / sizes[k]), float(after[k] / sizes[k]))

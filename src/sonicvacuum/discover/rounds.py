@@ -118,14 +118,14 @@ def investigate(experiment: Experiment, threads: int = 1, null: Fit | None = Non
     case = Case(forward, null, scores, found, known, setup)
     decision = case.decide() if passes else case.nothing(few)
     alike = explanations.aliases(forward, null, found) if passes else []
-    odds, more = _odds(found, decision, alike, prior)
+    odds, more = _odds(found, decision, alike, prior, tuple(experiment.present))
     reasons = [*decision.reasons, *(few if passes else ()), *more, *experiment.notes]
     given = {**vars(decision), "reasons": reasons}
     del given["beside"], given["left"]
     return Investigation(forward, null, scores, threshold, found, odds, alike=alike, **given)
 
 
-def _odds(found, decision: Decision, alike, prior) -> tuple[dict[str, float], list[str]]:
+def _odds(found, decision: Decision, alike, prior, present) -> tuple[dict[str, float], list[str]]:
     """Probabilities and what has to be said of them."""
     logs = explanations.log_weights(found, decision.combinations, alike, prior)
     plain = explanations.probabilities(logs, decision.left, decision.beside)
@@ -137,7 +137,7 @@ def _odds(found, decision: Decision, alike, prior) -> tuple[dict[str, float], li
         reasons.append(
             f"{', '.join(stuck)} ended at a bound, even beyond the catalogue's range, and might fit better"
         )
-    reasons += _said(prior)
+    reasons += _said(prior, present) + _losses(found, odds, present)
     other = (
         _with_less(found, decision, alike, prior)
         if odds.get(explanations.key(decision.named), 0.0) > 0.5
@@ -145,6 +145,8 @@ def _odds(found, decision: Decision, alike, prior) -> tuple[dict[str, float], li
     )
     if other:
         reasons.append(f"were its prior ten times smaller, {other} would be the likeliest")
+    elif present:
+        reasons.append("were its prior ten times smaller, no other name would be the likeliest")
     if likelier:
         reasons.append(f"{likelier} has the larger evidence, and did not pass every test")
     if len(alike) > 1 and alike[0] in decision.named:
@@ -155,12 +157,22 @@ def _odds(found, decision: Decision, alike, prior) -> tuple[dict[str, float], li
     return odds, reasons
 
 
-def _said(prior) -> list[str]:
-    """The prior odds that a record states, in words."""
+def _said(prior, present) -> list[str]:
+    """What a record states before the data, in words: prior odds, and effects that are known to act."""
     excluded = [name for name, odds in prior.items() if odds == 0.0]
     changed = [f"{name} {odds:g} times as likely" for name, odds in prior.items() if odds not in (0.0, 1.0)]
-    told = changed + [f"{', '.join(excluded)} excluded"] * bool(excluded)
+    told = [f"{', '.join(present)} present, part of every explanation"] * bool(present)
+    told += changed + [f"{', '.join(excluded)} excluded"] * bool(excluded)
     return [f"before the data, as the record states: {'; '.join(told)}"] if told else []
+
+
+def _losses(found, odds, present) -> list[str]:
+    """Where effects are known to act, how probable it is that one besides takes energy, whatever its law."""
+    losses = {c.effect for c in found if c.fit.hypothesis.components[0].effect.dissipative}
+    whole = sum(p for name, p in odds.items() if losses & set(explanations.effects(name)))
+    if not present or whole < 0.5:
+        return []
+    return [f"{' + '.join(present)} with a loss, of whatever law: probability {whole:.4g}"]
 
 
 def _with_less(found, decision: Decision, alike, prior) -> str:

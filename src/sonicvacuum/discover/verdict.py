@@ -214,7 +214,8 @@ def model(found: Investigation, law: FreeLaw | None = None) -> Model:
     forward, fit = found.forward, found.final if named_effects(found) else found.null
     fit = law.fit if law else fit
     e, layout = forward.experiment, forward.layout
-    effects = fit.hypothesis.values(fit.u) | ({law.component.effect.id: law.parameters} if law else {})
+    effects = present(forward, fit) | fit.hypothesis.values(fit.u)
+    effects |= {law.component.effect.id: law.parameters} if law else {}
     shift = fit.nu[: layout.size] * forward.nuisance_sigma
     return Model(
         record=e.name,
@@ -225,6 +226,15 @@ def model(found: Investigation, law: FreeLaw | None = None) -> Model:
         modulus_ratio=float(np.exp(shift[layout.modulus])),
         sources=sources(e.catalogue, fit.hypothesis.ids),
     )
+
+
+def present(forward: Forward, fit: Fit) -> dict[str, dict[str, float]]:
+    """Effects that the record says act, with their values as fitted: a coating that is open in its thickness
+    is the only one that has such.
+    """
+    e, layout = forward.experiment, forward.layout
+    ratio = math.exp(sum(fit.nu[at] * forward.nuisance_sigma[at] for at in layout.other("coating")))
+    return {name: {key: x * ratio for key, x in given.items()} for name, given in e.present.items()}
 
 
 def named_effects(found: Investigation) -> list[str]:

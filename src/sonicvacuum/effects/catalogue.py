@@ -72,6 +72,12 @@ class Catalogue:
         """The catalogue with what a record states of the effects' parameters, see `Effect.stated`."""
         return Catalogue(tuple(e.informed(chain, tolerances) for e in self.effects), self.besides)
 
+    def held(self, ids: Iterable[str]) -> Catalogue:
+        """The catalogue of a model that holds some effects already: no search tries them."""
+        held = tuple(self.effect(id) for id in ids)
+        left = tuple(e for e in self.effects if e not in held)
+        return Catalogue(left, (*self.besides, *held)) if held else self
+
     def candidates(self, setup: Setup, without: Iterable[str] = ()) -> tuple[Effect, ...]:
         """The effects that can act in a setup, but for the ids `without`."""
         left = set(without)

@@ -21,6 +21,9 @@ Id = Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9_.+-]*$")]
 FileName = Annotated[str, Meta(pattern=r"^[^/\\.][^/\\]*$")]
 # An error that is not known at all: the gain of an uncalibrated gauge, the time zero of a free-running clock.
 Unknown = Literal["unknown"]
+# In place of odds: an effect that is known to act.
+PRESENT = "present"
+Present = Literal["present"]
 Fraction = Annotated[float, Meta(gt=0.0, lt=1.0)]
 
 
@@ -251,7 +254,7 @@ class RecordBlock(_Block, kw_only=True):
     clock_rel_sigma: NonNegative = 0.0
     tolerances: TolerancesBlock = TolerancesBlock()
     model_floor_rel: NonNegative | None = None
-    priors: dict[str, NonNegative] = field(default_factory=dict)
+    priors: dict[str, NonNegative | Present] = field(default_factory=dict)
     apparatus: ApparatusBlock | None = None
     runs: Annotated[list[RunBlock], Meta(min_length=1)]
 

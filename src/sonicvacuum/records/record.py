@@ -14,7 +14,7 @@ from sonicvacuum.gauges import KINDS, Gauge
 from sonicvacuum.laboratory.blocks import material_of, specimen_of, striker_of
 from sonicvacuum.laboratory.specimen import Specimen, Striker
 from sonicvacuum.observe.run import Geometry
-from sonicvacuum.records.blocks import SCALED, UNITS, RecordBlock, RunBlock
+from sonicvacuum.records.blocks import PRESENT, SCALED, UNITS, RecordBlock, RunBlock
 from sonicvacuum.records.signals import Signals
 
 # SI value of one unit of an observable; units not listed are SI.
@@ -149,8 +149,13 @@ class Record:
 
     @property
     def priors(self) -> Mapping[str, float]:
-        """Effect → odds against its usual prior; 0 excludes it."""
-        return self.block.priors
+        """Effect → odds against its usual prior; 0 excludes it. Those that are `present` have none."""
+        return {name: odds for name, odds in self.block.priors.items() if odds != PRESENT}
+
+    @property
+    def present(self) -> tuple[str, ...]:
+        """Effects that are known to act, and so are part of the nominal model."""
+        return tuple(name for name, odds in self.block.priors.items() if odds == PRESENT)
 
     def modulus_rel_sigma(self, name: str) -> float | None:
         """Relative standard error of a material's modulus, 0: exact, None where the record gives none."""

@@ -11,6 +11,7 @@ from sonicvacuum.physics.scales import impact_scales
 from sonicvacuum.records.assemble import assemble
 from sonicvacuum.records.blocks import (
     BALL_QUANTITIES,
+    PRESENT,
     SCALED,
     SUFFIXES,
     AmplitudeBlock,
@@ -103,7 +104,8 @@ def _check_shared(block):
     if block.model_floor_rel is not None:
         ranges.TOLERANCE.check("model_floor_rel", block.model_floor_rel)
     for name, odds in block.priors.items():
-        ranges.ODDS.check(f"priors.{name}", odds)
+        if odds != PRESENT:
+            ranges.ODDS.check(f"priors.{name}", odds)
 
 
 def _check_apparatus(block):

@@ -135,6 +135,8 @@ class Experiment:
         catalogue: the effects that may be missing.
         excluded: ids of effects that these data cannot be asked about.
         prior_odds: id → odds against the catalogue's usual prior, as the record states them; 1 where missing.
+        present: id → parameter → value of effects that the record says act; the chains have them already, and
+            the catalogue does not try them.
         integrated: compare running integrals of the traces instead: a coarse view in which a late pulse is
             still felt, for searches that start far from the data.
         smooth: the smooth discrepancy that counts as noise; None: none.
@@ -158,6 +160,7 @@ class Experiment:
     catalogue: Catalogue = CATALOGUE
     excluded: tuple[str, ...] = ()
     prior_odds: Mapping[str, float] = field(default_factory=dict)
+    present: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     integrated: bool = False
     smooth: Smooth | None = None
     model_floor_rel: float | None = None

@@ -15,6 +15,7 @@ from functools import cached_property
 
 import numpy as np
 
+from sonicvacuum.effects.coating_thickness import TERM as LAYER
 from sonicvacuum.effects.free_form import TERM
 from sonicvacuum.physics.chain import Chain
 from sonicvacuum.records.record import Record, Tolerances
@@ -27,6 +28,7 @@ MODULUS_REL_SIGMA = 0.05
 DEFAULTS = Tolerances(
     bead_mass_rel=0.0,
     bead_diameter_rel=0.0,
+    coating_rel=0.0,
     striker_mass_rel=0.0,
     speed_common_rel=0.0,
     gain_common_rel=0.0,
@@ -41,8 +43,8 @@ class Shared:
     """One nuisance that all runs share.
 
     Attributes:
-        kind: "modulus", "bead-mass", "bead-diameter", "striker-mass", "speed-common", "gain-common",
-            "clock", "delay", "shared" or "law".
+        kind: "modulus", "bead-mass", "bead-diameter", "coating", "striker-mass", "speed-common",
+            "gain-common", "clock", "delay", "shared" or "law".
         sigma: standard error: of the natural logarithm, of the clock's relative error, in s for delays; of a
             coefficient of the free-form law its prior width; 1 for an error that observables share, whose
             size stands with each of them.
@@ -73,6 +75,17 @@ def _larger(chain, _, ratio):
     return replace(chain, bodies=chain.bodies.replaced(lambda b: replace(b, radius=b.radius * ratio)))
 
 
+def _thicker(chain, _, ratio):
+    """The layer that acts in the contacts; a coating that does not act as one has no thickness to a chain."""
+    own = [
+        replace(a, parameters={name: value * ratio for name, value in a.parameters.items()})
+        if a.term is LAYER
+        else a
+        for a in chain.actions
+    ]
+    return replace(chain, actions=tuple(own))
+
+
 def _shaped(chain, name, ratio):
     """One coefficient of the free-form law; as a nuisance, that is a logarithm."""
     own = [
@@ -86,6 +99,7 @@ CHANGES: dict[str, Callable] = {
     "modulus": lambda chain, name, ratio: chain.stiffened(name, ratio),
     "bead-mass": _heavier,
     "bead-diameter": _larger,
+    "coating": _thicker,
     "striker-mass": lambda chain, _, ratio: replace(chain, striker_mass=chain.striker_mass * ratio),
     "speed-common": lambda chain, _, ratio: chain.struck_at(chain.speed * ratio),
     "law": _shaped,
@@ -172,6 +186,7 @@ def shared(record: Record, chain: Chain) -> tuple[Shared, ...]:
     found = [
         *(Shared("modulus", sigma, name) for name, sigma in _moduli(record, chain).items()),
         *(Shared(kind, tolerance(kind.replace("-", "_") + "_rel")) for kind in _BODIES),
+        *(Shared("coating", tolerance("coating_rel")) for a in chain.actions if a.term is LAYER),
         Shared("speed-common", tolerance("speed_common_rel")),
         Shared("gain-common", tolerance("gain_common_rel")),
         Shared("clock", record.clock_rel_sigma),

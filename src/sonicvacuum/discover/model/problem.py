@@ -22,6 +22,7 @@ from sonicvacuum.discover.model.experiment import (
 )
 from sonicvacuum.discover.model.masks import cut, spikes
 from sonicvacuum.discover.model.nuisances import MODULUS_REL_SIGMA, shared
+from sonicvacuum.discover.model.present import acting, stated
 from sonicvacuum.discover.model.slow import slow
 from sonicvacuum.discover.model.start import started
 from sonicvacuum.effects import CATALOGUE, Catalogue
@@ -62,6 +63,10 @@ def _experiment(record, catalogue):
     sigma, correlation = noise((record,))
     named = record.modulus_rel_sigma(record.specimen.first.surface.name)
     parts = batches(record)
+    odds = _priors(record, catalogue)
+    informed = catalogue.informed(parts[0].chain, record.tolerances)
+    present = stated(record, parts[0].chain, informed)
+    parts = acting(parts, present, informed)
     return Experiment(
         name=record.name or record.title,
         runs=runs,
@@ -74,9 +79,10 @@ def _experiment(record, catalogue):
         modulus_rel_sigma=MODULUS_REL_SIGMA if named is None else named,
         diameter=record.specimen.diameters,
         record=record,
-        catalogue=catalogue.informed(parts[0].chain, record.tolerances),
+        catalogue=informed.held(present),
         excluded=tuple(name for name, odds in record.priors.items() if odds == 0.0),
-        prior_odds=_priors(record, catalogue),
+        prior_odds=odds,
+        present=present,
         model_floor_rel=record.model_floor_rel,
         shared=shared(record, parts[0].chain),
         notes=_notes(record, runs),
@@ -85,7 +91,7 @@ def _experiment(record, catalogue):
 
 def _priors(record, catalogue):
     """The record's odds, of effects that the catalogue holds."""
-    for name in record.priors:
+    for name in (*record.priors, *record.present):
         if name not in catalogue:
             known = ", ".join(catalogue.ids)
             raise InputError(f"{record.name}: priors.{name}: no such effect; the catalogue holds {known}")
@@ -119,7 +125,7 @@ def _check_alike(record, other, seen: Experiment):
         ("beads", record.beads, other.beads),
         ("chain", _described(record.specimen), _described(other.specimen)),
         ("sensors", [g.id for g in record.gauges], [g.id for g in other.gauges]),
-        ("priors", dict(record.priors), dict(other.priors)),
+        ("priors", record.block.priors, other.block.priors),
     ):
         if one != two:
             raise InputError(f"{other.name}: {what} is {two}, in {record.name} {one}; discover them apart")
