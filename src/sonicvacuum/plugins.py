@@ -16,7 +16,6 @@ from pathlib import Path
 from types import ModuleType
 
 from sonicvacuum.effects import CATALOGUE, Catalogue, Effect, Source
-from sonicvacuum.effects.trial import check
 from sonicvacuum.files import InputError, read_text
 
 GROUP = "sonicvacuum.effects"
@@ -76,6 +75,8 @@ def _found(names, path):
 
 def _sourced(found, source, where):
     """The effects in an object, checked, with their source."""
+    from sonicvacuum.effects.trial import check  # brings the integrator, which the catalogue alone needs not
+
     several = found if isinstance(found, tuple | list) else (found,)
     if not several:
         raise InputError(f"{where}: EFFECTS is empty; put an Effect into it")

@@ -11,6 +11,7 @@ from importlib import import_module
 
 import click
 
+from sonicvacuum.blas import THREADS
 from sonicvacuum.cli.helped import COMPLETION, EXIT_CODES, locked
 from sonicvacuum.files import MACHINE, InputError, check_file, in_one_line
 
@@ -112,6 +113,8 @@ EXTRAS = {
 
 def main():
     """Run the command line; bad input and interruption end quietly."""
+    # Before numpy is loaded: then none of scipy's libraries has to be loaded only to be limited.
+    os.environ[THREADS] = "1"
     try:
         cli(standalone_mode=False)
     except click.ClickException as error:
