@@ -8,7 +8,7 @@ from sonicvacuum.files import InputError
 from sonicvacuum_blind import report as study
 from sonicvacuum_blind.page import build as blind_page
 from sonicvacuum_paper.report import publish, tables
-from sonicvacuum_paper.report.page import CLAIMS, Sources, build
+from sonicvacuum_paper.report.page import CLAIMS, Sources, build, sure
 
 FIRST = ("measure", "group", "count", "value", "low", "high", "goal")
 SUMMARY = [
@@ -48,6 +48,14 @@ def test_a_report_without_discoveries_and_studies_says_so(empty):
     assert "No record has been looked into." in page
     assert "No table of the full study has been made." in page
     assert blind_page().count("No table of this study has been made.") == 2
+
+
+def test_what_the_paper_leaves_open_has_a_page_of_its_own_where_one_is_linked(empty):
+    inside, apart = build(Sources(*empty)), build(Sources(*empty, linked=["sure.html"]))
+    assert "Nothing has been drawn." in inside
+    assert 'href="sure.html"' in apart
+    assert "Nothing has been drawn." not in apart
+    assert "Nothing has been drawn." in sure(Sources(*empty))
 
 
 def test_rows_without_cases_and_times_are_left_out(summary):

@@ -5,7 +5,7 @@ import re
 import pytest
 from conftest import WIDTHS, height, pages_of, sideways, unfold
 
-PAGES = ("report.html", "runs.html", "blind.html")
+PAGES = ("report.html", "sure.html", "runs.html", "blind.html")
 # px at a width of 1300, every fold open.
 TALLEST = 6000
 

@@ -75,7 +75,8 @@ rule page:
         animations=expand("results/animations/{name}.svg", name=ANIMATIONS),
         linked=["results/runs.html", "results/blind.html"],
     output:
-        report("results/report.html", category="Report", caption="../report/page.rst"),
+        page=report("results/report.html", category="Report", caption="../report/page.rst"),
+        sure=report("results/sure.html", category="Report", labels={"page": "how sure"}),
     log:
         "results/logs/page.log",
     benchmark:
@@ -102,7 +103,8 @@ rule page:
         " {params.cards:q} {params.locks:q} {params.discoveries:q} --blind-full {params.blind_full:q}"
         " {params.histories:q} {params.animations:q} {params.linked:q}"
         " --map {input.contours:q} --map-picture {input.contours_picture:q} --experiments {input.experiments:q}"
-        " --relaxation {input.relaxation:q} --losses {input.losses:q} --explained {input.explained:q} --out {output:q} 2> {log:q}"
+        " --relaxation {input.relaxation:q} --losses {input.losses:q} --explained {input.explained:q} --sure {output.sure:q} --out {output.page:q}"
+        " 2> {log:q}"
 
 
 rule runs:

@@ -40,17 +40,23 @@ _FILE = existing()
 @click.option("--relaxation", type=_FILE, help="Solids from `paper rivals`.")
 @click.option("--losses", type=_FILE, help="Laws of loss from `paper rivals`.")
 @click.option("--explained", type=_FILE, help="Fits to the paper's record from `paper rivals`.")
+@click.option("--sure", type=WRITTEN, help="Page (HTML) on what the paper leaves open to write, and link.")
 @click.option("--out", required=True, type=WRITTEN, help="Page (HTML) to write.")
-def report(cards, histories, out, **given):
+def report(cards, histories, sure, out, **given):
     """Write the self-contained page with figures, ledger, audit, discoveries and provenance."""
     from sonicvacuum_paper.report import page
     from sonicvacuum_paper.shown import own as added
 
     named = [value for key, value in given.items() if key != "linked"]
     listed = [path for value in named for path in (value if isinstance(value, tuple) else (value,))]
-    check_apart([out], [*listed, *cards, histories])
+    check_apart([out, sure], [*listed, *cards, histories])
     own = [path for path in cards if added(Path(path).stem)] if histories else []
     read = [read_card(card) for card in cards]
-    text = page.build(page.Sources(cards=read, own=loaded(own, histories), **given))
+    given["linked"] += (Path(sure).name,) if sure else ()
+    sources = page.Sources(cards=read, own=loaded(own, histories), **given)
+    if sure:
+        with replacing(sure) as stream:
+            stream.write(page.sure(sources))
+    text = page.build(sources)
     with replacing(out) as stream:
         stream.write(text)

@@ -31,7 +31,7 @@ class Sources:
         blind_full: folder of the full blind study's tables, None where there is none.
         own: simulated cards of cases that a user added.
         animations: SVG files that move, named by `shown.ANIMATIONS`.
-        linked: names of the pages beside this one, of `runs.html` and `blind.html`.
+        linked: names of the pages beside this one, of `runs.html`, `blind.html` and `sure.html`.
         contours, experiments, relaxation, losses, explained: tables of `sonicvacuum paper rivals`.
         map_picture: the picture of the first of them (SVG).
     """
@@ -64,8 +64,7 @@ def build(given: Sources) -> str:
     """
     ledger = _ledger(given)
     metrics = tables.read(given.metrics, tables.METRICS)
-    of_rivals = (given.contours, given.experiments, given.relaxation, given.losses, given.explained)
-    compared = rivals.context(*of_rivals)
+    open_questions = _open(given, ledger)
     template = inline.environment("sonicvacuum_paper.report").get_template("page.html.j2")
     return template.render(
         ledger=[_claim_row(row) for row in ledger.to_dict("records")],
@@ -75,13 +74,12 @@ def build(given: Sources) -> str:
         assumptions=tables.read(given.assumptions, tables.ASSUMPTIONS).to_dict("records"),
         audited=[(c, ladder.title(c)) for c in AUDITED],
         headline=tables.headline(ledger),
-        answer=answer.sentences(ledger, metrics, compared.get("by_law")),
+        answer=answer.sentences(ledger, metrics, open_questions.get("by_law")),
         steps=steps(ledger.to_dict("records")),
         models=[(c, m.title, m.free) for c, m in ladder.MODELS.items() if m.counted],
         first=tables.first(ledger),
-        **uncertain.context(ledger),
-        **compared,
-        map_picture=given.map_picture and _figure(Path(given.map_picture), picture.CAPTION),
+        **open_questions,
+        alone=False,
         totals={t.model: t for t in ladder.totals(ledger.to_dict("records"))},
         figures=[_figure(Path(svg)) for svg in given.figures],
         cards=[_card_row(card, metrics) for card in given.cards],
@@ -93,11 +91,29 @@ def build(given: Sources) -> str:
         animations=[_animation(Path(svg)) for svg in given.animations],
         runs_page="runs.html" in given.linked,
         blind_page="blind.html" in given.linked,
+        sure_page="sure.html" in given.linked,
         versions=provenance.versions(),
         source=provenance.source_digest(),
         lock=provenance.digest(given.locks),
         script=interactive.script(),
     )
+
+
+def sure(given: Sources) -> str:
+    """The page on what the paper leaves open, as HTML text.
+
+    Raises:
+        InputError: when a table has other columns than it should.
+    """
+    template = inline.environment("sonicvacuum_paper.report").get_template("sure.html.j2")
+    return template.render(**_open(given, _ledger(given)), alone=True, script=interactive.script())
+
+
+def _open(given, ledger):
+    """What the paper leaves open: probabilities of its statements, and what sets rival models apart."""
+    of_rivals = (given.contours, given.experiments, given.relaxation, given.losses, given.explained)
+    drawn = given.map_picture and _figure(Path(given.map_picture), picture.CAPTION)
+    return {**uncertain.context(ledger), **rivals.context(*of_rivals), "map_picture": drawn}
 
 
 CLAIMS = [
