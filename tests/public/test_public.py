@@ -8,6 +8,7 @@ import re
 import shutil
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 from ball import RECORD
@@ -16,7 +17,9 @@ import sonicvacuum as sv
 from sonicvacuum import api, blas, builders
 from sonicvacuum.discover import session
 from sonicvacuum.physics import solitary, theory
-from sonicvacuum.prediction import measure
+from sonicvacuum.prediction import design, measure
+
+EXAMPLES = (sv, api, builders, measure, design)
 
 
 def python(code, **environment):
@@ -42,7 +45,13 @@ def test_importing_loads_nothing_and_every_public_name_is_there():
         _ = sv.nothing
 
 
-@pytest.mark.parametrize("module", [sv, api, builders, measure])
+def test_the_examples_of_every_module_are_tried(pytestconfig):
+    source = pytestconfig.rootpath / "src"
+    having = {p for p in source.rglob("*.py") if ">>> " in p.read_text(encoding="utf-8")}
+    assert having == {Path(inspect.getfile(module)) for module in EXAMPLES}
+
+
+@pytest.mark.parametrize("module", EXAMPLES, ids=lambda module: module.__name__)
 def test_the_examples_hold(module):
     failed, tried = doctest.testmod(module)
     assert tried > 0

@@ -122,7 +122,7 @@ def design(
     >>> steel = {"beads": 8, "diameter": "5mm", "material": "bearing-steel"}
     >>> found = sv.design(effects="wall-compliance", **steel, speed=0.5, echo=False)
     >>> max(found.single, key=found.single.get)
-    'wall'
+    '7'
     """
     _check(most, strength, noise)
     places = _places(beads) if gauges is None else gauges
