@@ -5,13 +5,16 @@ The method is in `stepper`, the force laws in `laws`.
 
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 
 import numpy as np
 
-from sonicvacuum_blind.laws import Acting, acting, numbers
-from sonicvacuum_blind.stepper import run
+from sonicvacuum.physics.compiled import cached, prepare
+from sonicvacuum_blind import stepper
+from sonicvacuum_blind.laws import SOURCES, Acting, acting, numbers
 
 TOLERANCE = 1e-8
+_run = cached(stepper.run, (*SOURCES, Path(stepper.__file__)))
 
 
 @dataclass(frozen=True)
@@ -97,7 +100,9 @@ def integrate(
     times = np.ascontiguousarray(times, dtype=float)
     push, wall = tuple(map(float, problem.push)), tuple(map(float, problem.wall))
     chain = (problem.table, problem.acting, push, wall)
-    steps = run(*chain, speed, scale, times, recorded, tolerance, force, kept)
+    arguments = (*chain, speed, scale, times, recorded, tolerance, force, kept)
+    prepare(_run, "hidden-effect data", arguments)
+    steps = _run(*arguments)
     if steps < 0:
         raise ValueError(f"no solution to {tolerance:g}: the laws are too stiff for the chain")
     return Motion(force, kept[:, 0], kept[:, 1], steps)

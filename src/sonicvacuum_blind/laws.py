@@ -10,11 +10,18 @@ the catalogue.
 
 import math
 from collections import namedtuple
+from pathlib import Path
 
 import numpy as np
 from numba import njit
 
+from sonicvacuum.physics.compiled import cached, prepare
+from sonicvacuum_blind import layer
 from sonicvacuum_blind.layer import DEGREE
+
+# What compiled code is made of here; it is kept from process to process, as compiling takes longer than most
+# data.
+SOURCES = (Path(__file__), Path(layer.__file__))
 
 CONTACT = (
     "hertz",  # K in N/m^{3/2}
@@ -252,7 +259,7 @@ def static_forces(rest: np.ndarray, rows: np.ndarray) -> np.ndarray:
     if not np.any(rest > 0.0):
         return np.zeros(len(rest))
     table, uses, room = _alone(rows)
-    return _borne(np.maximum(rest, 0.0), table, uses, room)
+    return _at_once(_borne, np.maximum(rest, 0.0), table, uses, room)
 
 
 def compression_at_rest(weight: np.ndarray, rows: np.ndarray) -> np.ndarray:
@@ -262,7 +269,13 @@ def compression_at_rest(weight: np.ndarray, rows: np.ndarray) -> np.ndarray:
     table, uses, room = _alone(rows)
     if not (uses.power or uses.layer or uses.adhesion):
         return (np.maximum(weight, 0.0) / rows[:, _HERTZ]) ** (2.0 / 3.0)
-    return _sink(weight, table, uses, room)
+    return _at_once(_sink, weight, table, uses, room)
+
+
+def _at_once(function, *arguments):
+    """The result of a function that an earlier process may have compiled."""
+    prepare(function, function.__name__, arguments)
+    return function(*arguments)
 
 
 def _alone(rows):
@@ -292,3 +305,7 @@ def _sink(weight, table, uses, room):
         less = _borne(middle, table, uses, room) < weight
         low, high = np.where(less, middle, low), np.where(less, high, middle)
     return np.where(bears, high, 0.0)
+
+
+for one in (_borne, _sink):
+    cached(one, SOURCES)

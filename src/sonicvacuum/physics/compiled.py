@@ -38,11 +38,16 @@ _PATIENCE = 60.0
 
 def source_digest(package: Path = _PACKAGE) -> str:
     """Digest of all Python files of a package and of the versions of what compiles them."""
-    digest = hashlib.sha256()
     versions = (sys.version, numba.__version__, llvmlite.__version__, np.__version__)
-    digest.update(repr(versions).encode())
-    for path in sorted(package.rglob("*.py")):
-        digest.update(str(path.relative_to(package)).encode())
+    return files_digest(tuple(sorted(package.rglob("*.py"))), package, repr(versions))
+
+
+@lru_cache
+def files_digest(files: tuple[Path, ...], folder: Path | None = None, more: str = "") -> str:
+    """Digest of some files, their names as seen from a folder (or alone), and of a text."""
+    digest = hashlib.sha256(more.encode())
+    for path in files:
+        digest.update(str(path.relative_to(folder) if folder else path.name).encode())
         digest.update(path.read_bytes())
     return digest.hexdigest()[:20]
 
@@ -80,8 +85,8 @@ def _prune(folder):
 class _SignatureCache(_Cache):
     """Numba's interface to a cache: one file per signature."""
 
-    def __init__(self, function):
-        self._function = function
+    def __init__(self, function, sources):
+        self._function, self._sources = function, sources
 
     @property
     def cache_path(self):
@@ -97,7 +102,8 @@ class _SignatureCache(_Cache):
         pass
 
     def path(self, signature, target):
-        key = (self._function.__qualname__, str(signature), target.codegen().magic_tuple())
+        own = (self._function.__qualname__, *(files_digest((file,)) for file in self._sources))
+        key = (*own, str(signature), target.codegen().magic_tuple())
         return cache_folder() / f"{hashlib.sha256(repr(key).encode()).hexdigest()[:32]}.bin"
 
     def load_overload(self, sig, target_context):
@@ -135,9 +141,14 @@ def _own(path: Path) -> bytes:
         return file.read()
 
 
-def cached(dispatcher):
-    """Give a Numba function this cache instead of Numba's own."""
-    dispatcher._cache = _SignatureCache(dispatcher.py_func)
+def cached(dispatcher, sources: tuple[Path, ...] = ()):
+    """Give a Numba function this cache instead of Numba's own.
+
+    Args:
+        dispatcher: what `numba.njit` returned.
+        sources: files outside `sonicvacuum.physics` with whose code it is compiled.
+    """
+    dispatcher._cache = _SignatureCache(dispatcher.py_func, sources)
     return dispatcher
 
 
