@@ -6,15 +6,13 @@ from pathlib import Path
 
 import click
 
-from sonicvacuum.cli.helped import examples
+from sonicvacuum.cli.helped import FOLDER, PRESENT, WRITTEN, verb
 from sonicvacuum.outputs import check_apart
 from sonicvacuum_blind.cli.hide import check_truth
-from sonicvacuum_blind.cli.options import batch_of, folder, present, say
+from sonicvacuum_blind.cli.options import batch_of, say
 
 
-@click.command(
-    epilog=examples("sonicvacuum blind extras --records extras/records --truth extras/truth --first 40")
-)
+@verb("sonicvacuum blind extras --records extras/records --truth extras/truth --first 40")
 @click.option("--batch", default="0/1", show_default=True, help="k/n: every n-th case from the k-th on.")
 @click.option(
     "--first", type=click.IntRange(min=1), help="So many of the list, whose order is drawn; all if not given."
@@ -23,14 +21,14 @@ from sonicvacuum_blind.cli.options import batch_of, folder, present, say
     "--records",
     "records_folder",
     required=True,
-    type=folder,
+    type=FOLDER,
     help="Folder for the records, one for each case.",
 )
 @click.option(
     "--truth",
     "truth_folder",
     required=True,
-    type=folder,
+    type=FOLDER,
     help="Folder for the truth; keep it away from discover.",
 )
 def extras(batch, first, records_folder, truth_folder):
@@ -48,20 +46,16 @@ def extras(batch, first, records_folder, truth_folder):
         click.echo(case.id)
 
 
-@click.command(
+@verb(
+    "sonicvacuum blind extras-score --truth extras/truth --verdicts extras/verdicts"
+    " --out extras/records.csv --summary extras/summary.csv",
     name="extras-score",
-    epilog=examples(
-        "sonicvacuum blind extras-score --truth extras/truth --verdicts extras/verdicts"
-        " --out extras/records.csv --summary extras/summary.csv"
-    ),
 )
-@click.option("--truth", required=True, type=present, help="Folder of truths.")
-@click.option("--verdicts", required=True, type=present, help="Folder of verdicts.")
+@click.option("--truth", required=True, type=PRESENT, help="Folder of truths.")
+@click.option("--verdicts", required=True, type=PRESENT, help="Folder of verdicts.")
 @click.option("--partly", is_flag=True, help="Leave out cases that have no verdict yet.")
-@click.option(
-    "--out", required=True, type=click.Path(dir_okay=False), help="Row of each record (CSV) to write."
-)
-@click.option("--summary", required=True, type=click.Path(dir_okay=False), help="Table (CSV) to write.")
+@click.option("--out", required=True, type=WRITTEN, help="Row of each record (CSV) to write.")
+@click.option("--summary", required=True, type=WRITTEN, help="Table (CSV) to write.")
 def extras_score(truth, verdicts, partly, out, summary):
     """Count which effects are named beside systematic errors, and which of several."""
     from sonicvacuum_blind import extra_score
