@@ -9,7 +9,7 @@ import stat
 import textwrap
 import zipfile
 import zlib
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, get_args
@@ -58,9 +58,10 @@ class InputError(Exception):
 def replacing(path: str | os.PathLike, mode: str = "w"):
     """Open a file for writing that takes its name only once it is complete.
 
-    An exception inside leaves whatever stood there before.
+    An exception inside leaves whatever stood there before. A link stays, and what it points to is replaced.
     """
-    path = Path(path)
+    check_written(path)
+    path = Path(os.path.realpath(path)) if os.path.islink(path) else Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     partial = path.with_name(f".{path.name}.{os.getpid()}.partial")
     text = {} if "b" in mode else {"encoding": "utf-8", "newline": "\n"}
@@ -113,8 +114,18 @@ def check_file(path: str | os.PathLike) -> None:
         told = getattr(error, "strerror", None) or error
         raise InputError(f"{path}: {told}; give the path of a readable file") from None
     if not stat.S_ISREG(mode):
-        kind = "a folder" if stat.S_ISDIR(mode) else "a pipe or a device"
-        raise InputError(f"{path}: is {kind}; give the path of a readable file")
+        raise InputError(f"{path}: is {_kind(mode)}; give the path of a readable file")
+
+
+def check_written(path: str | os.PathLike) -> None:
+    """InputError where something stands that no file may replace: a folder, a pipe, a device."""
+    with suppress(OSError, ValueError):
+        if not stat.S_ISREG(mode := os.stat(path).st_mode):
+            raise InputError(f"{path}: is {_kind(mode)}; give the path of a file to write")
+
+
+def _kind(mode):
+    return "a folder" if stat.S_ISDIR(mode) else "a pipe or a device"
 
 
 def read_text(path: str | os.PathLike) -> str:

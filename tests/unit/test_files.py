@@ -189,3 +189,30 @@ def test_whatever_stands_in_a_path_is_told_in_one_line(monkeypatch, capsys):
     told = capsys.readouterr().err
     assert done.value.code == 2
     assert "\x1b" not in told and "Error" in told.splitlines()[-1]
+
+
+def test_a_pipe_or_a_device_is_never_replaced_by_a_file(tmp_path, monkeypatch, capsys):
+    """Renaming a file to /dev/null would leave no /dev/null."""
+    pipe, link = tmp_path / "pipe", tmp_path / "link"
+    os.mkfifo(pipe)
+    link.symlink_to(pipe)
+    for place in (pipe, link):
+        with pytest.raises(InputError, match="is a pipe or a device"), replacing(place):
+            pass
+        monkeypatch.setattr("sys.argv", ["sonicvacuum", "schema", "--out", str(place)])
+        with pytest.raises(SystemExit) as done:
+            main()
+        assert done.value.code == 2
+        assert "is a pipe or a device; give the path of a file to write" in capsys.readouterr().err
+    assert pipe.is_fifo() and link.is_symlink()
+
+
+def test_a_link_stays_and_its_file_is_replaced(tmp_path):
+    file, link = tmp_path / "far" / "file", tmp_path / "link"
+    file.parent.mkdir()
+    file.write_text("old")
+    link.symlink_to(file)
+    with replacing(link) as stream:
+        stream.write("new")
+    assert link.is_symlink() and file.read_text() == "new"
+    assert list(file.parent.iterdir()) == [file]

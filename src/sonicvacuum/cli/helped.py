@@ -5,6 +5,8 @@ from pathlib import Path
 
 import click
 
+from sonicvacuum.files import check_written
+
 EXIT_CODES = """\b
 Exit codes:
   0    done, whatever a verdict says
@@ -14,8 +16,19 @@ Exit codes:
 COMPLETION = """\b
 Completion of verbs and options:
   eval "$(_SONICVACUUM_COMPLETE=bash_source sonicvacuum)"      # or zsh_source, fish_source"""
+
+
+class _Written(click.Path):
+    """A path for a file; what stands there and is none is told before anything is computed."""
+
+    def convert(self, value, param, ctx):
+        path = super().convert(value, param, ctx)
+        check_written(path)
+        return path
+
+
 # Paths: a file to write, a folder to write, a folder to read; a file to read is `sonicvacuum.cli.existing`.
-WRITTEN = click.Path(dir_okay=False)
+WRITTEN = _Written(dir_okay=False)
 FOLDER = click.Path(file_okay=False)
 PRESENT = click.Path(exists=True, file_okay=False)
 # Digits of a SHA-256 that tell locks apart.
