@@ -47,11 +47,21 @@ def read(path) -> Config:
             raise InputError(
                 f"{path}: discover[{place}]: is {folder!r}; another record has that folder name: rename one"
             )
+    _check_spelling(f"{path}: cases", config.cases)
     for case, block in config.cases.items():
         for variant in variant_names(block):
             card(config, case, variant, path)
             _check_model(config, case, variant, path)
+        _check_spelling(f"{path}: cases.{case}.variants", variant_names(block))
     return config
+
+
+def _check_spelling(key, names):
+    """Names become files, and some file systems take capitals for small letters."""
+    seen: dict[str, str] = {}
+    for name in names:
+        if (other := seen.setdefault(name.lower(), name)) != name:
+            raise InputError(f"{key}: {name!r} and {other!r} would be one file on some systems; rename one")
 
 
 def _check_folder(folder, key):

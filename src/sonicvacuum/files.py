@@ -70,10 +70,12 @@ def replacing(path: str | os.PathLike, mode: str = "w"):
             yield stream
         partial.replace(path)
     except OSError as error:
-        error.filename = error.filename or str(path)  # a full disk does not say which file it was
+        if error.filename is None or Path(error.filename) == partial:  # a full disk names no file
+            error.filename = str(path)
         raise
     finally:
-        partial.unlink(missing_ok=True)
+        with suppress(OSError):
+            partial.unlink(missing_ok=True)
 
 
 @contextmanager

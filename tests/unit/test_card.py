@@ -308,3 +308,17 @@ def test_any_other_folder_is_taken(tmp_path):
     name = "a b; $(x) 'q' \"d\" * ü"
     path.write_text(json.dumps({"ledger": {}, "cases": {"one": CASE}, "discover": ["records/" + name]}))
     assert list(read(path).records) == [name]
+
+
+@pytest.mark.parametrize(
+    ("cases", "told"),
+    [
+        ({"one": CASE, "One": CASE}, "cases: 'One' and 'one'"),
+        ({"one": CASE | {"variants": {"soft": {}, "SOFT": {}}}}, "cases.one.variants: 'SOFT' and 'soft'"),
+    ],
+)
+def test_names_that_would_be_one_file_are_refused(tmp_path, cases, told):
+    path = tmp_path / "config.yaml"
+    path.write_text(json.dumps({"cases": cases}))
+    with pytest.raises(InputError, match=re.escape(told) + " would be one file"):
+        read(path)

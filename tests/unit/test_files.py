@@ -216,3 +216,10 @@ def test_a_link_stays_and_its_file_is_replaced(tmp_path):
         stream.write("new")
     assert link.is_symlink() and file.read_text() == "new"
     assert list(file.parent.iterdir()) == [file]
+
+
+def test_a_place_that_cannot_be_written_is_named_as_it_was_given(tmp_path):
+    path = tmp_path / ("x" * 300)
+    with pytest.raises(OSError) as error, replacing(path):
+        pass
+    assert error.value.filename == str(path)
