@@ -90,7 +90,7 @@ slurm: .venv/clustered  ## a small pipeline and RECORDS of the full study (2034:
 crate: .venv/clustered  ## the finished run as an RO-Crate in results/crate
 	$(BIN)/python workflow/scripts/crate.py --out results/crate
 
-generic: env  ## figure tables and ledger on a plain processor against those in git; table in results/generic.csv
+generic: env  ## figure tables, ledger and verdicts on a plain processor; table in results/generic.csv
 	$(BIN)/python workflow/scripts/generic.py --out results/generic.csv
 
 reproduce: env  ## regenerate figures' numbers and ledger in a clean folder and compare with those in git

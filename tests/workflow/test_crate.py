@@ -12,6 +12,7 @@ sys.path.insert(0, f"{os.path.dirname(__file__)}/../../workflow/scripts")
 
 import crate
 import generic
+import generic_verdicts
 
 
 @pytest.fixture
@@ -75,3 +76,24 @@ def test_the_table_of_a_plain_processor_counts_what_lies_beyond(tmp_path):
     assert float(found[0]["relative"]) == pytest.approx(0.005)
     words = generic.rows(kept, kept.assign(name=["a", "c"]), "t", pd.DataFrame([rule]))
     assert words[-1]["beyond_tolerance"] == 1
+
+
+def test_verdicts_are_apart_by_their_numbers_and_wholly_by_their_names():
+    value = {"value": 1.0, "sigma": 0.1}
+    one = {
+        "named": ["tsuji"], "confusable": [], "not_testable": [],
+        "probabilities": {"tsuji": 0.9, "none": 0.1},
+        "parameters": {"tsuji": {"alpha": value}}, "upper_limits": {"gravity": {"fraction": 2.0}},
+        "gap": {"fitted": {"before": 9.0, "after": 1.0}},
+    }  # fmt: skip
+    assert set(generic_verdicts.apart(one, one).values()) == {0.0}
+    other = one | {
+        "probabilities": {"tsuji": 0.8, "none": 0.2},
+        "parameters": {"tsuji": {"alpha": value | {"value": 1.01}}},
+        "upper_limits": {"gravity": {"fraction": 2.2}},
+    }
+    found = generic_verdicts.apart(one, other)
+    assert found == pytest.approx(
+        {"probabilities": 0.1, "gap": 0.0, "parameters, in errors": 0.1, "limits": 0.1}
+    )
+    assert set(generic_verdicts.apart(one, one | {"named": ["unknown"]}).values()) == {float("inf")}

@@ -1,8 +1,9 @@
-"""Figure tables and ledger computed for a plain 64-bit processor, held against those in git.
+"""Figure tables, ledger and verdicts computed for a plain 64-bit processor, held against those in git.
 
 Numba makes code for the processor `generic`, without vector units beyond those that each has: other
 instructions, so other roundings. Writes, for each column of numbers, the largest difference and how many
-cells lie beyond their tolerance in workflow/resources/tolerances.csv; exit code 1 where any does.
+cells lie beyond their tolerance in workflow/resources/tolerances.csv; exit code 1 where any does. Verdicts
+are held against those for the machine's own processor, see `generic_verdicts`.
 """
 
 import argparse
@@ -13,6 +14,7 @@ import sys
 import tempfile
 from pathlib import Path
 
+import generic_verdicts
 import pandas as pd
 from reproduce import REFERENCE, clean_copy
 
@@ -57,15 +59,19 @@ def compute(folder: Path, targets: list[str], cores: int) -> None:
 def main() -> int:
     """The table; 1 where a cell lies beyond its tolerance."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--targets", nargs="+", choices=TARGETS, default=TARGETS)
+    parser.add_argument("--targets", nargs="*", choices=TARGETS, default=TARGETS)
+    parser.add_argument("--verdicts", action=argparse.BooleanOptionalAction, default=True)
     parser.add_argument("--cores", type=int, default=2)
     parser.add_argument("--out", type=Path, required=True)
     asked, root = parser.parse_args(), Path.cwd()
     tolerances = agreement.read_tolerances(root / "workflow/resources/tolerances.csv")
     found = []
     with tempfile.TemporaryDirectory() as name:
-        folder = clean_copy(root, Path(name) / "generic")
-        compute(folder, asked.targets, asked.cores)
+        if asked.verdicts:
+            found += generic_verdicts.rows(Path(name), PROCESSOR, COLUMNS)
+        folder = clean_copy(root, Path(name) / "generic") if asked.targets else None
+        if folder:
+            compute(folder, asked.targets, asked.cores)
         for target in asked.targets:
             kept = root / REFERENCE / "ledger.csv" if "ledger" in target else root / target
             pair = (pd.read_csv(path, dtype=str, keep_default_na=False) for path in (kept, folder / target))
