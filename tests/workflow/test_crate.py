@@ -88,12 +88,13 @@ def test_verdicts_are_apart_by_their_numbers_and_wholly_by_their_names():
     }  # fmt: skip
     assert set(generic_verdicts.apart(one, one).values()) == {0.0}
     other = one | {
-        "probabilities": {"tsuji": 0.8, "none": 0.2},
+        "probabilities": {"tsuji": 0.8, "none": 0.1, "hunt-crossley": 0.15},
         "parameters": {"tsuji": {"alpha": value | {"value": 1.01}}},
         "upper_limits": {"gravity": {"fraction": 2.2}},
+        "gap": {"fitted": {"before": 9.5, "after": 1.0}},
     }
     found = generic_verdicts.apart(one, other)
     assert found == pytest.approx(
-        {"probabilities": 0.1, "gap": 0.0, "parameters, in errors": 0.1, "limits": 0.1}
+        {"probabilities": 0.15, "gap": 0.5, "parameters, in errors": 0.1, "limits": 0.1}
     )
     assert set(generic_verdicts.apart(one, one | {"named": ["unknown"]}).values()) == {float("inf")}

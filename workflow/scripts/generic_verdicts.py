@@ -44,8 +44,8 @@ def apart(one: dict, other: dict) -> dict[str, float]:
         return dict.fromkeys(TOLERANCES, float("inf"))
     names = one["probabilities"].keys() | other["probabilities"].keys()
     pairs = {
-        "probabilities": [(v["probabilities"].get(n, 0.0) for v in (one, other)) for n in names],
-        "gap": [(v["gap"]["fitted"][key] for v in (one, other)) for key in ("before", "after")],
+        "probabilities": [[v["probabilities"].get(n, 0.0) for v in (one, other)] for n in names],
+        "gap": [[v["gap"]["fitted"][key] for v in (one, other)] for key in ("before", "after")],
     }
     found = {kind: max((abs(a - b) for a, b in several), default=0.0) for kind, several in pairs.items()}
     found["parameters, in errors"] = max(
