@@ -20,7 +20,7 @@ from sonicvacuum.physics.scales import impact_scales, passage_of, sampling_of
 
 # The search ends once all amplitudes are so near (natural log): what the slope between the last two strikes
 # then errs by, a few hundredths, moves a speed by a few parts in 1e4 at most.
-NEAR = 0.01
+NEAR = 0.03
 TRIES = 8
 # Steps in the logarithm of the striker's speed go no further than this.
 STRIDE = math.log(4.0)
