@@ -5,11 +5,13 @@ import pytest
 from test_told_fully import FORCE, SPEED, block, record
 
 from sonicvacuum.discover import verdict
+from sonicvacuum.discover.compare import compare
 from sonicvacuum.discover.fit.normal import linearise
 from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis
 from sonicvacuum.discover.model.problem import experiment
+from sonicvacuum.discover.verdict import Model
 from sonicvacuum.effects import effect
 from sonicvacuum.files import InputError
 
@@ -86,3 +88,10 @@ def test_what_cannot_be_known_to_act_is_refused(chain, name, cure):
 def test_a_thickness_without_an_error_is_refused():
     with pytest.raises(InputError, match="give coating_um and tolerances"):
         experiment(record(*GIVEN, chain=CHAIN, priors={LAYER: "present"}))
+
+
+def test_a_model_that_holds_it_is_compared_as_it_is(layered):
+    fitted = {"speed_ratio": {}, "trigger_us": {}, "gain": {}, "modulus_ratio": 1.0}
+    model = Model(record="made", effects={LAYER: {"layer_thickness_um": 50.0}}, **fitted)
+    found = compare(model, layered.experiment.record)
+    assert found.effects == [LAYER] and found.gap.after == found.gap.before

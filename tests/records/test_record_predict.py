@@ -1,12 +1,14 @@
 """What the nominal model makes of a record: runs in lanes, shifts in time, scalars as they are defined."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from record_cases import BALL, CONTENT, SCALARS, STRIKER, TIME, content, made
 
 from sonicvacuum.effects import effect
+from sonicvacuum.forward.amplitude import speed_at_amplitude
 from sonicvacuum.observe.quantities import measure
 from sonicvacuum.physics.run import simulate
 from sonicvacuum.physics.solitary import SolitaryWave
@@ -151,6 +153,23 @@ def test_speed_at_amplitude_is_that_of_the_exact_solitary_wave():
     exact = wave.speed(contact, batch.chain.stiffness[0], record.specimen.first.diameter_m, 0.44e-3)
     # The wave is not quite alone after 24 beads, and speeds are interpolated between strikers: 1e-3.
     assert found.value == pytest.approx(exact, rel=1e-3)
+
+
+def test_speeds_at_an_amplitude_are_those_of_each_chain_alone():
+    record = scalar_record()
+    one = assemble(record)[0].chain.take([0])
+    chains = one.take(np.zeros(3, dtype=int)).stiffened(one.first.surface.name, np.array([0.8, 1.0, 1.3]))
+    gauge = replace(record.gauges[0], gain=np.array([1.0, 1.1, 0.9]))
+    diameters, force = record.specimen.diameters, 1.0
+
+    def found(lanes):
+        return [x.value for x in speed_at_amplitude(chains.take(lanes), diameters, gauge.take(lanes), force)]
+
+    # Strikes end at amplitudes within 3 % of the one wanted, by other steps beside other chains.
+    alone = [found(np.array([k]))[0] for k in range(3)]
+    assert found(np.arange(3)) == pytest.approx(alone, rel=2e-4)
+    # A stiffer chain is faster by the cube root, at a given force; a gain is a force, to the sixth root.
+    assert alone[2] / alone[0] == pytest.approx((1.3 / 0.8) ** (1 / 3) * (1.0 / 0.9) ** (1 / 6), rel=0.02)
 
 
 def test_an_elastic_ball_rebounds_at_its_speed_after_the_hertz_time():
