@@ -102,7 +102,8 @@ def test_fig6_shows_the_wall_alone_and_three_waves_of_the_heavy_ball_without_los
     counts = table[table.series == "peak"].groupby(["panel", "model"]).size()
     assert (counts["a"] == 1).all()
     assert counts["b", "layer"] >= 3 and counts["b", "matched"] >= 3
-    assert counts["b", "layer-loss"] == 1
+    # With the masses of geometry a shoulder follows, which rises by less than what the ledger counts.
+    assert counts["b", "layer-loss"] == 1 == counts["b", "layer-loss-geometry"]
 
 
 def test_fig4_forces_exceed_readings_as_an_averaging_gauge_demands(drawn):

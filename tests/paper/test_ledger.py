@@ -4,6 +4,7 @@ import csv
 import math
 from dataclasses import fields, replace
 
+import pandas as pd
 import pytest
 
 from sonicvacuum.files import InputError
@@ -264,3 +265,21 @@ def test_steps_tell_what_turns_and_leave_out_what_was_fitted():
     ]
     loss = next(s for s in steps.steps(rows) if s["models"].endswith("layer, 2.76 GPa, loss"))
     assert (loss["won"], loss["lost"]) == (["speed"], ["force"])
+
+
+def test_settings_tell_the_numbers_that_move():
+    cells = {"kind": "simulation", "unit": "N", "measured": "3"}
+    rows = [
+        {**cells, "claim": "force", "ideal": "4.9", "layer": "4.8"},
+        {**cells, "claim": "speed", "ideal": "226.3", "layer": "226.7"},
+        {**cells, "claim": "count", "ideal": "", "layer": "1"},
+    ]
+    assert steps.settings(rows) == [{"claim": "force", "unit": "N", "cells": ["3", "4.9", "4.8"]}]
+
+
+def test_masses_stand_side_by_side_where_both_were_simulated():
+    models = ("layer", "layer-geometry", "layer-loss", "layer-loss-geometry")
+    rows = [(f"fig6a.{m}", "amplitude", "wall", str(k)) for k, m in enumerate(models, 1)]
+    rows += [("fig6b.layer", "amplitude", "wall", "9")]
+    table = pd.DataFrame(rows, columns=["case", "quantity", "sensor", "value"])
+    assert steps.masses(table) == [["Fig. 6(a), peak at the wall, N", "1", "2", "3", "4"]]

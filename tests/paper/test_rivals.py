@@ -138,13 +138,15 @@ def test_the_section_of_the_report_says_what_the_tables_say(
         columns=["claim", "statement", "probability", "fitted"],
     )
     template = inline.environment("sonicvacuum_paper.report").get_template("uncertainty.html.j2")
-    page = template.render(**uncertain.context(ledger), **rivals.context(*paths), map_picture=None)
+    page = template.render(
+        **uncertain.context(ledger), **rivals.context(*paths), map_picture=None, alone=False
+    )
     assert "0.3 (fitted)" in page and "±1 mm each" in page
     assert "by them the thickness of the coating decides" in page
     assert "196 | 190" in page and "196 | –" in page and "modulus over handbook value 3.7" in page
     assert "1.52 on the layer and 1.37 on Hertz" in page and "in proportion to the force" in page
     assert "None of the solids tried meets both speeds and the duration" in page
-    assert "Nothing has been drawn" in template.render(probable=(), allowed=None)
+    assert "Nothing has been drawn" in template.render(probable=(), allowed=None, alone=False)
 
 
 def test_what_the_comparison_needs_is_named_where_it_is_missing(cases, tmp_path):

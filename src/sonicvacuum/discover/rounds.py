@@ -138,11 +138,8 @@ def _odds(found, decision: Decision, alike, prior, present) -> tuple[dict[str, f
             f"{', '.join(stuck)} ended at a bound, even beyond the catalogue's range, and might fit better"
         )
     reasons += _said(prior, present) + _losses(found, odds, present)
-    other = (
-        _with_less(found, decision, alike, prior)
-        if odds.get(explanations.key(decision.named), 0.0) > 0.5
-        else ""
-    )
+    sure = odds.get(explanations.key(decision.named), 0.0) > 0.5
+    other = _with_less(found, decision, alike, prior) if sure or present else ""
     if other:
         reasons.append(f"were its prior ten times smaller, {other} would be the likeliest")
     elif present:

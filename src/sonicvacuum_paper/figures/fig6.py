@@ -7,12 +7,13 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from sonicvacuum.figures import style
+from sonicvacuum.observe.pulse import PROMINENCE
 from sonicvacuum.simulation import Simulation
 from sonicvacuum_paper.figures import traces
 
 COLUMNS = traces.COLUMNS
 UNTIL_US = 600.0
-# Lowest later peak that the paper would call a pulse, of the main one; as in the ledger.
+# Lowest later peak that the paper would call a pulse, of the main one; as in the ledger, and so is its rise.
 COUNTED = 0.15
 _TITLES = {"a": "(a) Steel ball, 0.036 g", "b": "(b) PTFE ball, 0.123 g"}
 
@@ -29,7 +30,7 @@ def table(simulations: Mapping[str, Simulation]) -> pandas.DataFrame:
     """The numbers drawn; columns in `traces`."""
     found = []
     for name, simulation in simulations.items():
-        found += traces.rows(name.split(".")[0][-1], simulation, UNTIL_US)
+        found += traces.rows(name.split(".")[0][-1], simulation, UNTIL_US, PROMINENCE)
     wall = traces.frame(found)
     return wall[wall.sensor == "wall"].reset_index(drop=True)
 

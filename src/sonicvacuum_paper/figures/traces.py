@@ -46,15 +46,15 @@ TRAIN = 0.05
 SMALL = 0.01
 
 
-def rows(panel: str, simulation: Simulation, until_us: float) -> list[dict]:
-    """The traces of a card's gauges until a time, with their peaks."""
+def rows(panel: str, simulation: Simulation, until_us: float, rise: float = SMALL) -> list[dict]:
+    """The traces of a card's gauges until a time, with their peaks: those that rise by `rise` of the main."""
     run = OneRun(simulation)
     modulus = simulation.card.bead.surface.modulus_Pa / 1e9
     found = []
     for sensor in run.gauges:
         shared = {"panel": panel, "sensor": sensor.id, "model": model_of(simulation), "modulus_GPa": modulus}
         found += [shared | point for point in _trace(run, sensor, until_us)]
-        found += [shared | peak for peak in _peaks(run, sensor, until_us)]
+        found += [shared | peak for peak in _peaks(run, sensor, until_us, rise)]
     return found
 
 
@@ -127,15 +127,15 @@ def _free_until(run: OneRun, sensor: Gauge) -> float:
     return back.value - 2.5 * rise
 
 
-def _peaks(run: OneRun, sensor: Gauge, until_us: float):
+def _peaks(run: OneRun, sensor: Gauge, until_us: float, rise: float):
     trace, main = run.view.trace(sensor.id), run.view.main(sensor.id)
     end = min(_free_until(run, sensor), until_us * 1e-6)
-    for number, pulse in enumerate(pulses(trace, main, end, TRAIN, SMALL), start=1):
+    counted = pulses(trace, main, end, TRAIN, rise)
+    for number, pulse in enumerate(counted, start=1):
         peak = {"series": "peak", "pulse": number, "time_us": 1e6 * pulse.time, "force_N": pulse.force}
         if number == 1 and run.span and sensor == run.span[1]:
             peak["speed_m_s"] = run.speed().value
         yield peak
-    counted = pulses(trace, main, end, TRAIN, SMALL)
     # By its rise and not its height: the gauges' discharge has drawn the line below zero by then.
     later = [p for p in pulses(trace, main, end, -np.inf, SMALL) if counted and p.time > counted[-1].time]
     if len(counted) > 2 and later:

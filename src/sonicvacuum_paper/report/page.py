@@ -13,7 +13,7 @@ from sonicvacuum_paper import ladder
 from sonicvacuum_paper.assumptions import AUDITED
 from sonicvacuum_paper.figures import caption
 from sonicvacuum_paper.report import answer, cursor, provenance, rivals, runs, tables, uncertain
-from sonicvacuum_paper.report.steps import steps
+from sonicvacuum_paper.report.steps import masses, settings, steps
 from sonicvacuum_paper.shown import ANIMATIONS
 from sonicvacuum_paper.uncertainty import picture
 
@@ -76,6 +76,8 @@ def build(given: Sources) -> str:
         headline=tables.headline(ledger),
         answer=answer.sentences(ledger, metrics, open_questions.get("by_law")),
         steps=steps(ledger.to_dict("records")),
+        settings=settings(ledger.to_dict("records")),
+        masses=masses(metrics),
         models=[(c, m.title, m.free) for c, m in ladder.MODELS.items() if m.counted],
         first=tables.first(ledger),
         **open_questions,
