@@ -57,7 +57,8 @@ def effective(weight: np.ndarray) -> float:
 
 
 def pareto_k(weight: np.ndarray) -> float:
-    """Shape of the generalised Pareto distribution of the largest weights; infinite where they are too few.
+    """Shape of the generalised Pareto distribution of the largest weights; infinite where they are too few,
+    and minus infinity where nearly all of them are equal: nothing has a thinner tail.
 
     The estimator of Zhang & Stephens, Technometrics 51, 316 (2009), on as many as Vehtari et al. (J. Mach.
     Learn. Res. 25(72), 2024) take: min(n / 5, 3 √n). Draws are to be trusted below `TRUSTED`.
@@ -67,8 +68,10 @@ def pareto_k(weight: np.ndarray) -> float:
     if tail < 5:
         return math.inf
     excess = ordered[-tail:] - ordered[-tail - 1]
-    if excess[0] <= 0.0:
-        return -math.inf if excess[-1] <= 0.0 else math.inf
+    excess = excess[excess > 0.0]
+    tail = len(excess)
+    if tail < 5:
+        return -math.inf
     # Theirs, equations (4) to (8): b = k / scale weighed over a grid by its profile likelihood.
     grid = 30 + int(math.sqrt(tail))
     quarter = excess[int(tail / 4 + 0.5) - 1]
@@ -88,7 +91,7 @@ def write(folder: Path, draws: Sequence[Draws]) -> None:
 def _rows(draws) -> Iterator[tuple[str, ...]]:
     for one in draws:
         for value, weight in zip(one.value, one.weight, strict=True):
-            yield one.effect, one.parameter, one.how, f"{value:.7g}", f"{weight:.4g}"
+            yield one.effect, one.parameter, one.how, f"{value:.7g}", f"{weight:.7g}"
 
 
 def read(folder: Path) -> dict[tuple[str, str], Draws]:
