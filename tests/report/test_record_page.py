@@ -6,15 +6,17 @@ import re
 from html.parser import HTMLParser
 from xml.etree import ElementTree
 
+import numpy as np
 import pytest
 from made_verdicts import KINDS, WITHOUT_TRACES, gaps, model, verdict, write
 from msgspec.structs import replace
 
+from sonicvacuum.discover import draws
 from sonicvacuum.discover.verdict import write_json
 from sonicvacuum.effects import CATALOGUE, Catalogue, Effect, Source
 from sonicvacuum.figures import disagreement, discovery, posterior, style
 from sonicvacuum.files import InputError
-from sonicvacuum.report import bench, plots, record, words
+from sonicvacuum.report import bench, plots, record, rows, words
 from sonicvacuum.report.record import write_page
 from sonicvacuum.tables import read_csv
 
@@ -239,6 +241,29 @@ def test_the_posterior_is_drawn_where_the_verdict_has_it(folders):
     # Full width at half height of a Gaussian, on a grid of 8 sigma in 400 steps.
     assert half[-1] - half[0] == pytest.approx(2.3548 * 0.06, abs=2 * 8 * 0.06 / 400)
     assert list(searched.lines[0].get_xdata()) == [float(row["low"]), float(row["high"])]
+
+
+@pytest.mark.parametrize("how", [draws.SAMPLED, draws.PROFILE])
+def test_intervals_are_of_the_draws_and_not_of_the_gaussian(how, tmp_path):
+    """Draws of a skewed distribution: exp(-x), whose 90 % interval is -ln 0.95 to -ln 0.05."""
+    folder = write(tmp_path / "made", "single")
+    value = np.linspace(0.0, 12.0, 2401)
+    weight = np.exp(-value) / np.exp(-value).sum()
+    draws.write(folder, [draws.Draws("kuwabara-kono", "time_us", how, value, weight)])
+    discovery.draw(folder)
+    (row,) = read_csv(folder / "parameters.csv")
+    assert row["how"] == how
+    found = [float(row["from_90"]), float(row["to_90"])]
+    assert found == pytest.approx([-np.log(0.95), -np.log(0.05)], abs=0.006)  # a step of the draws
+    text = write_page(folder).read_text(encoding="utf-8")
+    assert f"{found[0]:.4g} to {found[1]:.4g}" in text
+    assert ("Pareto k" in text) == (how == draws.SAMPLED)
+
+
+def test_a_limit_is_told_from_the_value_without_the_effect():
+    row = {"effect": "contact-exponent", "parameter": "exponent", "limit_95": "1.50042"}
+    assert rows.limit(row, CATALOGUE)["limit"] == "below 1.5004"
+    assert rows.limit({**row, "limit_95": "1.61234"}, CATALOGUE)["limit"] == "below 1.61"
 
 
 def test_all_significant_comparisons_are_counted_and_not_only_those_kept():

@@ -1,7 +1,7 @@
 """How long each verb of the command line takes to start: processor seconds, written as CSV.
 
-`python workflow/bench/starts.py RESULTS OUT` runs every verb on the smallest input that makes sense, in a
-temporary folder; RESULTS is the folder of a finished pipeline. Three numbers for each, in seconds of user and
+`python workflow/bench/starts.py RESULTS OUT [VERB …]` runs every verb, or those named, on the smallest input
+that makes sense, in a temporary folder; RESULTS is the folder of a finished pipeline. Three numbers for each, in seconds of user and
 system time of the process, so that other work on the machine hardly counts: `--help`; loading all that the
 verb loads in that run, in a fresh interpreter; the whole run, its work included. Each is the least of several
 after one that warms the caches: other work on the machine only adds. Importing numba alone stands first, as a
@@ -20,7 +20,7 @@ from sonicvacuum_blind.cli import blind
 from sonicvacuum_paper.cli import paper
 
 ROOT = Path(__file__).resolve().parents[2]
-REPEATS = 4
+REPEATS = 3
 CHAIN = "--beads 10 --diameter 20mm --material bearing-steel --speed 0.5"
 MEASURED = "workflow/resources/measured/daraio-nesterenko-2006"
 SMALL = "{results}/blind/small"
@@ -34,7 +34,7 @@ INPUTS = {
     "predict": CHAIN,
     "design": f"--effects sensor-droop,kuwabara-kono {CHAIN}",
     "record": f"check {MEASURED}-steel",
-    "discover": f"{MEASURED}-small --out {{out}}/found --no-figures --threads 1",
+    "discover": f"{SMALL}/records/3/small-0019 --out {{out}}/found --no-figures --threads 1",
     "page": "{out}/steel",
     "compare": f"{MEASURED}-steel --model {{results}}/discover/daraio-nesterenko-2006-steel/model.json",
     "export": "--law kuwabara-kono --time_us 2 --mass_g 4 --diameter_mm 10 --material stainless-steel "
@@ -119,8 +119,8 @@ def measured(verb: str, results: Path, folder: Path) -> list[str]:
     return [verb, f"{helped:.2f}", f"{load:.2f}", f"{run:.2f}", shown]
 
 
-def main(results: Path, out: Path) -> None:
-    """Measure all verbs and write the table."""
+def main(results: Path, out: Path, names: list[str]) -> None:
+    """Measure all verbs, or those named, and write the table."""
     with tempfile.TemporaryDirectory() as folder, open(out, "w", encoding="utf-8", newline="") as stream:
         own = Path(folder, "steel")
         own.mkdir()
@@ -129,10 +129,10 @@ def main(results: Path, out: Path) -> None:
         table = csv.writer(stream, lineterminator="\n")
         table.writerow(["verb", "help_s", "load_s", "run_s", "run_with"])
         table.writerow(["(import numba)", "", f"{least('-c', 'import numba'):.2f}", "", ""])
-        for verb in verbs():
+        for verb in names or verbs():
             table.writerow(measured(verb, results, Path(folder)))
             stream.flush()
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]).resolve(), Path(sys.argv[2]))
+    main(Path(sys.argv[1]).resolve(), Path(sys.argv[2]), sys.argv[3:])

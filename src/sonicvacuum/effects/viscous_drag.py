@@ -30,7 +30,7 @@ EFFECT = Effect(
     energy="takes m u'^2/tau per time and bead",
     reference="Job, Melo, Sokolow & Sen, Phys. Rev. Lett. 94, 178002 (2005); Rosas, Romero, Nesterenko "
     "& Lindenberg, Phys. Rev. Lett. 98, 164301 (2007)",
-    parameters=(Parameter("rate_per_s", "1/s", 0.0, 1.0, 3e4, "log-uniform", 200.0, "1/tau", 0.0),),
+    parameters=(Parameter("rate_per_s", "1/s", 0.0, 1.0, 3e4, "log-uniform", 200.0, "rate of slowing", 0.0),),
     signature="pulses decay in proportion to travel time, so strong (fast) ones less per bead; nothing "
     "changes in the contacts' shape",
     when_to_use="immersed chains, sliding guides",

@@ -179,6 +179,12 @@ def off(parameter) -> str:
     return "∞" if math.isinf(parameter.off) else f"{parameter.off:g}"
 
 
+def _apart(value, other: str) -> str:
+    """A number to three digits, or to as many as tell it from another one."""
+    told = (number(value, digits) for digits in range(3, 7))
+    return next((text for text in told if text != other), number(value, 7))
+
+
 def limit(row: dict, catalogue) -> dict:
     """One effect that was not named: how far from having none these data still let it be."""
     if row["effect"] not in catalogue:
@@ -193,6 +199,6 @@ def limit(row: dict, catalogue) -> dict:
         "effect": one.id,
         "title": one.title,
         "parameter": p.help,
-        "limit": f"{side}{number(row['limit_95'], 3)}{unit_of(p.unit)}",
+        "limit": f"{side}{_apart(row['limit_95'], off(p))}{unit_of(p.unit)}",
         "off": off(p),
     }

@@ -54,7 +54,7 @@ def drawn(draws) -> str:
     return (
         f"{len(one.weight)} draws, each simulated and weighed by the data, say as much as "
         f"{one.effective:.0f} of the posterior itself; the shape of their largest weights, Pareto k, is "
-        f"{pareto_k(one.weight):.2g}, and below 0.7 they are to be trusted."
+        f"{pareto_k(one.weight):.2g}, and below 0.7 they are to be trusted.".replace(" -", " −")
     )
 
 
