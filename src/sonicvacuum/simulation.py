@@ -25,7 +25,7 @@ from sonicvacuum.physics.chain import Chain
 from sonicvacuum.physics.extent import Extent, TooLargeError, estimate
 from sonicvacuum.physics.run import History
 from sonicvacuum.physics.run import simulate as integrate
-from sonicvacuum.physics.scales import impact_scales
+from sonicvacuum.physics.scales import STRIKER_POWER, impact_scales
 
 # An aimed striker's speed is settled when the gauge's peak is this close to its aim.
 AIM_TOLERANCE = 1e-6
@@ -241,7 +241,7 @@ def _aimed(card, speeds, catalogue):
             return speeds
         if np.any(peak <= 0.0):
             break
-        speeds = speeds * (aim / peak) ** (5.0 / 6.0)
+        speeds = speeds * (aim / peak) ** STRIKER_POWER
     raise InputError(
         f"{card.name}: striker.aim: no speed found at which {sensor.id} reads {aim} N; "
         "start from another speed_m_s, or simulate for longer"

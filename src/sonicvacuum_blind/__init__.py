@@ -6,3 +6,6 @@ share nothing with the engine (`physics`) or the catalogue (`effects`): an impor
 set is a record as a laboratory would hand it over, with noise, trigger, gain, speed and modulus errors drawn;
 what was hidden, and how strongly, goes to a separate folder that `discover` is never given.
 """
+
+# What was hidden in a record, in a folder of its own.
+TRUTH = "truth.json"

@@ -14,7 +14,6 @@ from sonicvacuum.figures import style
 from sonicvacuum.files import InputError, reading
 from sonicvacuum_blind.baselines.names import DESIGNS, PANELS, RULES
 
-BLUE, ORANGE, GREEN = "#0072B2", "#D55E00", "#009E73"
 CAPTIONS = {
     "confusion": style.paragraph("""
         What is hidden (rows, with the number of cases) and what is named (columns): number of cases, shade by
@@ -162,8 +161,8 @@ def _shares(axes, x, rows, factor):
     """Exact and class-level shares with intervals, side by side, and the ceiling."""
     aside = (lambda k: x * factor**k) if factor else (lambda k: x + 0.09 * k)
     looks = (
-        (-1, "exact", "exact", BLUE, "o", BLUE, "exact name"),
-        (1, "class_level", "class", GREEN, "s", "white", "class level"),
+        (-1, "exact", "exact", style.BLUE, "o", style.BLUE, "exact name"),
+        (1, "class_level", "class", style.GREEN, "s", "white", "class level"),
     )
     for side, value, bounds, color, marker, face, label in looks:
         y = rows[value].to_numpy(float)
@@ -189,12 +188,12 @@ def reliability(table: pandas.DataFrame) -> Figure:
         axes.plot([0, 1], [0, 1], color=style.GREY, lw=0.8, ls=(0, (4, 1.5)))
         x, y = filled.stated.to_numpy(float), filled.value.to_numpy(float)
         bars = np.maximum([y - filled.low.to_numpy(float), filled.high.to_numpy(float) - y], 0.0)
-        axes.errorbar(x, y, bars, color=BLUE, fmt="o", ms=4, lw=1.0, capsize=2)
+        axes.errorbar(x, y, bars, color=style.BLUE, fmt="o", ms=4, lw=1.0, capsize=2)
         axes.set_ylim(-0.02, 1.02)
         axes.set_ylabel("share right")
         below = style.panel(figure, (15.0, 11.0, 66.0, 18.0))
         middle = 0.5 * (table.low_edge + table.high_edge)
-        below.bar(middle, table["count"], width=0.094, color=BLUE)
+        below.bar(middle, table["count"], width=0.094, color=style.BLUE)
         for at, count in zip(middle, table["count"], strict=True):
             if count:
                 below.text(at, count, f"{count:d}", ha="center", va="bottom", fontsize=6.5)
@@ -228,7 +227,7 @@ def _bars(axes, rows, rules):
     value = 100.0 * rows.value.to_numpy(float)
     ends = [100.0 * rows[c].to_numpy(float) for c in ("low", "high")]
     bars = np.nan_to_num(np.maximum([value - ends[0], ends[1] - value], 0.0))
-    colors = [{"sonicvacuum": BLUE, "ideal rule": style.GREY}.get(r, "#56B4E9") for r in rules]
+    colors = [{"sonicvacuum": style.BLUE, "ideal rule": style.GREY}.get(r, style.SKY) for r in rules]
     axes.barh(range(len(rules)), value, color=colors, height=0.62)
     known = np.flatnonzero(~np.isnan(ends[0]))
     look = {"fmt": "none", "ecolor": "black", "lw": 0.8, "capsize": 1.8}

@@ -15,7 +15,7 @@ import numpy as np
 from sonicvacuum import records
 from sonicvacuum.blas import one_thread
 from sonicvacuum.files import replacing
-from sonicvacuum_blind import catalogue, design, foreign
+from sonicvacuum_blind import TRUTH, catalogue, design, foreign
 from sonicvacuum_blind.design import Design
 from sonicvacuum_blind.prediction import Errors, predict
 from sonicvacuum_blind.record import as_record
@@ -23,7 +23,6 @@ from sonicvacuum_blind.signature import Frame
 from sonicvacuum_blind.strength import Rival, ceiling, leftover, nearest, pair_ceiling, rivals, scale
 
 KINDS = ("null", "single", "pair", "set", "foreign")
-TRUTH = "truth.json"
 NOISES = ("white", "ar1", "quantised")
 # Error of the integrator for the data themselves: 1e-7 of a peak.
 TOLERANCE = 1e-9

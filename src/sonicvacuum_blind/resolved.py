@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sonicvacuum.files import InputError
+from sonicvacuum_blind import TRUTH
 from sonicvacuum_blind.followup import CHOICES, FILE
 from sonicvacuum_blind.score import Line, found_in, load
 from sonicvacuum_blind.shares import counted, ratio_of_sums
@@ -59,7 +60,7 @@ def resolved(truth_folder, verdict_folder, choice: str, record_folder, joint_fol
         InputError: where a truth or verdict is missing or lacks a key.
     """
     changes = found_in(record_folder, FILE)
-    folders = {"truth.json": truth_folder, "verdict.json": verdict_folder}
+    folders = {TRUTH: truth_folder, "verdict.json": verdict_folder}
     found = {name: found_in(folder, name) for name, folder in folders.items()}
     found["joint"] = found_in(joint_folder, "verdict.json")
     folders["joint"] = joint_folder

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from sonicvacuum.files import InputError, read_text, reading
 from sonicvacuum.tables import write_csv
+from sonicvacuum_blind import TRUTH
 
 CONFIDENT = 0.9
 NINETY = 1.6448536269514722  # standard deviations on either side of a 90 % interval
@@ -71,9 +72,9 @@ def score(truth_folder, verdict_folder) -> list[Row]:
     Raises:
         InputError: where a case has no verdict, or a file is not what it should be.
     """
-    truths, verdicts = found_in(truth_folder, "truth.json"), found_in(verdict_folder, "verdict.json")
+    truths, verdicts = found_in(truth_folder, TRUTH), found_in(verdict_folder, "verdict.json")
     if not truths:
-        raise InputError(f"{truth_folder}: holds no truth.json; make cases with sonicvacuum blind hide")
+        raise InputError(f"{truth_folder}: holds no {TRUTH}; make cases with sonicvacuum blind hide")
     missing = sorted(set(truths) - set(verdicts))
     if missing:
         raise InputError(

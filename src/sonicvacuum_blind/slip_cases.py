@@ -15,7 +15,8 @@ import numpy as np
 from sonicvacuum import records
 from sonicvacuum.blas import one_thread
 from sonicvacuum.files import replacing
-from sonicvacuum_blind.hide import TOLERANCE, TRUTH, Laboratory, Spec, laboratory, noisy, stream
+from sonicvacuum_blind import TRUTH
+from sonicvacuum_blind.hide import TOLERANCE, Laboratory, Spec, laboratory, noisy, stream
 from sonicvacuum_blind.plan import Plan
 from sonicvacuum_blind.prediction import predict
 from sonicvacuum_blind.record import as_record

@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from sonicvacuum.files import InputError
-from sonicvacuum_blind.hide import TRUTH
+from sonicvacuum_blind import TRUTH
 from sonicvacuum_blind.score import UNKNOWN, Line, confidently, found_in, load
 from sonicvacuum_blind.shares import counted, quantile
 from sonicvacuum_blind.slips import SLIPS

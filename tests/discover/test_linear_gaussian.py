@@ -144,7 +144,7 @@ def limit(effect, parameter, scale, two_sided, setup, seed=4):
 
 
 def test_a_one_sided_limit_is_the_gaussian_one(setup):
-    """Estimate + 1.645 σ, the 95 % quantile of a Gaussian, times the typical departure of 200 per s."""
+    """Estimate + 1.645 σ, the 95 % quantile of a Gaussian, times the typical deviation of 200 per s."""
     one, estimate, sigma = limit("viscous-drag", "rate_per_s", 200.0, False, setup)
     expected = 200.0 * (estimate + stats.norm.ppf(0.95) * sigma)
     assert one.value == pytest.approx(expected, rel=1e-4)  # 1.645 has four digits

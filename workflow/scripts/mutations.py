@@ -25,7 +25,7 @@ MUTATIONS = (
     (
         "one-sided 1.645 is 0",
         "degenerate.py",
-        "_ONE_SIDED, _TWO_SIDED = 1.645",
+        "_ONE_SIDED, _TWO_SIDED = policy.NINETY",
         "_ONE_SIDED, _TWO_SIDED = 0.0",
     ),
     ("NULL_MISFIT is 0", "policy.py", "NULL_MISFIT = 1e-3", "NULL_MISFIT = 0.0"),

@@ -74,3 +74,6 @@ LAW_LOG_BAYES = 7.0
 LAW_SHARE = 0.98
 # ... and closes this share of what was left, as fitted and on runs left out of its fit.
 LAW_CLOSES = 0.5
+
+# Standard errors from the middle of a Gaussian to either end of its 90 % interval; one tail holds 5 %.
+NINETY = 1.645

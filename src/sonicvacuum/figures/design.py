@@ -1,10 +1,10 @@
 """How well each gauge alone, and the best choices, tell effects apart."""
 
-from sonicvacuum.figures.style import BAND, DOUBLE, GREY, canvas, context, panel, save
+from sonicvacuum.figures.style import BAND, BLUE, DOUBLE, GREY, canvas, context, panel, save
 from sonicvacuum.prediction.design import TARGET, Design
 from sonicvacuum.prediction.design_text import place
 
-_HEIGHT, _BAR = 74.0, "#0072B2"
+_HEIGHT, _BAR = 74.0, BLUE
 
 
 def write(found: Design, path) -> None:

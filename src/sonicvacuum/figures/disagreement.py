@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from sonicvacuum.figures.style import BAND, DOUBLE, GREY, SINGLE, canvas, panel
+from sonicvacuum.figures.style import BAND, BLUE, DOUBLE, GREY, ORANGE, SINGLE, canvas, panel
 
-BLUE, ORANGE = "#0072B2", "#D55E00"
 # Scores beyond this are drawn in the full colour.
 LIMIT = 10.0
 

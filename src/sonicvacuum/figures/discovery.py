@@ -16,10 +16,21 @@ import numpy as np
 from sonicvacuum.discover import draws
 from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.figures import disagreement, force_law, posterior
-from sonicvacuum.figures.style import BAND, DOUBLE, GREY, SINGLE, canvas, context, panel, save
+from sonicvacuum.figures.style import (
+    BAND,
+    BLUE,
+    DOUBLE,
+    GREEN,
+    GREY,
+    ORANGE,
+    SINGLE,
+    canvas,
+    context,
+    panel,
+    save,
+)
 from sonicvacuum.tables import read_csv
 
-BLUE, ORANGE, GREEN = "#0072B2", "#D55E00", "#009E73"
 _MOST = 8
 
 

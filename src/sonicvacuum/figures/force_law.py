@@ -6,9 +6,9 @@ compression, and for three compressions over the rate.
 
 import numpy as np
 
-from sonicvacuum.figures.style import DOUBLE, GREY, canvas, panel
+from sonicvacuum.figures.style import BLUE, DOUBLE, GREEN, GREY, ORANGE, canvas, panel
 
-COLOURS = ("#0072B2", "#D55E00", "#009E73")
+COLOURS = (BLUE, ORANGE, GREEN)
 STYLES = ("-", (0, (3.5, 1.2)), (0, (1.0, 1.0)))
 
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from sonicvacuum.card import CaseBlock, resolve
 from sonicvacuum.effects import CATALOGUE, Effect, Setup
-from sonicvacuum.figures.style import DOUBLE, canvas, context, panel, save
+from sonicvacuum.figures.style import DOUBLE, ORANGE, canvas, context, panel, save
 from sonicvacuum.files import convert
 from sonicvacuum.gauges import needed, reading
 from sonicvacuum.physics.run import simulate
@@ -100,7 +100,7 @@ def draw(table, path) -> None:
             time = [float(row["time_us"]) for row in own]
             for name, color, label in (
                 ("nominal_N", "#999999", "nominal"),
-                ("effect_N", "#D55E00", "with it"),
+                ("effect_N", ORANGE, "with it"),
             ):
                 axes.plot(time, [float(row[name]) for row in own], color=color, lw=1.1, label=label)
             axes.set_title(gauge, fontsize=8.0, loc="left")

@@ -10,18 +10,16 @@ from pathlib import Path
 
 import numpy as np
 
+from sonicvacuum.discover import policy
 from sonicvacuum.discover.draws import PROFILE, Draws, pareto_k, read
 from sonicvacuum.effects import CATALOGUE, Catalogue
-from sonicvacuum.figures.style import BAND, DOUBLE, GREY, canvas, panel
+from sonicvacuum.figures.style import BAND, BLUE, DOUBLE, GREY, ORANGE, canvas, panel
 from sonicvacuum.tables import write_csv
 
 COLUMNS = ("effect", "parameter", "unit", "value", "sigma", "low", "high", "off")
 # The 90 % interval, and how it was found: `sampled`, `profile` or, of a folder without draws, `gaussian`.
 INTERVAL = ("from_90", "to_90", "how", "effective", "pareto_k")
 _BINS = 24
-BLUE, ORANGE = "#0072B2", "#D55E00"
-# Half width of a 90 % interval in standard errors.
-NINETY = 1.645
 _HIGH = 24.0
 
 
@@ -50,7 +48,7 @@ def _row(parameter, found):
 
 def _interval(found, draws: Draws | None):
     if draws is None:
-        half = NINETY * found["sigma"]
+        half = policy.NINETY * found["sigma"]
         return [f"{found['value'] - half:.9g}", f"{found['value'] + half:.9g}", "gaussian", "", ""]
     ends = [f"{draws.quantile(share):.9g}" for share in (0.05, 0.95)]
     if draws.how == PROFILE:
@@ -84,7 +82,7 @@ def _density(axes, row, draws: Draws | None):
     if sigma > 0.0:
         y = np.exp(-0.5 * ((x - value) / sigma) ** 2)
         if draws is None:
-            inside = np.abs(x - value) <= NINETY * sigma
+            inside = np.abs(x - value) <= policy.NINETY * sigma
             axes.fill_between(x[inside], y[inside], color=BAND, lw=0)
         axes.plot(
             x,

@@ -2,13 +2,26 @@
 
 from pathlib import Path
 
-from sonicvacuum.figures.style import BAND, DOUBLE, METADATA, canvas, context, panel, save
+from sonicvacuum.figures.style import (
+    BAND,
+    BLUE,
+    DOUBLE,
+    GREEN,
+    METADATA,
+    ORANGE,
+    PURPLE,
+    SKY,
+    canvas,
+    context,
+    panel,
+    save,
+)
 from sonicvacuum.files import InputError
 from sonicvacuum.outputs import check_folder
 from sonicvacuum.prediction.measure import ChainPrediction
 
 # Okabe and Ito's, in the order of the gauges.
-_COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
+_COLORS = (BLUE, ORANGE, GREEN, PURPLE, "#E69F00", SKY, "#000000")
 _HEIGHT = 70.0
 
 

@@ -17,6 +17,7 @@ from sonicvacuum.files import replacing
 SINGLE, DOUBLE = 85.0, 175.0  # widths of a journal column and of a page, mm
 DOTS_PER_INCH = 300
 GREY, BAND = "#595959", "#d9d9d9"
+BLUE, ORANGE, GREEN, PURPLE, SKY = "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9"
 # Format of a picture → what is written into it about its making.
 METADATA = {
     "svg": {"Date": None, "Creator": None},
@@ -68,10 +69,10 @@ class Look:
 
 
 _LOOKS = {
-    "matched": Look("#0072B2", 1.2, "-", "o", "Hertz, 15 GPa"),
-    "membrane": Look("#009E73", 0.9, (0, (5, 1.2, 1, 1.2)), "^", "Hertz, 4.75 GPa"),
-    "handbook": Look("#D55E00", 0.9, (0, (3.5, 1.2)), "s", "Hertz, 2.76 GPa"),
-    "layer": Look("#CC79A7", 1.0, (0, (1.2, 1.0)), "v", "layer, 2.76 GPa"),
+    "matched": Look(BLUE, 1.2, "-", "o", "Hertz, 15 GPa"),
+    "membrane": Look(GREEN, 0.9, (0, (5, 1.2, 1, 1.2)), "^", "Hertz, 4.75 GPa"),
+    "handbook": Look(ORANGE, 0.9, (0, (3.5, 1.2)), "s", "Hertz, 2.76 GPa"),
+    "layer": Look(PURPLE, 1.0, (0, (1.2, 1.0)), "v", "layer, 2.76 GPa"),
     "layer-loss": Look("#000000", 1.3, "-", "D", "layer, 2.76 GPa, loss"),
     "layer-loss-geometry": Look("#8C6D1F", 0.9, (0, (6, 1.5)), "P", "the same, geometric masses"),
     "nominal": Look("#000000", 1.1, "-", "o", "steel, 193 GPa"),

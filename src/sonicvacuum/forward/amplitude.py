@@ -16,7 +16,14 @@ from sonicvacuum.observe.quantities import measure_run
 from sonicvacuum.observe.run import Geometry, Run
 from sonicvacuum.observe.trace import Measured, missing
 from sonicvacuum.physics.chain import Chain
-from sonicvacuum.physics.scales import impact_scales, passage_of, sampling_of
+from sonicvacuum.physics.scales import (
+    EMBEDDED_SHARE,
+    STRIKER_POWER,
+    WAVE_POWER,
+    impact_scales,
+    passage_of,
+    sampling_of,
+)
 
 # The search ends once all amplitudes are so near (natural log): what the slope between the last two strikes
 # then errs by, a few hundredths, moves a speed by a few parts in 1e4 at most.
@@ -30,12 +37,8 @@ REACH = 2
 CLEAR = 2
 # The wave has reached the wall, and has passed all gauges, after so many crossings of the chain.
 CROSSED = 1.7
-# Amplitudes grow about as striker speed to the power 6/5, speeds as amplitudes to the power 1/6 (Hertz).
-_POWER, _SLOPE = 5.0 / 6.0, 1.0 / 6.0
 # Within these the exponent that two strikes show is believed; strikes nearer than this show none.
 _LEAST, _MOST, _APART = 0.4, 1.6, 1e-4
-# Roughly the share of the striker's force on a rigid surface that a gauge inside a bead reads.
-_SHARE = 0.45
 
 
 def speed_at_amplitude(
@@ -69,7 +72,7 @@ def speed_at_amplitude(
             return [missing(f"absent: no pulse at {sensor.id}")] * chain.lanes
         if before is not None and np.abs(off[known]).max() < NEAR:
             break
-        power = _exponent(before, seen, strike, last) if before is not None else _POWER
+        power = _exponent(before, seen, strike, last) if before is not None else STRIKER_POWER
         before, last = seen, strike
         # Those without a pulse stay as they are.
         strike = strike - np.where(known, np.clip(power * off, -STRIDE, STRIDE), 0.0)
@@ -79,21 +82,21 @@ def speed_at_amplitude(
 def _first_guess(chain, amplitude):
     """(lanes,) striker speeds at which a Hertz chain would read about that amplitude."""
     forces = np.array([impact_scales(chain.take([k]))[0] for k in range(chain.lanes)])
-    return chain.speed * (amplitude / (_SHARE * forces)) ** _POWER
+    return chain.speed * (amplitude / (EMBEDDED_SHARE * forces)) ** STRIKER_POWER
 
 
 def _exponent(before, now, strike, last):
     """(lanes,) d log striker speed / d log amplitude between two strikes, the usual one for strikes alike."""
     with np.errstate(divide="ignore", invalid="ignore"):
         power = (strike - last) / (now[0] - before[0])
-    return np.where(np.abs(now[0] - before[0]) > _APART, np.clip(power, _LEAST, _MOST), _POWER)
+    return np.where(np.abs(now[0] - before[0]) > _APART, np.clip(power, _LEAST, _MOST), STRIKER_POWER)
 
 
 def _between(before, now, off, sensor):
     """The speeds at the amplitude wanted, `off` (lanes,) away from the last strike's (natural log)."""
     with np.errstate(divide="ignore", invalid="ignore"):
         slope = (now[1] - before[1]) / (now[0] - before[0])
-    slope = np.where(np.abs(now[0] - before[0]) > _APART, slope, _SLOPE)
+    slope = np.where(np.abs(now[0] - before[0]) > _APART, slope, WAVE_POWER)
     return [_told(x, o, sensor) for x, o in zip(now[1] - slope * off, off, strict=True)]
 
 

@@ -11,9 +11,6 @@ from sonicvacuum.observe.quantities import measure_run
 from sonicvacuum.observe.run import Geometry, Run
 from sonicvacuum.observe.trace import Measured
 
-# Observables of the striker's own contact.
-STRIKER = ("restitution", "contact_duration")
-
 
 def virtual(gauges: tuple[Gauge, ...], beads: int) -> tuple[Gauge, ...]:
     """Gauges that only the simulation has, so that it is known when the reflection returns."""

@@ -86,7 +86,7 @@ class Bodies:
 
     def neighbours(self, beads: int) -> tuple[tuple[int, int], ...]:
         """Pairs of `kinds` that touch somewhere in a chain; a single bead counts as its own neighbour."""
-        if beads < 2:
+        if beads < 2 or self.uniform:
             return ((self.kind(1), self.kind(1)),)
         length = len(self.pattern)
         starts = set(range(1, min(length, beads - 1) + 1))

@@ -13,6 +13,9 @@ from numpy.typing import ArrayLike
 
 from sonicvacuum.observe.trace import Measured, Trace, missing
 
+# What one ball on a wall can tell: quantities of the contact that the striker makes.
+BALL_QUANTITIES = ("restitution", "contact_duration")
+
 
 def max_compression(force_peak: ArrayLike, chain, contact: int) -> np.ndarray:
     """Compression in m at the force peak in N (any shape), by the law in force.

@@ -11,6 +11,11 @@ CROSSINGS, COUNTING = 2.5, 5.0
 _PASSAGE = 1.5
 # A Hertz impact lasts so many times (m²/(K² v))^{1/5} (Johnson, Contact Mechanics, 1985, Sec. 11.4).
 _HERTZ = 3.21
+# Speed of a striker by the peak force that it makes in a Hertz impact, and speed of a wave by its force, as
+# powers (Nesterenko; Eq. (6) of Daraio & Nesterenko, PRE 73, 026612, 2006).
+STRIKER_POWER, WAVE_POWER = 5.0 / 6.0, 1.0 / 6.0
+# Roughly the share of the impact's force that a gauge inside a bead reads.
+EMBEDDED_SHARE = 0.45
 # Sampling interval of a simulation in contact times. The rebound of one ball follows from the sum of its
 # force over samples, which is good to 1e-7 when so fine.
 SAMPLING = 1.0 / 60.0

@@ -18,7 +18,14 @@ from sonicvacuum.observe.pulse import main_pulse
 from sonicvacuum.observe.quantities import measure_run
 from sonicvacuum.observe.run import Geometry, Run
 from sonicvacuum.observe.trace import Trace
-from sonicvacuum.physics.scales import COUNTING, impact_scales, passage_of, sampling_of
+from sonicvacuum.physics.scales import (
+    COUNTING,
+    EMBEDDED_SHARE,
+    STRIKER_POWER,
+    impact_scales,
+    passage_of,
+    sampling_of,
+)
 from sonicvacuum.prediction.setup import card_of
 from sonicvacuum.simulation import Simulation, check_extent, set_up, simulate
 
@@ -27,8 +34,6 @@ from sonicvacuum.simulation import Simulation, check_extent, set_up, simulate
 SAMPLES_PER_PULSE = 10
 # At rest before the impact, in durations of the longest pulse: baseline and noise are read there.
 REST = 2.0
-# Roughly the share of the impact's force that a gauge in a bead reads; the search corrects it.
-_SHARE = 0.45
 
 
 @dataclass(frozen=True)
@@ -159,9 +164,8 @@ def _cut(card: Card) -> Card:
 def _settled(card: Card) -> Card:
     """The case with the striker speed at which the aimed gauge reads the wanted peak, and no aim."""
     speed = card.striker.speeds_m_s[0]
-    force = _SHARE * impact_scales(set_up(card).chain)[0]
-    # Peaks of a Hertz impact grow as speed to the power 6/5.
-    speed *= (card.striker.aim.amplitude_N / force) ** (5.0 / 6.0)
+    force = EMBEDDED_SHARE * impact_scales(set_up(card).chain)[0]
+    speed *= (card.striker.aim.amplitude_N / force) ** STRIKER_POWER
     for name, found in (("started", speed), ("settled", None)):
         if found is None:
             found = float(simulate(_cut(card)).speeds[0])

@@ -228,8 +228,6 @@ OBSERVABLES = {kind.__struct_config__.tag: kind for kind in get_args(ObservableB
 UNITS = {q: get_args(kind.__annotations__["unit"])[0] for q, kind in OBSERVABLES.items()}
 # An amplitude is given in the unit of its gauge.
 AMPLITUDES = tuple(dict.fromkeys(kind.unit for kind in KINDS.values()))
-# What one ball on a wall can tell.
-BALL_QUANTITIES = ("restitution", "contact_duration")
 
 
 class RunBlock(_Block, kw_only=True):

@@ -11,6 +11,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from sonicvacuum.physics.scales import WAVE_POWER
 from sonicvacuum.physics.theory import bead_mass
 from sonicvacuum.records.expected import Expected
 from sonicvacuum.records.record import Record
@@ -19,8 +20,6 @@ from sonicvacuum.records.record import Record
 DENSITY = 0.10
 # Amplitudes off by this factor: more than losses or a wrong modulus usually make along a chain.
 FACTOR = 2.0
-# A stronger wave is faster as its amplitude to the power 1/6 (Nesterenko; Eq. (6) of Daraio 2006).
-SPEED_POWER = 1.0 / 6.0
 # Arrivals: relative error of the model's speed, and of single arrivals in passages of a bead.
 SLOWNESS, SCATTER = 0.1, 0.1
 # A shift of the trigger counts beyond so many of its standard errors and of the pulse's half widths.
@@ -173,7 +172,7 @@ def _why(expected, run, factor):
     if not fast:
         return ": are they in N, not in V, and are the striker's mass and speed right?"
     speed = math.log(_typical(fast))
-    strength = SPEED_POWER * math.log(factor)
+    strength = WAVE_POWER * math.log(factor)
     if abs(speed - strength) < abs(speed):
         return " and the wave is as fast as one so strong: are the striker's mass, material and speed right?"
     return ", yet the wave is not as fast as one so strong: are they in V, mN or kN?"

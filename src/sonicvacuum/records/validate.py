@@ -7,10 +7,10 @@ from sonicvacuum.gauges.base import misplaced
 from sonicvacuum.laboratory import checks, ranges
 from sonicvacuum.laboratory.blocks import material_of, specimen_of, striker_of
 from sonicvacuum.laboratory.ranges import LaboratoryError
+from sonicvacuum.observe.contacts import BALL_QUANTITIES
 from sonicvacuum.physics.scales import impact_scales
 from sonicvacuum.records.assemble import assemble
 from sonicvacuum.records.blocks import (
-    BALL_QUANTITIES,
     PRESENT,
     SCALED,
     SUFFIXES,

@@ -2,6 +2,7 @@
 
 import math
 
+from sonicvacuum.discover import policy
 from sonicvacuum.report.tables import number
 from sonicvacuum.report.words import SIDES, plain, share
 
@@ -167,7 +168,8 @@ def _interval(value, sigma, draws):
     """The 90 % interval of the draws, where there are any, or else of the Gaussian."""
     if draws is not None:
         return f"{draws.quantile(0.05):.4g} to {draws.quantile(0.95):.4g}"
-    return f"{value - 1.645 * sigma:.4g} to {value + 1.645 * sigma:.4g}" if sigma > 0.0 else ""
+    room = policy.NINETY * sigma
+    return f"{value - room:.4g} to {value + room:.4g}" if sigma > 0.0 else ""
 
 
 def off(parameter) -> str:

@@ -17,6 +17,7 @@ from sonicvacuum.discover.fit.calibration import Calibration
 from sonicvacuum.discover.fit.evidence import log_weights, unknown_odds
 from sonicvacuum.files import InputError, replacing
 from sonicvacuum.tables import read_csv
+from sonicvacuum_blind import TRUTH
 from sonicvacuum_blind.score import NONE, UNKNOWN, found_in, load
 
 # No probability counts as smaller: one freak case must not decide.
@@ -41,7 +42,7 @@ def outcomes(truth_folder, verdict_folder) -> list[Outcome]:
     Raises:
         InputError: where a case lacks verdict or table.
     """
-    truths, verdicts = found_in(truth_folder, "truth.json"), found_in(verdict_folder, "verdict.json")
+    truths, verdicts = found_in(truth_folder, TRUTH), found_in(verdict_folder, "verdict.json")
     result = []
     for id, path in sorted(truths.items()):
         truth = load(path)

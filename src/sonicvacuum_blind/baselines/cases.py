@@ -6,7 +6,7 @@ from pathlib import Path
 
 from sonicvacuum.files import InputError
 from sonicvacuum.tables import read_csv
-from sonicvacuum_blind import score
+from sonicvacuum_blind import TRUTH, score
 from sonicvacuum_blind.score import Row
 
 
@@ -64,7 +64,7 @@ def read(records, truths, verdicts) -> list[Case]:
     rows = score.score(truths, verdicts)
     found = {p.parent.name: p.parent for p in Path(records).rglob("record.yaml")}
     told = {p.parent.name: p.parent for p in Path(verdicts).rglob("verdict.json")}
-    known = {p.parent.name: p for p in Path(truths).rglob("truth.json")}
+    known = {p.parent.name: p for p in Path(truths).rglob(TRUTH)}
     missing = [r.id for r in rows if r.id not in found]
     if missing:
         raise InputError(f"{records}: no record of {len(missing)} cases, first {missing[0]}; make them again")

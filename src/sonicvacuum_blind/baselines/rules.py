@@ -6,9 +6,7 @@ import numpy as np
 
 from sonicvacuum_blind.baselines.cases import Case
 from sonicvacuum_blind.score import NONE
-
-# Share of training cases with nothing hidden that may be given a name.
-FALSE_ALARMS = 0.01
+from sonicvacuum_blind.strength import FALSE_ALARM
 
 
 def best_chi2(case: Case) -> str:
@@ -39,7 +37,7 @@ def nearest_shape(case: Case, least: float = 0.0) -> str:
 
 def least_likeness(nulls: list[Case]) -> float:
     """Likeness that one in a hundred training cases without anything hidden exceeds; 0 without cases."""
-    return float(np.quantile([likeness(c) for c in nulls], 1.0 - FALSE_ALARMS)) if nulls else 0.0
+    return float(np.quantile([likeness(c) for c in nulls], 1.0 - FALSE_ALARM)) if nulls else 0.0
 
 
 def has_cosines(cases: list[Case]) -> bool:

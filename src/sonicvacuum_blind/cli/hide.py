@@ -8,6 +8,7 @@ from sonicvacuum.cli import existing
 from sonicvacuum.cli.helped import FOLDER, WRITTEN, verb
 from sonicvacuum.files import InputError
 from sonicvacuum.outputs import check_apart
+from sonicvacuum_blind import TRUTH
 from sonicvacuum_blind.cli.options import STUDIES, batch_of
 
 
@@ -37,7 +38,7 @@ def hide(study, path, listing, batch, records_folder, truth_folder):
         return
     if not (records_folder and truth_folder):
         raise InputError("hide: --records and --truth are both needed to make data (or --list to list cases)")
-    from sonicvacuum_blind.hide import TRUTH, write
+    from sonicvacuum_blind.hide import write
 
     specs = studies.batch(specs, *batch_of(batch))
     check_truth(truth_folder, records_folder)

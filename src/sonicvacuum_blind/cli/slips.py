@@ -8,6 +8,7 @@ import click
 
 from sonicvacuum.cli.helped import FOLDER, PRESENT, WRITTEN, verb
 from sonicvacuum.outputs import check_apart
+from sonicvacuum_blind import TRUTH
 from sonicvacuum_blind.cli.hide import check_truth
 from sonicvacuum_blind.cli.options import batch_of, say
 
@@ -32,7 +33,6 @@ def slips(batch, records_folder, truth_folder):
     """Make records with slips of the laboratory, with and without a hidden effect."""
     from sonicvacuum.records.guard import check_collection
     from sonicvacuum_blind import slip_cases
-    from sonicvacuum_blind.hide import TRUTH
     from sonicvacuum_blind.study import batch as part
 
     chosen = part(slip_cases.cases(), *batch_of(batch))

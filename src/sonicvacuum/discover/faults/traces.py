@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from sonicvacuum.discover.model.problem import flicker
+from sonicvacuum.discover.model.problem import QUIET_PEAK, QUIET_SHARE, QUIET_SIGMAS, flicker
 
 # Samples of a quiet stretch that can be judged.
 FEWEST = 40
@@ -17,8 +17,6 @@ SURE = 6.0
 NOISE_FACTOR = 1.3
 # Share of the power of a quiet stretch that a single line must hold to be pick-up, and its p-value.
 LINE_P = 1e-6
-# Quiet is what precedes the first sample above this share of the peak; the last part of it is left out.
-_QUIET_PEAK, _QUIET_SHARE = 0.03, 0.7
 # What swings from the first tenth on is no pulse up to so many times that swing, unless it is this high.
 _SWING, _PULSE = 1.5, 0.35
 # Periods of a line that a stretch must hold, for one that is seen as a line in the spectrum, and for one that
@@ -34,13 +32,13 @@ def quiet(trace: np.ndarray, sigma: float, swinging: bool = False) -> np.ndarray
     """
     rest = float(np.median(trace[: max(8, len(trace) // 20)]))
     peak = float(np.abs(trace - rest).max())
-    level = max(6.0 * sigma, _QUIET_PEAK * peak)
+    level = max(QUIET_SIGMAS * sigma, QUIET_PEAK * peak)
     if swinging:
         swing = float(np.abs(trace[: max(8, len(trace) // 10)] - rest).max())
         level = max(level, _SWING * swing) if swing < _PULSE * peak else level
     loud = np.abs(trace - rest) > level
     first = int(loud.argmax()) if loud.any() else len(trace)
-    return trace[: int(_QUIET_SHARE * first)]
+    return trace[: int(QUIET_SHARE * first)]
 
 
 def without_spikes(trace: np.ndarray, at: np.ndarray) -> np.ndarray:

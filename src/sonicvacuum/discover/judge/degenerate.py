@@ -12,13 +12,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sonicvacuum.discover import policy
 from sonicvacuum.discover.fit.evidence import Candidate, Combination
 from sonicvacuum.discover.search.screen import Screen
 from sonicvacuum.effects import Setup
 
 # Twice the difference of log evidences, as a χ².
 ALIKE = 9.0
-_ONE_SIDED, _TWO_SIDED = 1.645, 1.96
+_ONE_SIDED, _TWO_SIDED = policy.NINETY, 1.96
 
 
 @dataclass(frozen=True)

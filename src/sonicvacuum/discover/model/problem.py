@@ -35,8 +35,9 @@ MODEL_FLOOR = 1e-4
 # Traces are read between samples by polynomials of the fifth degree, so that these may lie further apart than
 # where pulses are measured on them.
 COARSER = 2.0
-# The quiet stretch ends well before the first sample that exceeds the larger of these.
-_QUIET_SIGMAS, _QUIET_PEAK, _QUIET_SHARE = 6.0, 0.03, 0.7
+# The quiet stretch ends well before the first sample that exceeds so many standard errors, and this share of
+# the peak.
+QUIET_SIGMAS, QUIET_PEAK, QUIET_SHARE = 6.0, 0.03, 0.7
 _FEWEST, _LEAST = 40, 12
 # Deviations from the stated white noise count from so many standard errors on.
 _SURE = 4.0
@@ -335,6 +336,6 @@ def _correlation(stretches):
 def _quiet(trace, sigma):
     """The samples before the pulse arrives, or none."""
     peak = float(np.abs(trace).max())
-    loud = np.abs(trace) > max(_QUIET_SIGMAS * sigma, _QUIET_PEAK * peak)
+    loud = np.abs(trace) > max(QUIET_SIGMAS * sigma, QUIET_PEAK * peak)
     first = int(loud.argmax()) if loud.any() else len(trace)
-    return trace[: int(_QUIET_SHARE * first)]
+    return trace[: int(QUIET_SHARE * first)]

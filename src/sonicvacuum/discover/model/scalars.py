@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from sonicvacuum.forward import STRIKER, measured, of_amplitude, passages
+from sonicvacuum.forward import measured, of_amplitude, passages
+from sonicvacuum.observe.contacts import BALL_QUANTITIES
+from sonicvacuum.physics.scales import WAVE_POWER
 
 # What needs further strikes, of all lanes side by side.
 SOLITARY = "speed_at_amplitude"
-# Speeds grow as force to the power 1/6: a larger gain makes a given reading a smaller force.
-_SPEED_POWER = -1.0 / 6.0
 
 
 def gain_power(scalar, gauge: str) -> float:
@@ -18,7 +18,7 @@ def gain_power(scalar, gauge: str) -> float:
     if scalar.quantity == "decay":
         return float(options["to"] == gauge) - float(options["from"] == gauge)
     if scalar.quantity == SOLITARY and options["sensor"] == gauge:
-        return _SPEED_POWER
+        return -WAVE_POWER  # a larger gain makes a given reading a smaller force
     return 0.0
 
 
@@ -89,7 +89,7 @@ def predict(experiment, run: int, lanes: slice, seen, signals: np.ndarray, refin
     wanted = experiment.runs[run].scalars
     if not wanted:
         return np.zeros((len(signals), 0))
-    inside = any(s.quantity not in (*STRIKER, SOLITARY) for s in wanted)
+    inside = any(s.quantity not in (*BALL_QUANTITIES, SOLITARY) for s in wanted)
     runs = [None] * len(signals)
     if inside:
         runs = passages(seen, lanes, signals, experiment.gauges, experiment.diameter)
