@@ -9,6 +9,8 @@ from made_records import made
 from sonicvacuum.discover.faults import changes, policy
 from sonicvacuum.discover.faults.competition import Search, obvious, suspicious
 from sonicvacuum.discover.faults.found import Bench
+from sonicvacuum.discover.faults.judging import Judge
+from sonicvacuum.discover.faults.slips import hypotheses
 from sonicvacuum.effects import CATALOGUE
 
 LATE = {"v0": 180.0, "v1": 150.0}
@@ -72,6 +74,21 @@ def test_a_size_within_the_errors_of_the_nuisances_is_not_named(empty):
     for change in (lambda r: changes.beads(r, "mass_g", -0.01), lambda r: changes.clock(r, -0.002)):
         one = Search(Bench(change(empty)), CATALOGUE, 1, [])
         assert one.ranked(one.nominal()) == []
+
+
+def test_what_nuisances_nearly_absorb_is_seen_at_a_look(empty):
+    """A slow recorder is hundreds of standard deviations off before speed, modulus and time zero follow,
+    and a few after: a look along slopes that err by a percent sees nothing of it.
+    """
+    record = changes.clock(empty, -0.1)
+    one = Search(Bench(record), CATALOGUE, 1, [])
+    judge = Judge(one.nominal(), one.judged)
+    (slip,) = (s for s in hypotheses(record) if s.fault == "clock")
+    looked = judge.look(slip)
+    fitted = judge.follow(looked)
+    assert fitted.gain > policy.LEAST_GAIN
+    assert looked.gain == pytest.approx(fitted.gain, rel=0.3)  # a look is linear
+    assert looked.size == pytest.approx(fitted.size, abs=0.02)
 
 
 def test_changes_undo_each_other(empty):

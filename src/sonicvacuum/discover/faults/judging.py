@@ -101,7 +101,10 @@ class Judge:
         forward, one = self._forward(record), self.model.fit
         starts = np.stack([one.nu, 0.0 * one.nu][: 1 + afresh])
         many_u, held = np.repeat(one.u[None], len(starts), axis=0), self._columns if near else None
-        columns = forward.columns(one.hypothesis, many_u, starts, held=held)
+        # Nuisances take up nearly all of what a slip of time or speed changes: the slopes that all sizes are
+        # held against must not err by as much as is left.
+        first = self._columns is None
+        columns = forward.columns(one.hypothesis, many_u, starts, precise=first, held=held)
         self._columns = self._columns or columns
         self.simulations += forward.chains
         found = []
@@ -117,9 +120,7 @@ class Judge:
         (own,), volume = self._own
         record, size = self.model.bench.record, slip.start
         if slip.continuous and not size:
-            ((changed, _),), _ = self._residuals(slip.change(record, slip.step), near=True)
-            extra = [(a[0] - b[0]) / slip.step for a, b in zip(own[0], changed, strict=True)]
-            after, size = self._with_size(own, extra, slip)
+            after, size = self._with_size(own, self._slope(slip), slip)
             after += volume
         else:
             changed, own_volume = self._residuals(slip.change(record, size), afresh=True)
@@ -176,9 +177,16 @@ class Judge:
     def _step(self, slip):
         """Step of a slip's size from a record that is changed already; sizes add up."""
         (own,), _ = self._own
-        ((changed, _),), _ = self._residuals(slip.change(self.model.bench.record, slip.step), near=True)
-        extra = [(a[0] - b[0]) / slip.step for a, b in zip(own[0], changed, strict=True)]
-        return self._with_size(own, extra, slip)[1]
+        return self._with_size(own, self._slope(slip), slip)[1]
+
+    def _slope(self, slip):
+        """Change of every run's data with the size of a slip, by central differences."""
+        record = self.model.bench.record
+        sides = []
+        for step in (slip.step, -slip.step):
+            ((parts, _),), _ = self._residuals(slip.change(record, step), near=True)
+            sides.append(parts)
+        return [(b[0] - a[0]) / (2.0 * slip.step) for a, b in zip(*sides, strict=True)]
 
     def _value(self, slip, model):
         """−2 log L; without the volume of the noise for a change that only rescales."""
