@@ -218,7 +218,9 @@ def _polished(forward, null, found):
             c = _moved(c, null, better, c.places, flags)
         if c.gain > least and wide.wide(forward):
             c = _moved(c, null, wide.again(forward, c.fit), c.places, c.flags)
-        result.append(_beyond(forward, null, c) if c.gain > least else c)
+        # What a bound holds back may be far behind for that alone.
+        further = c.gain > least or (c.gain > 0.0 and bounds.held_back(c.fit))
+        result.append(_beyond(forward, null, c) if further else c)
     return enough.first(forward, evidence.ranked(result, forward.experiment.prior_odds))
 
 

@@ -62,6 +62,7 @@ class Parameter:
         linear: whether a positive parameter that is off at 0 is searched evenly, not by its logarithm.
         known: value, and its relative standard error, that a record states: where the effect acts the value
             lies within two of them. None: anything between low and high.
+        electronic: whether it is of the electronics, whose times do not go with those of the impact.
     """
 
     name: str
@@ -79,6 +80,7 @@ class Parameter:
     tried_at_once: bool = False
     linear: bool = False
     known: tuple[float, float] | None = None
+    electronic: bool = False
 
     @property
     def switches(self) -> bool:

@@ -10,6 +10,8 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from sonicvacuum.effects.sized import sized
+
 if TYPE_CHECKING:
     from sonicvacuum.effects.base import Effect, Setup
 
@@ -69,8 +71,12 @@ class Catalogue:
         return Catalogue(result, self.besides)
 
     def informed(self, chain, tolerances) -> Catalogue:
-        """The catalogue with what a record states of the effects' parameters, see `Effect.stated`."""
-        return Catalogue(tuple(e.informed(chain, tolerances) for e in self.effects), self.besides)
+        """The catalogue with ranges that suit a record's chains (`sized`), and what it states of the effects'
+        parameters, see `Effect.stated`.
+        """
+        return Catalogue(
+            tuple(sized(e, chain).informed(chain, tolerances) for e in self.effects), self.besides
+        )
 
     def held(self, ids: Iterable[str]) -> Catalogue:
         """The catalogue of a model that holds some effects already: no search tries them."""

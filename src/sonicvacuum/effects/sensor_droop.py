@@ -28,7 +28,18 @@ EFFECT = Effect(
     reference="first-order RC circuit; Daraio & Nesterenko, Phys. Rev. E 73, 026612 (2006), Sec. II: "
     "RC about 10^3 us",
     parameters=(
-        Parameter("tau_us", "us", math.inf, 10.0, 1e6, "log-uniform", 1000.0, "discharge time RC", 1e-3),
+        Parameter(
+            "tau_us",
+            "us",
+            math.inf,
+            10.0,
+            1e6,
+            "log-uniform",
+            1000.0,
+            "discharge time RC",
+            1e-3,
+            electronic=True,
+        ),
     ),
     signature="a negative tail after each pulse with the time tau, peaks a little low and early, long "
     "pulses most",

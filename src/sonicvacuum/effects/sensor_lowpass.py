@@ -24,7 +24,11 @@ EFFECT = Effect(
     equation="tau dy/dt + y = x, all sensors",
     energy="none: the chain is not touched",
     reference="first-order RC circuit; no particular source",
-    parameters=(Parameter("tau_us", "us", 0.0, 0.05, 300.0, "log-uniform", 2.0, "time constant", 0.0),),
+    parameters=(
+        Parameter(
+            "tau_us", "us", 0.0, 0.05, 300.0, "log-uniform", 2.0, "time constant", 0.0, electronic=True
+        ),
+    ),
     signature="readings later by tau, lower and longer, narrow pulses most; area and decay along the "
     "chain kept",
     when_to_use="short pulses (steel, strong strikers) read too low; the same delay at all sensors",

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from sonicvacuum.cli import existing
 from sonicvacuum.cli.helped import FOLDER, PRESENT, WRITTEN, verb
 from sonicvacuum.outputs import check_apart
 from sonicvacuum_blind.cli.hide import check_truth
@@ -56,9 +57,10 @@ def extras(batch, first, records_folder, truth_folder):
 @click.option("--partly", is_flag=True, help="Leave out cases that have no verdict yet.")
 @click.option("--out", required=True, type=WRITTEN, help="Row of each record (CSV) to write.")
 @click.option("--summary", required=True, type=WRITTEN, help="Table (CSV) to write.")
-def extras_score(truth, verdicts, partly, out, summary):
+@click.option("--page", type=existing(), help="Page (Markdown) whose table is written anew.")
+def extras_score(truth, verdicts, partly, out, summary, page):
     """Count which effects are named beside systematic errors, and which of several."""
-    from sonicvacuum_blind import extra_score
+    from sonicvacuum_blind import extra_page, extra_score
     from sonicvacuum_blind.score import Line, write_table
 
     check_apart([out, summary], [truth, verdicts])
@@ -66,4 +68,6 @@ def extras_score(truth, verdicts, partly, out, summary):
     lines = extra_score.summary(rows)
     write_table(rows, extra_score.ExtraRow, out)
     write_table(lines, Line, summary)
+    if page:
+        extra_page.write(lines, page)
     say(lines)

@@ -37,6 +37,13 @@ def stuck(fit: Fit) -> np.ndarray:
     )
 
 
+def held_back(fit: Fit) -> bool:
+    """Whether a strength of an effect is stuck: the effect might do many times what it does there."""
+    return any(
+        s and c.parameter.switches for s, c in zip(stuck(fit), fit.hypothesis.coordinates, strict=True)
+    )
+
+
 def beyond(forward: Forward, fit: Fit) -> tuple[Fit, bool]:
     """The fit with the coordinates that are stuck let go, again and again while that gains, and whether one
     is stuck even so.

@@ -1,0 +1,37 @@
+"""The table of systematic errors and sets in the page that tells of it, written from the counted shares."""
+
+import math
+from collections.abc import Iterable
+from pathlib import Path
+
+from sonicvacuum.files import InputError, read_text, replacing
+from sonicvacuum_blind.score import Line
+
+BEGIN, END = "<!-- table -->", "<!-- end of table -->"
+HEAD = "| asked | of | records | value | 95 % | goal |\n| --- | --- | ---: | ---: | ---: | --- |"
+
+
+def table(lines: Iterable[Line]) -> str:
+    """Markdown of all lines that some record stands behind."""
+    return "\n".join([HEAD, *(_told(line) for line in lines if line.count)])
+
+
+def _told(line):
+    goal = line.goal.replace(">=", "≥").replace("<=", "≤")
+    between = "" if math.isnan(line.low) else f"{line.low:.3g} to {line.high:.3g}"
+    return f"| {line.measure} | {line.group} | {line.count} | {line.value:.3g} | {between} | {goal} |"
+
+
+def write(lines: Iterable[Line], page) -> None:
+    """The page (Markdown) with its table replaced, all else as it is.
+
+    Raises:
+        InputError: where the page does not say where its table stands.
+    """
+    text = read_text(page)
+    if text.count(BEGIN) != 1 or text.count(END) != 1:
+        raise InputError(f"{page}: write {BEGIN} and {END} once each, on lines of their own")
+    before, rest = text.split(BEGIN)
+    after = rest.split(END)[1]
+    with replacing(Path(page)) as out:
+        out.write(f"{before}{BEGIN}\n{table(lines)}\n{END}{after}")
