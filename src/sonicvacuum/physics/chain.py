@@ -273,7 +273,8 @@ class Chain:
         """(bodies, lanes) masses in kg of the striker and the first beads."""
         mass = np.empty((bodies, self.lanes))
         mass[0] = self.striker_mass
-        mass[1:] = self._bead_masses[self.bodies.kinds_of(bodies - 1)]
+        own = self._bead_masses
+        mass[1:] = own if len(own) == 1 else own[self.bodies.kinds_of(bodies - 1)]
         return self._scaled(mass, "mass")
 
     def stiffnesses(self, bodies: int) -> np.ndarray:
@@ -281,7 +282,8 @@ class Chain:
         inner = min(bodies, self.beads)
         stiffness = np.empty((bodies, self.lanes))
         stiffness[0] = self.striker_stiffness
-        stiffness[1:inner] = self._between_beads[self._neighbours(inner)]
+        between = self._between_beads
+        stiffness[1:inner] = between if len(between) == 1 else between[self._neighbours(inner)]
         if 0 < self.beads < bodies:
             stiffness[-1] = self.wall_stiffness
         return self._scaled(stiffness, "stiffness")
