@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 from scipy import stats
 
+from sonicvacuum.discover import policy
 from sonicvacuum_blind import catalogue, design
 from sonicvacuum_blind.prediction import Errors, predict
 from sonicvacuum_blind.signature import Frame
 from sonicvacuum_blind.strength import (
+    FALSE_ALARM,
     LARGEST,
     Rival,
     ceiling,
@@ -171,3 +173,8 @@ def test_impossible_strengths_are_capped(frame):
     found = scale(frame, entry, 10.0, 1, None, "g1")
     assert found.strength == 1e-6
     assert found.d_prime < 1.0
+
+
+def test_the_ideal_rule_may_name_as_many_empty_records_as_the_method():
+    """Said twice, since nothing of the engine is imported where data are made."""
+    assert FALSE_ALARM == policy.FALSE_ALARM
