@@ -1,11 +1,10 @@
 """How long each verb of the command line takes to start: processor seconds, written as CSV.
 
 `python workflow/bench/starts.py RESULTS OUT [VERB …]` runs every verb, or those named, on the smallest input
-that makes sense, in a temporary folder; RESULTS is the folder of a finished pipeline. Three numbers for each, in seconds of user and
-system time of the process, so that other work on the machine hardly counts: `--help`; loading all that the
-verb loads in that run, in a fresh interpreter; the whole run, its work included. Each is the least of several
-after one that warms the caches: other work on the machine only adds. Importing numba alone stands first, as a
-yardstick of the machine.
+that makes sense, in a temporary folder; RESULTS is the folder of a finished pipeline. Three numbers for each,
+in seconds of user and system time of the process: `--help`; loading all that the verb loads in that run, in a
+fresh interpreter; the whole run, its work included. Each is the least of several, of which the first warms
+the caches: other work on the machine only adds. Importing numba alone stands first, as a yardstick.
 """
 
 import csv
@@ -20,7 +19,7 @@ from sonicvacuum_blind.cli import blind
 from sonicvacuum_paper.cli import paper
 
 ROOT = Path(__file__).resolve().parents[2]
-REPEATS = 3
+REPEATS = 2
 CHAIN = "--beads 10 --diameter 20mm --material bearing-steel --speed 0.5"
 MEASURED = "workflow/resources/measured/daraio-nesterenko-2006"
 SMALL = "{results}/blind/small"
@@ -99,8 +98,7 @@ def spent(*words: str, **variables: str) -> float:
 
 
 def least(*words: str, **variables: str) -> float:
-    """Of several runs, after one that warms the caches."""
-    spent(*words, **variables)
+    """Of several runs; the first warms the caches."""
     return min(spent(*words, **variables) for _ in range(REPEATS))
 
 

@@ -1,8 +1,8 @@
-"""Ten minutes from scope files to a verdict, for each layout: the worked example as each maker would write it.
+"""From scope files to a verdict, for each layout: the worked example as each maker would write it.
 
-`python workflow/bench/ten_minutes.py OUT [LAYOUT …]` writes two shots of docs/example in every layout, and runs
-the README's commands on them: import, check, discover. One row for each layout: processor seconds of each
-step (user and system), what was named, and what the import had to be told besides the README's options.
+`python workflow/bench/ten_minutes.py OUT [LAYOUT …]` writes two shots of docs/example in every layout, and
+runs the README's commands on them: import, check, discover. One row for each layout: processor seconds of
+each step (user and system), what was named, and what the import had to be told besides the README's options.
 """
 
 import csv
@@ -30,7 +30,7 @@ class Layout:
     Attributes:
         channels: their names.
         head: lines before the numbers.
-        cell, end, close, decimal, encoding: how the numbers are set.
+        lead, cell, end, close, decimal, encoding: how the numbers are set.
         ending: of the file's name.
         scale: of time; None: no column of times. index: numbers of samples stand there instead.
         told: options that the import needs besides the README's.
@@ -38,6 +38,7 @@ class Layout:
 
     channels: tuple[str, str, str]
     head: tuple[str, ...]
+    lead: str = ""
     cell: str = ","
     end: str = "\r\n"
     close: str = ""
@@ -53,7 +54,7 @@ class Layout:
         first = [] if self.scale is None else [np.arange(len(times)) if self.index else times * self.scale]
         form = "{:.9g}" if self.decimal == "." else "{:.9f}"
         rows = (
-            self.cell.join(form.format(v).replace(".", self.decimal) for v in row) + self.close
+            self.lead + self.cell.join(form.format(v).replace(".", self.decimal) for v in row) + self.close
             for row in zip(*first, *volts.T, strict=True)
         )
         return (self.end.join([*self.head, *rows]) + self.end).encode(self.encoding)
@@ -61,41 +62,50 @@ class Layout:
 
 CH = ("CH1", "CH2", "CH3")
 LAYOUTS = {
-    "tektronix": Layout(CH, ("Model,MSO24", "Horizontal Units,s", "Sample Interval,2e-06", "Record Length,750",
-                             "Vertical Units,V,V,V", "", "TIME,CH1,CH2,CH3")),
-    "siglent": Layout(CH, ("Record Length,Analog:750", "Sample Interval,Analog:2.000000E-06",
-                           "Vertical Units,CH1:V,CH2:V,CH3:V", "Horizontal Units,s", "Model Number,SDS1104X-U",
-                           "Source,CH1,CH2,CH3", "Second,Volt,Volt,Volt")),
-    "picoscope, German": Layout(("Kanal A", "Kanal B", "Kanal C"),
-                                ("Zeit;Kanal A;Kanal B;Kanal C", "(ms);(V);(V);(V)", ""),
-                                cell=";", decimal=",", scale=1e3),
-    "digilent": Layout(("Channel 1", "Channel 2", "Channel 3"),
-                       ("#Digilent WaveForms Oscilloscope Acquisition", "#Sample rate: 500000Hz", "#Samples: 750",
-                        "", "Time (s),Channel 1 (V),Channel 2 (V),Channel 3 (V)")),
+    "tektronix": Layout(CH, (
+        "Model,MSO24", "Horizontal Units,s", "Sample Interval,2e-06", "Record Length,750",
+        "Vertical Units,V,V,V", "", "TIME,CH1,CH2,CH3",
+    )),
+    "siglent": Layout(CH, (
+        "Record Length,Analog:750", "Sample Interval,Analog:2.000000E-06", "Vertical Units,CH1:V,CH2:V,CH3:V",
+        "Horizontal Units,s", "Model Number,SDS1104X-U", "Source,CH1,CH2,CH3", "Second,Volt,Volt,Volt",
+    )),
+    "picoscope, German": Layout(
+        ("Kanal A", "Kanal B", "Kanal C"), ("Zeit;Kanal A;Kanal B;Kanal C", "(ms);(V);(V);(V)", ""),
+        cell=";", decimal=",", scale=1e3,
+    ),
+    "digilent": Layout(("Channel 1", "Channel 2", "Channel 3"), (
+        "#Digilent WaveForms Oscilloscope Acquisition", "#Sample rate: 500000Hz", "#Samples: 750", "",
+        "Time (s),Channel 1 (V),Channel 2 (V),Channel 3 (V)",
+    )),
     "keysight": Layout(("1", "2", "3"), ("x-axis,1,2,3", "second,Volt,Volt,Volt"), end="\n"),
-    "rigol": Layout(CH, ("X,CH1,CH2,CH3,Start,Increment,",
-                         "Sequence,Volt,Volt,Volt,-2.000000e-04,2.000000e-06,"), close=",", index=True),
+    "rigol": Layout(CH, (
+        "X,CH1,CH2,CH3,Start,Increment,", "Sequence,Volt,Volt,Volt,-2.000000e-04,2.000000e-06,",
+    ), close=",", index=True),
     "rohde-schwarz": Layout(("C1", "C2", "C3"), ("in s,C1 in V,C2 in V,C3 in V",), end="\n"),
-    "rohde-schwarz, values only": Layout(CH, (), scale=None, end="\n",
-                                         told=("--interval", "2us", "--impact-at", "200us")),
-    "yokogawa": Layout(CH, ('"Header Size",16', '"Model Name","DL850"', '"BlockNumber",1',
-                            '"TraceName","CH1","CH2","CH3"', '"BlockSize",750,750,750', '"VUnit","V","V","V"',
-                            '"SampleRate",5.0E+05,5.0E+05,5.0E+05',
-                            '"HResolution",2.0E-06,2.0E-06,2.0E-06', '"HOffset",-2.0E-04,-2.0E-04,-2.0E-04',
-                            '"HUnit","s","s","s"', ""), scale=None),
-    "dewesoft": Layout(("Ai1", "Ai2", "Ai3"), ("Data file\tC:\\data\\x.dxd", "Sample rate\t500000", "",
-                                               "Time (s)\tAi1 (V)\tAi2 (V)\tAi3 (V)"),
-                       cell="\t", decimal=",", encoding="utf-16", ending="txt"),
-    "elsys": Layout(("Kanal 1A", "Kanal 1B", "Kanal 2A"),
-                    ("TranAX;4.1", "Zeit [ms];Kanal 1A [V];Kanal 1B [V];Kanal 2A [V]"),
-                    cell=";", end="\r", decimal=",", encoding="latin-1", scale=1e3, ending="asc"),
-    "LabVIEW": Layout(("G5", "G11", "Wall"),
-                      ("LabVIEW Measurement\t", "Writer_Version\t2", "Separator\tTab", "Decimal_Separator\t.",
-                       "X_Columns\tOne", "***End_of_Header***\t", "\t", "Channels\t3\t\t\t",
-                       "Samples\t750\t750\t750\t", "Y_Unit_Label\tVolts\tVolts\tVolts\t",
-                       "X_Dimension\tTime\tTime\tTime\t", "X0\t-2.0E-4\t-2.0E-4\t-2.0E-4\t",
-                       "Delta_X\t2.0E-6\t2.0E-6\t2.0E-6\t", "***End_of_Header***\t\t\t\t",
-                       "X_Value\tG5\tG11\tWall\tComment"), cell="\t", ending="lvm"),
+    "rohde-schwarz, values only": Layout(
+        CH, (), scale=None, end="\n", told=("--interval", "2us", "--impact-at", "200us")
+    ),
+    "yokogawa": Layout(CH, (
+        '"Header Size",16', '"Model Name","DL850"', '"BlockNumber",1', '"TraceName","CH1","CH2","CH3"',
+        '"BlockSize",750,750,750', '"VUnit","V","V","V"', '"SampleRate",5.0E+05,5.0E+05,5.0E+05',
+        '"HResolution",2.0E-06,2.0E-06,2.0E-06', '"HOffset",-2.0E-04,-2.0E-04,-2.0E-04',
+        '"HUnit","s","s","s"', "",
+    ), lead=",", scale=None),
+    "dewesoft": Layout(("Ai1", "Ai2", "Ai3"), (
+        "Data file\tC:\\data\\x.dxd", "Sample rate\t500000", "", "Time (s)\tAi1 (V)\tAi2 (V)\tAi3 (V)",
+    ), cell="\t", decimal=",", encoding="utf-16", ending="txt"),
+    "elsys": Layout(("Kanal 1A", "Kanal 1B", "Kanal 2A"), (
+        "TranAX;4.1", "Zeit [ms];Kanal 1A [V];Kanal 1B [V];Kanal 2A [V]",
+    ), cell=";", end="\r", decimal=",", encoding="latin-1", scale=1e3, ending="asc"),
+    "LabVIEW": Layout(("G5", "G11", "Wall"), (
+        "LabVIEW Measurement\t", "Writer_Version\t2", "Separator\tTab", "Decimal_Separator\t.",
+        "X_Columns\tOne", "***End_of_Header***\t", "\t", "Channels\t3\t\t\t",
+        "Samples\t750\t750\t750\t", "Y_Unit_Label\tVolts\tVolts\tVolts\t",
+        "X_Dimension\tTime\tTime\tTime\t", "X0\t-2.0E-4\t-2.0E-4\t-2.0E-4\t",
+        "Delta_X\t2.0E-6\t2.0E-6\t2.0E-6\t", "***End_of_Header***\t\t\t\t",
+        "X_Value\tG5\tG11\tWall\tComment",
+    ), cell="\t", ending="lvm"),
     "plain table": Layout(("A", "B", "C"), ("Time (us);A (V);B (V);C (V)",), cell=";", scale=1e6),
 }  # fmt: skip
 
