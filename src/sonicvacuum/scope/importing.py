@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from sonicvacuum.files import InputError, replacing, writing
+from sonicvacuum.files import InputError, check_values, replacing, writing
 from sonicvacuum.records import reader, signals
 from sonicvacuum.scope import draft
 from sonicvacuum.scope.clean import CleanRun, clean
@@ -16,10 +16,12 @@ def import_files(
     """Write the record and return what was done and what is to be filled in, line by line.
 
     Raises:
-        InputError: for files that cannot be read or do not fit together, a record that stands there already
-            (without `force`), or a folder that cannot be written; nothing is written then.
+        InputError: for a title with control characters, files that cannot be read or do not fit together, a
+            record that stands there already (without `force`), or a folder that cannot be written; nothing is
+            written then.
     """
     folder = Path(folder)
+    check_values({"title": title}, folder)
     if (folder / reader.FILE).exists() and not force:
         raise InputError(f"{folder / reader.FILE}: exists already; choose another folder, or give --force")
     given = draft.template(like, record)
