@@ -5,6 +5,7 @@ import datetime
 import json
 import re
 from itertools import pairwise
+from types import SimpleNamespace
 
 import pytest
 from made_verdicts import model, verdict, write
@@ -13,6 +14,7 @@ from msgspec.structs import replace
 from sonicvacuum.discover import given
 from sonicvacuum.discover.law import Law, Near
 from sonicvacuum.discover.verdict import Known, write_json
+from sonicvacuum.effects import CATALOGUE
 from sonicvacuum.figures import discovery
 from sonicvacuum.files import InputError
 from sonicvacuum.records import Record
@@ -219,3 +221,11 @@ def test_a_damaged_origin_is_refused(folder, text):
     (folder / given.FILE).write_text(text)
     with pytest.raises(InputError, match=r"given\.json: not what sonicvacuum discover writes"):
         write_page(folder)
+
+
+def test_what_the_record_says_acts_is_part_of_the_nominal_model():
+    effects = {"coating-thickness": {"layer_thickness_um": 50.3}, "kuwabara-kono": {"time_us": 6.1}}
+    held, one = SimpleNamespace(effects=effects), SimpleNamespace(named=["kuwabara-kono"])
+    told = rows.present(one, held, CATALOGUE)
+    assert told == "bonded coating on its core (thickness of the layer on its core 50 µm)"
+    assert rows.present(SimpleNamespace(named=list(effects)), held, CATALOGUE) == ""

@@ -107,6 +107,7 @@ def _told(folder, verdict, model, tables, catalogue):
         "drawn": words.drawn(draws.read(folder)),
         "odds": rows.odds(verdict, catalogue, tables["candidates"]),
         "nuisances": bench.nuisances(model),
+        "present": rows.present(verdict, model, catalogue),
         "law": words.law(verdict, catalogue),
         "alternatives": words.alternatives(verdict, catalogue),
         "pairs": [r for r in tables["candidates"] if "+" in r["effects"]][:_PAIRS],

@@ -98,6 +98,16 @@ def in_words(parameters, catalogue):
     return ", ".join(told)
 
 
+def present(verdict, model, catalogue) -> str:
+    """Effects of the nominal model, which the record says act, with what is found of them; "" without any."""
+    there = [name for name in model.effects if name in catalogue.ids and name not in verdict.named]
+    found = []
+    for name in there:
+        values = "; ".join(f"{name} {key} {value}" for key, value in model.effects[name].items())
+        found.append(f"{catalogue.effect(name).title.lower()} ({in_words(values, catalogue)})")
+    return ", ".join(found)
+
+
 def rounds(table: list[dict], catalogue) -> list[dict]:
     """Misfit of the best model of each round, with a bar that is full at the first and empty at the noise."""
     steps = [r for r in table if r["run"].startswith("round ")]
