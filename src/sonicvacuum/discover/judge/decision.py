@@ -150,6 +150,9 @@ class Case:
             if standing.fit is None or gross.gross(self.forward, standing.fit):
                 return self._standing_out(standing, alarms, seen, tried, shape, most)
             start = standing.fit
+        whole = self._without_smooth(needed, most, alarms, start, seen, tried)
+        if whole is not None:
+            return whole
         turns = several.Turns(self.forward, self.known, needed, self.setup, self.known is not None)
         grown = turns.grow(self.null, start)
         effects = list(grown.best.effects)
@@ -168,6 +171,29 @@ class Case:
         if behind > 0.0:
             return self._unknown(alarms, [f"{shape} explains more than any effect or set"], after, tried)
         return self._beside(grown, needed, alarms, after, tried)
+
+    def _without_smooth(self, needed, most, alarms, start: Fit, seen: Left, tried) -> Decision | None:
+        """Three effects or more that leave nothing, where that is likelier than fewer beside a smooth misfit.
+
+        Once a discrepancy is counted as noise it hides weak effects, so that these are asked for before.
+        """
+        if not seen.size.found:
+            return None
+        grown = several.Turns(self.forward, self.known, needed, self.setup, infer=False).grow(
+            self.null, start
+        )
+        best = grown.best
+        rival = pairs.combination(self.null, start, self.setup).log_bayes + seen.size.log_odds
+        if len(best.effects) < 3 or best.log_bayes <= rival:
+            return None
+        after = left(self.forward, best.fit, self.known, behind=_behind(best.gain, most))
+        if after.failed:
+            return None
+        others = [c for c in tried if set(c.effects) != set(best.effects)]
+        reason = f"{len(best.effects)} effects together leave nothing significant"
+        ranked = sorted([best, *others], key=lambda c: -c.log_bayes)
+        found = {**alarms, "set": after.p}
+        return Decision(list(best.effects), best.fit, found, [reason], after.p, ranked)
 
     def _standing_out(self, standing: gross.Standing, alarms, seen: Left, tried, shape, most) -> Decision:
         """What stands out of a misfit that is large beside the noise, and something unknown."""
