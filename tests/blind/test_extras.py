@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from sonicvacuum.blas import one_thread
-from sonicvacuum_blind import extra_cases, extra_score
+from sonicvacuum.files import InputError
+from sonicvacuum_blind import extra_cases, extra_page, extra_score
 from sonicvacuum_blind.catalogue import STUDIED
 from sonicvacuum_blind.systematics import Smooth
 
@@ -106,3 +107,16 @@ def test_shares_tell_apart_what_an_ideal_test_could_name():
     lines = {(x.measure, x.group): x for x in extra_score.summary(rows)}
     assert lines["truth among what is named", "systematic errors, singles"].value == 0.5
     assert lines["truth among what is named", "systematic errors, singles of d′ ≥ 5 beside it"].count == 1
+
+
+def test_the_page_has_its_table_and_keeps_its_words(tmp_path):
+    page = tmp_path / "page.md"
+    page.write_text(f"Before.\n\n{extra_page.BEGIN}\nold\n{extra_page.END}\nAfter.\n")
+    rows = [extra_score.row(TRUTH, VERDICT | {"named": ["tsuji"], "probabilities": {"tsuji": 1.0}})]
+    extra_page.write(extra_score.summary(rows), page)
+    told = page.read_text()
+    assert told.startswith("Before.") and told.endswith("After.\n") and "old" not in told
+    assert "| truth among what is named | systematic errors, singles | 1 | 1 | 0.207 to 1 | ≥ 0.9 |" in told
+    page.write_text("no place for a table")
+    with pytest.raises(InputError, match="end of table"):
+        extra_page.write(extra_score.summary(rows), page)
