@@ -9,11 +9,12 @@ reaches.
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
-from functools import cached_property, lru_cache
+from functools import cached_property
 
 import numpy as np
 
 from sonicvacuum.laboratory.bodies import Bodies
+from sonicvacuum.physics.beyond import Action, Defect
 from sonicvacuum.physics.bodies import Body, Elastic
 from sonicvacuum.physics.contact import (
     check_elastic,
@@ -22,44 +23,7 @@ from sonicvacuum.physics.contact import (
     radius_of_curvature,
     reduced,
 )
-from sonicvacuum.physics.laws import HERTZ, LawSet, Term, depth_at
-
-
-@dataclass(frozen=True)
-class Defect:
-    """One number at one place that is not what the bodies make it: a defect of the chain.
-
-    Attributes:
-        what: "mass", "stiffness" (factors) or "gap" (m, open at rest).
-        index: body for masses, contact otherwise.
-        value: (lanes,) factor or gap.
-    """
-
-    what: str
-    index: int
-    value: np.ndarray
-
-
-@dataclass(frozen=True)
-class Action:
-    """A term of the force law with its parameters.
-
-    Attributes:
-        term: the formula.
-        coefficients: function of (chain, stiffness, mass, **parameters), the first arrays (bodies, lanes),
-            that returns a list of `term.coefficients` arrays broadcastable to (bodies, lanes): one number
-            per contact, or per body for the slot `body`.
-        parameters: name → (lanes,) array.
-    """
-
-    term: Term
-    coefficients: Callable
-    parameters: dict[str, np.ndarray]
-
-    def table(self, chain, stiffness, mass):
-        """(bodies, n, lanes) coefficients."""
-        columns = self.coefficients(chain, stiffness, mass, **self.parameters)
-        return np.stack([np.broadcast_to(c, stiffness.shape) for c in columns], axis=1)
+from sonicvacuum.physics.laws import HERTZ, LawSet, Term, depth_at, law_set
 
 
 @dataclass(frozen=True)
@@ -327,7 +291,7 @@ class Chain:
         terms = tuple(a.term for a in self.actions)
         if not any(t.slot == "elastic" for t in terms):
             terms = (HERTZ, *terms)
-        return _law_set(terms, self.preloaded, symplectic)
+        return law_set(terms, self.preloaded, symplectic)
 
     def coefficients(self, laws: LawSet, bodies: int) -> np.ndarray:
         """(bodies, n, lanes) table of the coefficients of all terms, in the order of the law set."""
@@ -356,12 +320,6 @@ class Chain:
             if e.what == what and e.index < len(values):
                 values[e.index] = values[e.index] * e.value
         return values
-
-
-@lru_cache(maxsize=256)
-def _law_set(terms, preloaded, symplectic):
-    """One object for equal law sets, so that what is derived from it is worked out once."""
-    return LawSet(terms, preloaded, symplectic)
 
 
 def _broadcast(value, lanes):

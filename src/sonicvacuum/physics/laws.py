@@ -18,7 +18,7 @@ number per contact (or body) and chain, worked out beforehand from the chain and
 import inspect
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import accumulate
 
 import numpy as np
@@ -181,6 +181,12 @@ class LawSet:
 
     def __eq__(self, other):
         return isinstance(other, LawSet) and self._name == other._name
+
+
+@lru_cache(maxsize=256)
+def law_set(terms, preloaded, symplectic):
+    """One object for equal law sets, so that what is derived from it is worked out once."""
+    return LawSet(terms, preloaded, symplectic)
 
 
 def columns_of(laws: LawSet, term: Term, coefficients: np.ndarray) -> list[np.ndarray]:

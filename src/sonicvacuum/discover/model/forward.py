@@ -269,10 +269,20 @@ class Forward:
         seen, gain = self.simulate(batch, setup), self._gain(nu)
         traces = {}
         for places in self._recorded_alike(batch):
-            traces |= self._traces(batch, places, seen, gain, nu, rate_of or len(nu))
+            traces |= gauges.traces(
+                e,
+                self.layout,
+                self.nuisance_sigma,
+                batch,
+                places,
+                seen.readings,
+                gain,
+                nu,
+                rate_of or len(nu),
+            )
         for k, run in enumerate(batch.runs):
             value, timing = traces[run]
-            measured = self._scalars(batch, k, seen, gain, nu)
+            measured = scalars.of_run(e, self.layout, batch, k, seen, gain, nu)
             flat = e.whitened_on(run, value, measured)
             rated, times, *shape = timing.shape
             rates = timing.reshape(rated * times, *shape)
@@ -289,45 +299,6 @@ class Forward:
                 found.setdefault((data.time.tobytes(), counting), []).append(k)
             self._alike[batch.runs] = list(found.values())
         return self._alike[batch.runs]
-
-    def _traces(self, batch, places, seen, gain, nu, rate_of):
-        """Run → readings (L, S, T) and their slopes (·, n, S, T) to times, over the noise of single samples.
-
-        `places` are those of runs in the batch whose samples were taken, and count, alike.
-        """
-        e, layout, sigma = self.experiment, self.layout, self.nuisance_sigma
-        lanes, runs = len(nu), [batch.runs[k] for k in places]
-        lane, which = np.tile(np.arange(lanes), len(runs)), np.repeat(np.arange(len(runs)), lanes)
-        rated = np.flatnonzero(lane % rate_of == 0)
-        data = e.runs[runs[0]]
-        if data.has_signals:
-            trigger = layout.trigger(np.array(runs))
-            shift = np.array([e.runs[r].shift for r in runs])[:, None] + (nu[:, trigger] * sigma[trigger]).T
-            chain = lane * len(batch.runs) + np.array(places)[which]
-            value, timing = gauges.at_record(
-                *(layout, sigma, batch.interval, data.time, seen.readings, chain),
-                *(gain[lane], shift.ravel(), nu[lane], rated),
-            )
-        else:
-            value = np.zeros((len(lane), len(e.gauges), 0))
-            times = 1 + len(layout.other("clock")) + len(layout.other("delay"))
-            timing = np.zeros((len(rated), times, len(e.gauges), 0))
-        value, timing = (e.noise_whitened(runs[0], x) for x in (value, timing))
-        return {
-            run: pair
-            for run, *pair in zip(runs, np.split(value, len(runs)), np.split(timing, len(runs)), strict=True)
-        }
-
-    def _scalars(self, batch, k, seen, gain, nu):
-        """(L, n) observables of the k-th run of a batch."""
-        e, layout, run, own = self.experiment, self.layout, batch.runs[k], slice(k, None, len(batch.runs))
-        wanted = e.runs[run].scalars
-        if not wanted:
-            return np.zeros((len(nu), 0))
-        signals = seen.readings[own] * gain[..., None]
-        refine = accuracy.refinement(self._norm)
-        measured = scalars.predict(e, run, own, seen, signals, refine)
-        return scalars.read(wanted, measured, {layout.named(p): nu[:, p] for p in layout.other("shared")})
 
     def _gain(self, nu):
         """(L, S) gains of the gauges over the nominal ones."""

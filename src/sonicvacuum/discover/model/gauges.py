@@ -96,3 +96,40 @@ def at_record(layout, sigma, interval: float, time: np.ndarray, signals, chain, 
     if delays:
         slopes += [slopes[0] * (np.arange(signals.shape[1]) == s)[:, None] for s in channels]
     return value, np.stack(slopes, axis=1)
+
+
+def traces(e, layout, sigma, batch, places, readings, gain, nu, rate_of: int):
+    """Readings of some runs and their slopes to times, over the noise of single samples.
+
+    Args:
+        e: the data set.
+        layout: of its nuisances, whose standard errors are `sigma`.
+        batch: what was simulated, its R runs for each of L lanes.
+        places: of the runs in the batch that are wanted; their samples were taken, and count, alike.
+        readings: (L R, S, T') simulated readings.
+        gain: (L, S) of the gauges.
+        nu: (L, q) nuisances over their standard errors.
+        rate_of: slopes are wanted of every so many lanes.
+
+    Returns:
+        Run → (L, S, T) readings and (·, times, S, T) slopes.
+    """
+    lanes, runs = len(nu), [batch.runs[k] for k in places]
+    lane, which = np.tile(np.arange(lanes), len(runs)), np.repeat(np.arange(len(runs)), lanes)
+    rated = np.flatnonzero(lane % rate_of == 0)
+    data = e.runs[runs[0]]
+    if data.has_signals:
+        trigger = layout.trigger(np.array(runs))
+        shift = np.array([e.runs[r].shift for r in runs])[:, None] + (nu[:, trigger] * sigma[trigger]).T
+        chain = lane * len(batch.runs) + np.array(places)[which]
+        value, timing = at_record(
+            *(layout, sigma, batch.interval, data.time, readings, chain),
+            *(gain[lane], shift.ravel(), nu[lane], rated),
+        )
+    else:
+        value = np.zeros((len(lane), len(e.gauges), 0))
+        times = 1 + len(layout.other("clock")) + len(layout.other("delay"))
+        timing = np.zeros((len(rated), times, len(e.gauges), 0))
+    value, timing = (e.noise_whitened(runs[0], x) for x in (value, timing))
+    parts = zip(runs, np.split(value, len(runs)), np.split(timing, len(runs)), strict=True)
+    return {run: (own, slopes) for run, own, slopes in parts}

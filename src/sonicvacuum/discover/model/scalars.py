@@ -75,6 +75,26 @@ def shared_column(experiment, run: int, value: np.ndarray, source: str) -> np.nd
     return columns
 
 
+def of_run(experiment, layout, batch, k: int, seen, gain, nu) -> np.ndarray:
+    """(L, n) observables of the k-th run of a batch as they are compared.
+
+    Args:
+        experiment: the data set.
+        layout: of its nuisances.
+        batch: what was simulated, its R runs for each of L lanes.
+        k: place of the run in the batch.
+        seen: the simulation.
+        gain: (L, S) of the gauges.
+        nu: (L, q) nuisances over their standard errors.
+    """
+    run, own = batch.runs[k], slice(k, None, len(batch.runs))
+    wanted = experiment.runs[run].scalars
+    if not wanted:
+        return np.zeros((len(nu), 0))
+    measured_ = predict(experiment, run, own, seen, seen.readings[own] * gain[..., None])
+    return read(wanted, measured_, {layout.named(p): nu[:, p] for p in layout.other("shared")})
+
+
 def predict(experiment, run: int, lanes: slice, seen, signals: np.ndarray, refine: float = 1.0) -> np.ndarray:
     """(L, n) values of the scalars of a run in SI, 0 where the readings show no such thing.
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from sonicvacuum.discover.search.directions import Direction, Family
 from sonicvacuum.effects import Effect, Parameter
-from sonicvacuum.physics.chain import Defect
+from sonicvacuum.physics.beyond import Defect
 
 # Deviations along the chain, x from −1 at the striker to 1 at the wall, k counted from there.
 PROFILES = {

@@ -21,7 +21,7 @@ from sonicvacuum.discover.model.hypothesis import FLEXIBLE, with_common_laws
 from sonicvacuum.discover.search import directions as ways
 from sonicvacuum.discover.search import profiles, screen
 from sonicvacuum.discover.search.directions import Direction, Family
-from sonicvacuum.physics.chain import Defect
+from sonicvacuum.physics.beyond import Defect
 
 # Cosines between signatures that are resolved as different.
 _RANK = 1e-3
