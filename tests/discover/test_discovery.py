@@ -93,7 +93,7 @@ def test_files_are_written_and_read_back(verdict, tmp_path):
     names = {p.name for p in (tmp_path / "out").iterdir()}
     assert names == {
         "verdict.json", "model.json", "where.csv", "candidates.csv", "gap.csv", "limits.csv", "traces.csv",
-        "given.json",
+        "given.json", "posterior.csv",
     }  # fmt: skip
     model = read_model(tmp_path / "out/model.json")
     assert list(model.effects) == [n for n in verdict.verdict.named if n != "unknown"]
