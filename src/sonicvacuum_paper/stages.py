@@ -6,6 +6,7 @@ from pathlib import Path
 from sonicvacuum.blas import one_thread
 from sonicvacuum.card import variant_names
 from sonicvacuum.config import Config, card, model
+from sonicvacuum.files import InputError
 from sonicvacuum_paper import arithmetic, assumptions, audit, compare, ledger, theory_rows
 from sonicvacuum_paper.columns import Metrics, column_cards
 from sonicvacuum_paper.printed import PRINTED
@@ -39,7 +40,10 @@ def derived_rows(simulated: list[Row], config: Config) -> list[Row]:
     rows = [*theory_rows.rows(), *arithmetic.rows(), *audit.rows()]
     for column in column_cards(config, "fig3a"):
         # As simulated: what discover named may have changed it.
-        modulus = metrics.find("fig3a", column, "modulus").value * 1e9
+        found = metrics.find("fig3a", column, "modulus")
+        if found is None:
+            raise InputError(f"no modulus of fig3a in the column {column}; give the metrics of all cards")
+        modulus = found.value * 1e9
         rows += theory_rows.column_rows(column, modulus)
         rows += audit.column_rows(
             column, modulus, metrics.find("fig5b", column, "contact_time", compare.BETWEEN)

@@ -2,6 +2,9 @@
 
 from pathlib import Path
 
+import pytest
+
+from sonicvacuum.files import InputError
 from sonicvacuum_paper.rows import read_rows, write_rows
 from sonicvacuum_paper.stages import write_assumptions, write_ledger, write_metrics
 
@@ -42,3 +45,10 @@ def test_without_fig3a_no_column_has_a_modulus(tmp_path, simulated, cases):
     only = {name: rows for name, rows in simulated.items() if name.startswith("fig3b.")}
     text = made(tmp_path, only, few)["ledger.csv"].decode()
     assert "theory/core_contact_force/ has not been found" in text
+
+
+def test_metrics_of_some_cards_only_are_refused(tmp_path, simulated, cases):
+    some = {name: rows for name, rows in simulated.items() if name.startswith("fig3b.")}
+    with pytest.raises(InputError, match="no modulus of fig3a in the column"):
+        made(tmp_path, some, cases)
+    assert not (tmp_path / "metrics.csv").exists()

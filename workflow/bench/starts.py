@@ -35,12 +35,12 @@ INPUTS = {
     "record": f"check {MEASURED}-steel",
     "discover": f"{SMALL}/records/3/small-0019 --out {{out}}/found --no-figures --threads 1",
     "page": "{out}/steel",
-    "compare": f"{MEASURED}-steel --model {{results}}/discover/daraio-nesterenko-2006-steel/model.json",
+    "compare": f"{MEASURED}-steel --model {{results}}/discover/daraio-nesterenko-2006-steel/model.json "
+    "--json {out}/score.json",
     "export": "--law kuwabara-kono --time_us 2 --mass_g 4 --diameter_mm 10 --material stainless-steel "
     "--speeds 0.1 2",
     "paper observe": "{results}/cards/fig3b.nominal.json {results}/histories/fig3b.nominal.npz "
     "--signals {out}/signals.csv --metrics {out}/metrics.csv",
-    "paper metrics": "{results}/metrics/fig3b.nominal.csv --out {out}/metrics.csv",
     "paper ledger": "{results}/metrics.csv --claims workflow/resources/claims.csv --out {out}/ledger.csv",
     "paper audit": "{results}/metrics.csv --assumptions workflow/resources/assumptions.csv --out {out}/a.csv",
     "paper draw": "fig3 --cards {results}/cards --histories {results}/histories --out {out}",
