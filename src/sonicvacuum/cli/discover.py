@@ -1,7 +1,7 @@
 """`sonicvacuum discover`: what records of measured data say is missing from the model."""
 
 import sys
-from contextlib import contextmanager, nullcontext
+from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -41,7 +41,7 @@ def discover(records, out, together, figures, threads, own, quiet, no_limits):
     One record is written to OUT; of several each has its own folder OUT/<folder name>. All of them are read
     before the first is searched. On a terminal, a line shows how far the search is.
     """
-    from sonicvacuum.cli.page import illustrate, page_files, painters
+    from sonicvacuum.cli.page import illustrate, page_files
     from sonicvacuum.outputs import renewed
     from sonicvacuum.physics.run import available_threads
     from sonicvacuum.records import read
@@ -59,23 +59,22 @@ def discover(records, out, together, figures, threads, own, quiet, no_limits):
         record = read(path)
         if not no_limits:
             check_extent(record)
-    threads = threads or available_threads()
-    with painters(threads) if figures else nullcontext() as pool:
-        from sonicvacuum.discover import session  # long to load: what is wrong with a record is said before
+    from sonicvacuum.discover import session  # long to load: what is wrong with a record is said before
 
-        for folder, paths in groups.items():
-            with stages_shown(", ".join(paths), quiet):
-                result = session.discover(*(read(p) for p in paths), threads=threads, catalogue=known)
-            with renewed(
-                folder, last="verdict.json", stale=(*page_files(), "law.csv", "posterior.csv")
-            ) as fresh:
-                session.write(result, fresh)
-                if figures:
-                    illustrate(fresh, known, pool)
-            if not quiet:
-                for note in result.notes:
-                    click.echo(f"{', '.join(paths)}: {note}")
-            click.echo(f"{', '.join(paths)}: {_sentence(result.verdict)}")
+    for folder, paths in groups.items():
+        with stages_shown(", ".join(paths), quiet):
+            result = session.discover(
+                *(read(p) for p in paths), threads=threads or available_threads(), catalogue=known
+            )
+        stale = (*page_files(), "law.csv", "posterior.csv")
+        with renewed(folder, last="verdict.json", stale=stale) as fresh:
+            session.write(result, fresh)
+            if figures:
+                illustrate(fresh, known)
+        if not quiet:
+            for note in result.notes:
+                click.echo(f"{', '.join(paths)}: {note}")
+        click.echo(f"{', '.join(paths)}: {_sentence(result.verdict)}")
 
 
 @contextmanager

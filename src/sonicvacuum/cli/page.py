@@ -26,23 +26,13 @@ def page(folders, own):
             illustrate(folder, known)
 
 
-def illustrate(folder, known, pool=None) -> None:
-    """Draw the pictures and write the page of one folder; the catalogue `known` holds its effects.
-
-    `pool`: see `figures.discovery.draw`.
-    """
+def illustrate(folder, known) -> None:
+    """Draw the pictures and write the page of one folder; the catalogue `known` holds its effects."""
     from sonicvacuum.figures.discovery import draw
     from sonicvacuum.report.record import write_page
 
-    draw(folder, known, pool)
+    draw(folder, known)
     write_page(folder, known)
-
-
-def painters(threads: int):
-    """Processes that draw beside a search with so many threads, see `figures.aside`."""
-    from sonicvacuum.figures.aside import painters
-
-    return painters(min(threads, 2))
 
 
 def page_files() -> tuple[str, ...]:

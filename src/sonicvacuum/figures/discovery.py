@@ -8,7 +8,6 @@ needed.
 """
 
 import json
-from concurrent.futures import Executor
 from pathlib import Path
 
 import numpy as np
@@ -34,18 +33,16 @@ from sonicvacuum.tables import read_csv
 _MOST = 8
 
 
-def draw(folder: Path, catalogue: Catalogue = CATALOGUE, pool: Executor | None = None) -> list[Path]:
+def draw(folder: Path, catalogue: Catalogue = CATALOGUE) -> list[Path]:
     """Draw all pictures that the tables in the folder give; the files written (SVG, each with its PNG).
 
-    The catalogue knows the effects that are named. With a pool (`aside.painters`), each is drawn by one of
-    its processes.
+    The catalogue knows the effects that are named.
 
     Those of an earlier verdict that this one does not have are removed.
     """
     folder = Path(folder)
     posterior.write_table(folder, catalogue)
-    drawn = (pool.map if pool else map)(_picture, [folder] * len(PICTURES), PICTURES)
-    return [path for path in drawn if path]
+    return [path for name in PICTURES if (path := _picture(folder, name))]
 
 
 def _picture(folder: Path, name: str) -> Path | None:
