@@ -4,18 +4,15 @@ Nulls and singles have smooth systematic errors of 0.3 to 3 % of the peak; sets 
 effects d′ 20. The list is shuffled: any first part of it is a fair sample.
 """
 
-import json
 import math
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
 from sonicvacuum import records
 from sonicvacuum.blas import one_thread
-from sonicvacuum.files import replacing
 from sonicvacuum_blind.catalogue import STUDIED
-from sonicvacuum_blind.hide import TOLERANCE, TRUTH, Laboratory, Spec, laboratory, noisy, stream
+from sonicvacuum_blind.hide import TOLERANCE, Laboratory, Spec, keep, laboratory, noisy, stream
 from sonicvacuum_blind.prediction import predict
 from sonicvacuum_blind.record import as_record
 from sonicvacuum_blind.strength import Rival, rivals
@@ -128,9 +125,5 @@ def _beside(basis, rest, rival: Rival) -> float:
 
 @one_thread
 def write(case: ExtraCase, records_folder, truth_folder) -> None:
-    """Write `truth_folder/<id>/truth.json`, and after it `records_folder/<id>/`."""
-    record, truth = make(case)
-    with replacing(Path(truth_folder) / case.id / TRUTH) as out:
-        json.dump(truth, out, indent=1, sort_keys=True)
-        out.write("\n")
-    records.write(record, Path(records_folder) / case.id)
+    """Make a record, and keep it and its truth; see `hide.keep`."""
+    keep(case.id, *make(case), records_folder, truth_folder)

@@ -171,15 +171,19 @@ def hide(spec: Spec) -> tuple[records.Record, dict]:
 
 @one_thread
 def write(spec: Spec, records_folder, truth_folder) -> None:
-    """Hide, then write `truth_folder/<id>/truth.json`, and after it `records_folder/<id>/`.
+    """Hide, and keep what was made; see `keep`."""
+    keep(spec.id, *hide(spec), records_folder, truth_folder)
+
+
+def keep(name: str, record: records.Record, truth: dict, records_folder, truth_folder) -> None:
+    """Write `truth_folder/<name>/truth.json`, and after it `records_folder/<name>/`.
 
     In this order: a record that stands without its truth was not made here.
     """
-    record, truth = hide(spec)
-    with replacing(Path(truth_folder) / spec.id / TRUTH) as stream:
+    with replacing(Path(truth_folder) / name / TRUTH) as stream:
         json.dump(truth, stream, indent=1, sort_keys=True)
         stream.write("\n")
-    records.write(record, Path(records_folder) / spec.id)
+    records.write(record, Path(records_folder) / name)
 
 
 def _case(spec, random):

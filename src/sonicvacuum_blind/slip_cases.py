@@ -5,18 +5,14 @@ slip and without any. A slip's d′ is what the record's own errors of speed, mo
 it, as for effects (`signature`); slips that no such error resembles have none, and are plain.
 """
 
-import json
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from pathlib import Path
 
 import numpy as np
 
 from sonicvacuum import records
 from sonicvacuum.blas import one_thread
-from sonicvacuum.files import replacing
-from sonicvacuum_blind import TRUTH
-from sonicvacuum_blind.hide import TOLERANCE, Laboratory, Spec, laboratory, noisy, stream
+from sonicvacuum_blind.hide import TOLERANCE, Laboratory, Spec, keep, laboratory, noisy, stream
 from sonicvacuum_blind.plan import Plan
 from sonicvacuum_blind.prediction import predict
 from sonicvacuum_blind.record import as_record
@@ -147,9 +143,5 @@ _LIKE_ERRORS = {
 
 @one_thread
 def write(case: SlipCase, records_folder, truth_folder) -> None:
-    """Write `truth_folder/<id>/truth.json`, and after it `records_folder/<id>/`."""
-    record, truth = make(case)
-    with replacing(Path(truth_folder) / case.id / TRUTH) as out:
-        json.dump(truth, out, indent=1, sort_keys=True)
-        out.write("\n")
-    records.write(record, Path(records_folder) / case.id)
+    """Make a record, and keep it and its truth; see `hide.keep`."""
+    keep(case.id, *make(case), records_folder, truth_folder)

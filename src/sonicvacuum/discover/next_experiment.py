@@ -120,7 +120,7 @@ def changes(experiment: Experiment):
     speed = float(chain.speed[0])
     can = means(experiment, chain)
     for value in can.speeds:
-        changed = replace(chain, speed=np.full_like(chain.speed, value))
+        changed = chain.struck_at(np.full_like(chain.speed, value))
         imagined = _with(experiment, batch, run, changed, value / speed)
         yield {"striker.speed_m_s": round(value, 4)}, imagined
     for mass in can.masses:

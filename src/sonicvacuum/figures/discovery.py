@@ -42,41 +42,28 @@ def draw(folder: Path, catalogue: Catalogue = CATALOGUE) -> list[Path]:
     """
     folder = Path(folder)
     posterior.write_table(folder, catalogue)
-    return [path for name in PICTURES if (path := _picture(folder, name))]
-
-
-def _picture(folder: Path, name: str) -> Path | None:
-    """Draw one of `PICTURES`, or remove it; the SVG, None where the tables give none."""
-    paths = [folder / f"{name}.{kind}" for kind in ("svg", "png")]
+    verdict = json.loads((folder / "verdict.json").read_text(encoding="utf-8"))
+    pictures = {
+        "where": lambda: disagreement.where(read_csv(folder / "where.csv")),
+        "scalars": lambda: disagreement.scalars(read_csv(folder / "where.csv")),
+        "traces": lambda: traces(read_csv(folder / "traces.csv"), verdict["named"]),
+        "candidates": lambda: candidates(verdict["probabilities"]),
+        "parameters": lambda: posterior.parameters(read_csv(folder / "parameters.csv"), draws.read(folder)),
+        "gap": lambda: gap(read_csv(folder / "gap.csv")),
+        "law": lambda: force_law.law(read_csv(folder / "law.csv") if (folder / "law.csv").exists() else []),
+    }
+    written = []
     with context():
-        figure = PICTURES[name](folder)
-        if figure is not None:
-            save(figure, *paths)
-            return paths[0]
-    for path in paths:
-        path.unlink(missing_ok=True)
-    return None
-
-
-def _verdict(folder: Path) -> dict:
-    return json.loads((folder / "verdict.json").read_text(encoding="utf-8"))
-
-
-def _law(folder: Path) -> list[dict[str, str]]:
-    return read_csv(folder / "law.csv") if (folder / "law.csv").exists() else []
-
-
-PICTURES = {
-    "where": lambda folder: disagreement.where(read_csv(folder / "where.csv")),
-    "scalars": lambda folder: disagreement.scalars(read_csv(folder / "where.csv")),
-    "traces": lambda folder: traces(read_csv(folder / "traces.csv"), _verdict(folder)["named"]),
-    "candidates": lambda folder: candidates(_verdict(folder)["probabilities"]),
-    "parameters": lambda folder: posterior.parameters(
-        read_csv(folder / "parameters.csv"), draws.read(folder)
-    ),
-    "gap": lambda folder: gap(read_csv(folder / "gap.csv")),
-    "law": lambda folder: force_law.law(_law(folder)),
-}
+        for name, make in pictures.items():
+            paths = [folder / f"{name}.{kind}" for kind in ("svg", "png")]
+            figure = make()
+            if figure is not None:
+                save(figure, *paths)
+                written.append(paths[0])
+                continue
+            for path in paths:
+                path.unlink(missing_ok=True)
+    return written
 
 
 def traces(table: list[dict[str, str]], named: list[str]):

@@ -44,7 +44,7 @@ class Conditions:
     def setup(self, record: Record, batch: Batch) -> Setup:
         """What is simulated and what reads it."""
         ratio = np.broadcast_to(np.asarray(self.speed_ratio, dtype=float), (len(record.runs),))
-        chain = replace(batch.chain, speed=batch.chain.speed * ratio[list(batch.runs)])
+        chain = batch.chain.struck_at(batch.chain.speed * ratio[list(batch.runs)])
         made = self.model(Setup(chain, record.gauges))
         gauges = tuple(replace(s, gain=s.gain * self.gain.get(s.id, 1.0)) for s in made.sensors)
         return replace(made, sensors=gauges)

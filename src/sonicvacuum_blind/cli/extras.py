@@ -7,36 +7,22 @@ from pathlib import Path
 import click
 
 from sonicvacuum.cli import existing
-from sonicvacuum.cli.helped import FOLDER, PRESENT, WRITTEN, verb
+from sonicvacuum.cli.helped import PRESENT, WRITTEN, verb
 from sonicvacuum.outputs import check_apart
+from sonicvacuum_blind import TRUTH
 from sonicvacuum_blind.cli.hide import check_truth
-from sonicvacuum_blind.cli.options import batch_of, say
+from sonicvacuum_blind.cli.options import batch_of, made_into, say
 
 
 @verb("sonicvacuum blind extras --records extras/records --truth extras/truth --first 40")
-@click.option("--batch", default="0/1", show_default=True, help="k/n: every n-th case from the k-th on.")
+@made_into
 @click.option(
     "--first", type=click.IntRange(min=1), help="So many of the list, whose order is drawn; all if not given."
-)
-@click.option(
-    "--records",
-    "records_folder",
-    required=True,
-    type=FOLDER,
-    help="Folder for the records, one for each case.",
-)
-@click.option(
-    "--truth",
-    "truth_folder",
-    required=True,
-    type=FOLDER,
-    help="Folder for the truth; keep it away from discover.",
 )
 def extras(batch, first, records_folder, truth_folder):
     """Make records with smooth systematic errors, and with three and four effects."""
     from sonicvacuum.records.guard import check_collection
     from sonicvacuum_blind import extra_cases
-    from sonicvacuum_blind.hide import TRUTH
     from sonicvacuum_blind.study import batch as part
 
     chosen = part(extra_cases.cases()[:first], *batch_of(batch))

@@ -4,6 +4,7 @@ import re
 
 import click
 
+from sonicvacuum.cli.helped import FOLDER
 from sonicvacuum.files import InputError
 
 STUDIES = click.Choice(["small", "full", "training"])
@@ -15,6 +16,31 @@ def batch_of(text: str) -> tuple[int, int]:
     if not found or not int(found[1]) < int(found[2]):
         raise InputError(f"--batch: is {text!r}; write k/n with k from 0 to n - 1, such as 0/4")
     return int(found[1]), int(found[2])
+
+
+def made_into(function):
+    """Options --batch, --records and --truth of a verb that makes records."""
+    for option in (
+        click.option(
+            "--truth",
+            "truth_folder",
+            required=True,
+            type=FOLDER,
+            help="Folder for the truth; keep it away from discover.",
+        ),
+        click.option(
+            "--records",
+            "records_folder",
+            required=True,
+            type=FOLDER,
+            help="Folder for the records, one for each case.",
+        ),
+        click.option(
+            "--batch", default="0/1", show_default=True, help="k/n: every n-th case from the k-th on."
+        ),
+    ):
+        function = option(function)
+    return function
 
 
 def say(lines) -> None:

@@ -6,29 +6,15 @@ from pathlib import Path
 
 import click
 
-from sonicvacuum.cli.helped import FOLDER, PRESENT, WRITTEN, verb
+from sonicvacuum.cli.helped import PRESENT, WRITTEN, verb
 from sonicvacuum.outputs import check_apart
 from sonicvacuum_blind import TRUTH
 from sonicvacuum_blind.cli.hide import check_truth
-from sonicvacuum_blind.cli.options import batch_of, say
+from sonicvacuum_blind.cli.options import batch_of, made_into, say
 
 
 @verb("sonicvacuum blind slips --records slips/records --truth slips/truth --batch 0/8")
-@click.option("--batch", default="0/1", show_default=True, help="k/n: every n-th case from the k-th on.")
-@click.option(
-    "--records",
-    "records_folder",
-    required=True,
-    type=FOLDER,
-    help="Folder for the records, one for each case.",
-)
-@click.option(
-    "--truth",
-    "truth_folder",
-    required=True,
-    type=FOLDER,
-    help="Folder for the truth; keep it away from discover.",
-)
+@made_into
 def slips(batch, records_folder, truth_folder):
     """Make records with slips of the laboratory, with and without a hidden effect."""
     from sonicvacuum.records.guard import check_collection

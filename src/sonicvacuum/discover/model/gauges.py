@@ -122,10 +122,8 @@ def traces(e, layout, sigma, batch, places, readings, gain, nu, rate_of: int):
         trigger = layout.trigger(np.array(runs))
         shift = np.array([e.runs[r].shift for r in runs])[:, None] + (nu[:, trigger] * sigma[trigger]).T
         chain = lane * len(batch.runs) + np.array(places)[which]
-        value, timing = at_record(
-            *(layout, sigma, batch.interval, data.time, readings, chain),
-            *(gain[lane], shift.ravel(), nu[lane], rated),
-        )
+        own = gain[lane], shift.ravel(), nu[lane], rated
+        value, timing = at_record(layout, sigma, batch.interval, data.time, readings, chain, *own)
     else:
         value = np.zeros((len(lane), len(e.gauges), 0))
         times = 1 + len(layout.other("clock")) + len(layout.other("delay"))
