@@ -17,6 +17,7 @@ from sonicvacuum.blas import one_thread
 from sonicvacuum.files import replacing
 from sonicvacuum_blind import TRUTH, catalogue, design, foreign
 from sonicvacuum_blind.design import Design
+from sonicvacuum_blind.integrate import NoSolution
 from sonicvacuum_blind.prediction import Errors, predict
 from sonicvacuum_blind.record import as_record
 from sonicvacuum_blind.signature import Frame
@@ -193,19 +194,28 @@ def _case(spec, random):
     drawn = (design.draw(spec.design, random) for _ in range(DRAWS))
     able = (d for d in drawn if all(_acts(d, _entry(spec, name)) for name in spec.effects))
     for made in itertools.islice(able, TRIES):
-        frame = Frame.of(made, correlation)
-        directions = tuple(rivals(frame)) if spec.kind == "foreign" else ()
-        # The strength of an effect outside the catalogue is what no single effect of the catalogue explains.
-        measure = partial(leftover, directions) if directions else np.linalg.norm
-        hidden = tuple(_hidden(frame, _entry(spec, e), spec.d_prime, measure, random) for e in spec.effects)
-        least = min((measure(h.seen) for h in hidden), default=np.inf)
+        try:
+            case, least = _with_effects(spec, made, correlation, random)
+        except NoSolution:
+            # So much of the effect cannot be had here: an error that is stated as uncertain takes its place.
+            continue
         if least > reached:
-            best, reached = Case(frame, hidden, directions), least
+            best, reached = case, least
         if least >= ENOUGH * spec.d_prime:
             break
     if best is None:
         raise ValueError(f"case {spec.id}: {', '.join(spec.effects)} cannot act in designs {spec.design}")
     return best, correlation
+
+
+def _with_effects(spec, made, correlation, random):
+    """A design with the wanted effects in it, and the least d′ that one of them reaches."""
+    frame = Frame.of(made, correlation)
+    directions = tuple(rivals(frame)) if spec.kind == "foreign" else ()
+    # The strength of an effect outside the catalogue is what no single effect of the catalogue explains.
+    measure = partial(leftover, directions) if directions else np.linalg.norm
+    hidden = tuple(_hidden(frame, _entry(spec, e), spec.d_prime, measure, random) for e in spec.effects)
+    return Case(frame, hidden, directions), min((measure(h.seen) for h in hidden), default=np.inf)
 
 
 def _entry(spec, name):

@@ -70,6 +70,10 @@ class Motion:
     steps: int
 
 
+class NoSolution(ValueError):
+    """Laws that no chain can follow, or a strength far beyond what can be."""
+
+
 def integrate(
     problem: Problem,
     times: np.ndarray,
@@ -90,7 +94,7 @@ def integrate(
         tolerance: error of one step over the impact's own compression and speed.
 
     Raises:
-        ValueError: where the steps become too small or too many: laws that the chain cannot follow.
+        NoSolution: where the steps become too small or too many: laws that the chain cannot follow.
     """
     speed = float(problem.speed if speed is None else speed)
     scale = (1.25 * float(problem.mass.min()) * speed**2 / float(problem.rows[:, 0].max())) ** 0.4
@@ -104,5 +108,5 @@ def integrate(
     prepare(_run, "hidden-effect data", arguments)
     steps = _run(*arguments)
     if steps < 0:
-        raise ValueError(f"no solution to {tolerance:g}: the laws are too stiff for the chain")
+        raise NoSolution(f"no solution to {tolerance:g}: the laws are too stiff for the chain")
     return Motion(force, kept[:, 0], kept[:, 1], steps)

@@ -8,6 +8,7 @@ import numpy as np
 from scipy import special
 
 from sonicvacuum_blind.catalogue import BY_ID, STUDIED, Entry, hidden
+from sonicvacuum_blind.integrate import NoSolution
 from sonicvacuum_blind.signature import Fit, Frame
 
 CLOSE = 0.005  # relative, of the d′ reached to the one wanted
@@ -121,14 +122,27 @@ def _direction(frame, change, strength, most, size):
     seen = _step(frame, change(strength))
     wanted = size / max(np.linalg.norm(seen), 1e-3 * size)
     better = float(min(strength * wanted, most))
-    if 0.5 < better / strength < 2.0:
-        return strength, seen
-    return better, _step(frame, change(better))
+    # So much of an effect may leave no pulse to be measured: half of it then, in the logarithm.
+    while np.isfinite(better) and not 0.5 < better / strength < 2.0:
+        more = _step(frame, change(better))
+        if np.isfinite(more).all():
+            return better, more
+        better = math.sqrt(better * strength)
+    return strength, seen
 
 
 def _step(frame, change):
-    """Signature of a small change: linear in the errors unless these explain nearly all of it."""
-    difference = frame.change(change)
+    """Signature of a small change: linear in the errors unless these explain nearly all of it.
+
+    Not finite where the change leaves nothing to be measured.
+    """
+    try:
+        with np.errstate(all="ignore"):
+            difference = frame.change(change)
+    except NoSolution:
+        return np.array([np.nan])
+    if not np.isfinite(difference).all():
+        return difference
     seen = frame.seen(difference)
     return seen if np.linalg.norm(difference) < ABSORBED * np.linalg.norm(seen) else frame.signature(change)
 

@@ -37,8 +37,9 @@ def _nulls(rows):
 
 
 def _singles(rows, strong):
-    goals = dict(zip(STRENGTHS, (">= 0.77", ">= 0.91", ">= 0.95", ">= 0.99"), strict=True))
-    for strength, goal in goals.items():
+    goals = {5.0: ">= 0.77", 7.5: ">= 0.91", 10.0: ">= 0.95", 20.0: ">= 0.99"}
+    for strength in STRENGTHS:
+        goal = goals.get(strength, "")
         chosen = [r for r in rows if r.design == "traces" and strength_bin(r) == strength]
         yield _share("exact name", f"traces, d' {strength:g}", chosen, "exact", goal)
     for design, goal in (

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from sonicvacuum import records
-from sonicvacuum_blind import catalogue, foreign, study
+from sonicvacuum_blind import catalogue, design, foreign, study
 from sonicvacuum_blind.hide import Spec, hide, write
 
 CASES = [
@@ -129,8 +129,11 @@ def test_studies_cover_what_is_asked(tmp_path):
     small, full = study.cases("small"), study.cases("full")
     assert len(small) >= 24
     assert len(full) >= 2000
+    assert {s.kind for s in full} == {"null", "single", "pair", "set", "foreign"}
+    assert sum(s.noise == "ar1" for s in full if s.kind == "null") >= 300
+    assert {s.d_prime for s in full if s.design == "traces" and s.kind == "single"} >= {3.0, 500.0}
+    assert {s.design for s in full if s.kind == "pair"} == set(design.KINDS)
     for specs in (small, full):
-        assert {s.kind for s in specs} == {"null", "single", "pair", "foreign"}
         assert len({s.id for s in specs}) == len(specs)
         assert [s.place for s in specs] == list(range(len(specs)))
     assert {s.effects[0] for s in full if s.kind == "single"} == set(catalogue.BY_ID)
@@ -158,3 +161,11 @@ def test_bad_case_lists_name_the_line(tmp_path):
     path.write_text(path.read_text().replace("ar1", "pink"))
     with pytest.raises(Exception, match=r"line 3: case b: noise is 'pink'"):
         study.read_cases(path)
+
+
+def test_an_error_that_takes_the_place_of_its_effect_is_no_end_of_the_study(tmp_path):
+    # A striker 40 standard errors too fast leaves no pulses where rivals of that size are tried.
+    spec = Spec("x", "single", "scalars", "white", ("striker-error",), 40.0, 88_822_325, 684)
+    write(spec, tmp_path / "records", tmp_path / "truth")
+    assert records.read(tmp_path / "records/x").runs
+    assert np.isfinite(truth(tmp_path, "x")["leftover_d_prime"])
