@@ -121,17 +121,21 @@ class Chain:
         check_elastic(modulus, poisson)
         return modulus, poisson, np.array([s.curvature for s in self.solids])
 
-    def _hertz(self, pairs):
-        """(n, lanes) Hertz constants in N/m^{3/2} of (2, n) pairs of `solids`."""
+    @cached_property
+    def _hertz(self):
+        """(2 + n, lanes) Hertz constants in N/m^{3/2}: of contact 0, of the last one, and of the n contacts
+        between neighbouring kinds of beads.
+        """
         modulus, poisson, curvature = self._surfaces
-        one, other = pairs
+        first, last = (1, self.bodies.kind(self.beads) + 1) if self.beads else (-1, 0)
+        between = [(i + 1, j + 1) for i, j in self.bodies.neighbours(self.beads)]
+        one, other = np.array([(0, first), (last, -1), *between]).T
         shared = reduced(modulus[one], poisson[one], modulus[other], poisson[other])
         return hertz_constant(shared, radius_of_curvature(curvature[one] + curvature[other]))
 
-    @cached_property
+    @property
     def _between_beads(self):
-        """(n, lanes) Hertz constants of the contacts between neighbouring kinds of beads."""
-        return self._hertz(np.array(self.bodies.neighbours(self.beads)).T + 1)
+        return self._hertz[2:]
 
     @property
     def stiffness(self) -> np.ndarray:
@@ -143,16 +147,15 @@ class Chain:
         """(lanes,) of the softest contact of two beads."""
         return self._between_beads.min(axis=0)
 
-    @cached_property
+    @property
     def striker_stiffness(self) -> np.ndarray:
         """(lanes,) of contact 0: striker on the first bead, or on the wall when there are no beads."""
-        return self._hertz(self.touching(1))[0]
+        return self._hertz[0]
 
-    @cached_property
+    @property
     def wall_stiffness(self) -> np.ndarray:
         """(lanes,) of the last contact."""
-        last = self.bodies.kind(self.beads) + 1 if self.beads else 0
-        return self._hertz(np.array([[last], [len(self.solids) - 1]]))[0]
+        return self._hertz[1]
 
     @cached_property
     def _bead_masses(self):
@@ -326,6 +329,8 @@ def _broadcast(value, lanes):
     """A number or an array as (lanes,) floats; what is so already as it is, for chains are made often."""
     if isinstance(value, np.ndarray) and value.shape == lanes and value.dtype == float:
         return value
+    if np.ndim(value) == 0:
+        return np.full(lanes, float(value))
     return np.broadcast_to(np.asarray(value, dtype=float), lanes)
 
 
@@ -334,14 +339,7 @@ _ENDS = ("striker", "wall")
 _FIELDS = frozenset(field.name for field in fields(Chain))
 # What the stiffness of contacts that nothing is wrong with does not depend on, and what is worked out of it.
 _BESIDE_CONTACTS = {"speed", "actions", "defects"}
-_OF_CONTACTS = {
-    "solids",
-    "_surfaces",
-    "_between_beads",
-    "striker_stiffness",
-    "wall_stiffness",
-    "_bead_masses",
-}
+_OF_CONTACTS = {"solids", "_surfaces", "_hertz", "_bead_masses"}
 _KEPT = _FIELDS | _OF_CONTACTS
 
 
