@@ -3,6 +3,7 @@
 import dataclasses
 import json
 import re
+import shutil
 from html.parser import HTMLParser
 from xml.etree import ElementTree
 
@@ -127,7 +128,15 @@ def test_the_pictures_are_those_that_the_record_gives(folders, kind):
     expected |= {"scalars"} if kind in WITHOUT_TRACES else {"where", "traces"}
     expected |= {"parameters"} if KINDS[kind].parameters else set()
     assert drawn == expected
-    assert drawn == {path.stem for path in folders[kind].glob("*.png")}
+    assert not list(folders[kind].glob("*.png"))
+
+
+def test_pictures_for_slides_are_drawn_where_they_are_asked_for(folders, tmp_path):
+    found = shutil.copytree(folders["ball"], tmp_path / "found")
+    drawn = {path.stem for path in discovery.draw(found, png=True)}
+    assert drawn == {path.stem for path in found.glob("*.png")}
+    discovery.draw(found)
+    assert not list(found.glob("*.png"))
 
 
 def test_times_do_not_enter_the_page(folders):

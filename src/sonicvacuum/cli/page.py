@@ -8,10 +8,11 @@ from sonicvacuum.cli.helped import PRESENT, verb
 from sonicvacuum.cli.own_effects import catalogue, own_effects
 
 
-@verb("sonicvacuum page found")
+@verb("sonicvacuum page found", "sonicvacuum page --png found")
 @click.argument("folders", nargs=-1, required=True, type=PRESENT)
+@click.option("--png", is_flag=True, help="Each picture as PNG too, for slides and word processors.")
 @own_effects
-def page(folders, own):
+def page(folders, png, own):
     """Draw the pictures of what discover wrote into FOLDERS, and write its page, index.html."""
     from sonicvacuum.files import reading
     from sonicvacuum.records.guard import check_out
@@ -23,15 +24,15 @@ def page(folders, own):
         # What is not a discovery's folder is refused before anything is drawn.
         section(folder, known)
         with reading(folder, "run sonicvacuum discover again"):
-            illustrate(folder, known)
+            illustrate(folder, known, png)
 
 
-def illustrate(folder, known) -> None:
+def illustrate(folder, known, png: bool = False) -> None:
     """Draw the pictures and write the page of one folder; the catalogue `known` holds its effects."""
     from sonicvacuum.figures.discovery import draw
     from sonicvacuum.report.record import write_page
 
-    draw(folder, known)
+    draw(folder, known, png)
     write_page(folder, known)
 
 

@@ -33,12 +33,11 @@ from sonicvacuum.tables import read_csv
 _MOST = 8
 
 
-def draw(folder: Path, catalogue: Catalogue = CATALOGUE) -> list[Path]:
-    """Draw all pictures that the tables in the folder give; the files written (SVG, each with its PNG).
+def draw(folder: Path, catalogue: Catalogue = CATALOGUE, png: bool = False) -> list[Path]:
+    """Draw all pictures that the tables in the folder give; the SVG files written.
 
-    The catalogue knows the effects that are named.
-
-    Those of an earlier verdict that this one does not have are removed.
+    The catalogue knows the effects that are named. With `png` each is kept as PNG as well, which takes as
+    long again. Those of an earlier verdict that this one does not have are removed.
     """
     folder = Path(folder)
     posterior.write_table(folder, catalogue)
@@ -57,11 +56,11 @@ def draw(folder: Path, catalogue: Catalogue = CATALOGUE) -> list[Path]:
         for name, make in pictures.items():
             paths = [folder / f"{name}.{kind}" for kind in ("svg", "png")]
             figure = make()
-            if figure is not None:
-                save(figure, *paths)
-                written.append(paths[0])
-                continue
-            for path in paths:
+            wanted = paths[: 0 if figure is None else 1 + png]
+            if wanted:
+                save(figure, *wanted)
+                written.append(wanted[0])
+            for path in paths[len(wanted) :]:
                 path.unlink(missing_ok=True)
     return written
 
