@@ -4,14 +4,13 @@
 merged, keeps its line with an empty value; the reason stands in `results/absent.csv`.
 """
 
-import csv
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, fields, replace
 from itertools import pairwise
 
-from sonicvacuum.files import InputError, read_text
-from sonicvacuum.tables import write_csv
+from sonicvacuum.files import InputError
+from sonicvacuum.tables import read_lines, write_csv
 
 COLUMNS = ("case", "quantity", "sensor", "value", "unit", "numerical_error")
 REASONED = (*COLUMNS, "reason")
@@ -100,7 +99,7 @@ def read_rows(path, absent_path=None) -> list[Row]:
     Raises:
         InputError: naming file, line and what is wrong.
     """
-    lines = list(csv.reader(read_text(path).splitlines()))
+    lines = read_lines(path)
     if not lines or tuple(lines[0]) not in (COLUMNS, REASONED):
         raise InputError(
             f"{path}: the first line must read {','.join(COLUMNS)}; run sonicvacuum paper observe again"
@@ -114,7 +113,7 @@ def read_rows(path, absent_path=None) -> list[Row]:
 
 def cells_of(path, columns: tuple[str, ...]) -> list[list[str]]:
     """Cells of a CSV file below its first line, which must name `columns`; InputError otherwise."""
-    lines = list(csv.reader(read_text(path).splitlines()))
+    lines = read_lines(path)
     if not lines or tuple(lines[0]) != columns:
         raise InputError(f"{path}: the first line must read {','.join(columns)}")
     for place, cells in enumerate(lines[1:], 2):

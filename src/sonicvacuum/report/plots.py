@@ -4,7 +4,6 @@ A page stays small whatever the record: all its traces together keep `POINTS` sa
 each, and readings are whole numbers of a ten-thousandth of the largest one.
 """
 
-import csv
 import json
 from importlib.resources import files
 from pathlib import Path
@@ -13,6 +12,7 @@ import numpy as np
 from markupsafe import Markup
 
 from sonicvacuum.files import reading
+from sonicvacuum.tables import read_lines
 
 # Samples of all traces, and of one.
 POINTS, LONGEST = 60_000, 2_000
@@ -37,10 +37,9 @@ def plots(path) -> list[dict]:
 def _groups(path):
     """(run, gauge) → its rows as text."""
     found: dict[tuple[str, str], list[list[str]]] = {}
-    with reading(path, "run sonicvacuum discover again"), open(path, encoding="utf-8", newline="") as stream:
-        table = csv.reader(stream, strict=True)
-        next(table, None)
-        for row in table:
+    cure = "run sonicvacuum discover again"
+    with reading(path, cure):
+        for row in read_lines(path, cure)[1:]:
             found.setdefault((row[0], row[1]), []).append(row[2:])
     return found
 
