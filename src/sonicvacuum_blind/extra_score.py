@@ -124,7 +124,7 @@ def _alike(name, effects, confusable):
 
 
 def _closed(fitted, floor):
-    """Of the gap down to the floor; NaN where the hidden effects make none."""
+    """Share of the gap down to the floor that is closed; NaN where the hidden effects make none."""
     gap = fitted["before"] - floor
     return min(1.0, (fitted["before"] - fitted["after"]) / gap) if gap > 0.0 else math.nan
 

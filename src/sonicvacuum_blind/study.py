@@ -17,7 +17,7 @@ from sonicvacuum_blind.hide import Spec
 # a part had been read while the method was mended.
 SEEDS = {"small": 20061, "full": 88_822_325, "training": 20063}
 TRAINING = 300
-# Of single effects in traces of several speeds: d′ → records of each effect.
+# Single effects in traces of several speeds: d′ → records of each effect.
 STRENGTHS = {3.0: 4, 5.0: 5, 7.5: 5, 10.0: 5, 20.0: 5, 50.0: 3, 150.0: 2, 500.0: 2}
 # Other designs than that and one ball: any set-up, one speed, no traces.
 ELSEWHERE = ("varied", "one-speed", "scalars")
