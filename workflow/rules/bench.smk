@@ -22,3 +22,26 @@ rule bench:
         "Measuring all codes in turns; this takes some minutes and wants an idle machine"
     shell:
         "(python workflow/bench/measure.py --out results && python workflow/bench/draw.py results) 2>&1 | tee {log:q}"
+
+
+# Records of the small study and of a part of the training study: some hundred.
+rule nested:
+    input:
+        records=[
+            *expand("results/blind/small/records/{batch}", batch=range(BATCHES["small"])),
+            "results/blind/training/records/0",
+        ],
+        program=home("workflow/bench/nested.py"),
+    output:
+        "results/nested.csv",
+    log:
+        "results/logs/nested.log",
+    conda:
+        ENVIRONMENT
+    params:
+        sources=sources("discover", without=PAGES),
+    message:
+        "Evidence by nested sampling beside that of the search; this takes an hour"
+    shell:
+        'for folder in {input.records:q}; do set -- "$@" "$folder"/*; done;'
+        ' python {input.program:q} "$@" --out {output:q} 2>&1 | tee {log:q}'
