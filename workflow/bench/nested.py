@@ -3,7 +3,7 @@
 For each record its likeliest single explanations as fitted: the same data, nuisances and priors (flat in the
 logarithm of the size in the data for strengths, flat over the bounds for shapes; `discover.fit.evidence`),
 but the integral over strengths and shapes by nested sampling (dynesty: J. S. Speagle, Mon. Not. R. Astron.
-Soc. 493, 3132, 2020), every point simulated, the nuisances at their best for it. One row for each explanation.
+Soc. 493, 3132, 2020), every point simulated, the nuisances at their best for it; a row for each explanation.
 
     python workflow/bench/nested.py RECORD… --out table.csv     (or: make nested)
 """
