@@ -2,8 +2,9 @@
 
 PYTHON ?= python3
 CORES ?= 2
-# Of the full blind study, for `make slurm`.
+# Of the full blind study, for `make slurm`: made on Slurm, and so many of them locally too.
 RECORDS ?= 4
+LOCAL ?= $(RECORDS)
 # Snakemake, also after a run that was killed.
 START = $(BIN)/python workflow/scripts/start.py
 UV_VERSION := 0.13.8
@@ -84,8 +85,9 @@ fuzz: env  ## try 5500 damaged files of every kind that users hand over; table i
 crash: env  ## disturb 60 runs of a small pipeline and let `make` recover; table in results/crash.csv
 	$(BIN)/python workflow/scripts/crash.py --moments 60 --out results/crash.csv
 
-slurm: .venv/clustered  ## a small pipeline and RECORDS of the full study (2034: all) on a Slurm of one node, started here, against a local run
-	$(BIN)/python workflow/scripts/cluster.py --records $(RECORDS) --out results/slurm.csv
+slurm: .venv/clustered  ## a small pipeline and RECORDS of the full study (2052: all) on a Slurm of one node, started here, against a local run
+	$(BIN)/python workflow/scripts/cluster.py --records $(RECORDS) --local $(LOCAL) $(if $(PLACE),--place $(PLACE)) \
+		--out results/slurm.csv
 
 crate: .venv/clustered  ## the finished run as an RO-Crate in results/crate
 	$(BIN)/python workflow/scripts/crate.py --out results/crate

@@ -2,18 +2,22 @@
 
 Four times: undisturbed, with a job put back as by preemption, with a job that is killed, with the node's
 daemon killed in the middle and started again. One row each, exit code 1 where products differ or a run does
-not end well. With `--records`, so many of the full blind study after it (2034: all), see `cluster_study`.
+not end well. With `--records`, so many of the full blind study after it, see `cluster_study`.
 """
 
 import argparse
 import csv
+import shutil
+import signal
 import sys
 import tempfile
 import time
+from contextlib import contextmanager
 from datetime import datetime
 from pathlib import Path
 
 import cluster_study
+import yaml
 from crash import Run, project
 from one_node import Slurm
 from reproduce import unequal
@@ -21,9 +25,12 @@ from reproduce import unequal
 TRIALS = ("undisturbed", "job put back", "job killed", "node fails")
 COLUMNS = ("trial", "exit", "same_bytes", "wall_s", "slurm_jobs", "in_jobs_s", "in_commands_s")
 TARGET = "results/metrics.csv"
+PROFILE = Path("workflow/profiles/slurm")
+# Of the command line they replace those of the profile as a whole.
+RESOURCES = yaml.safe_load((Path(__file__).resolve().parents[2] / PROFILE / "config.yaml").read_text())
 OPTIONS = (
-    "--workflow-profile", "workflow/profiles/slurm",
-    "--default-resources", "slurm_partition=main", "runtime=10", "mem_mb=500",
+    "--workflow-profile", str(PROFILE),
+    "--default-resources", "slurm_partition=main", *RESOURCES["default-resources"],
     "--latency-wait", "20",
     "--slurm-init-seconds-before-status-checks", "5",
     "--slurm-status-command", "squeue",
@@ -101,9 +108,9 @@ def tried(slurm: Slurm, place: Path, trials, stream) -> int:
     return failed
 
 
-def studied(slurm: Slurm, place: Path, records: int, stream) -> int:
+def studied(slurm: Slurm, place: Path, records: int, local: int, stream) -> int:
     """Write the row of the blind study; 1 where it did not end as it should."""
-    row = cluster_study.row(slurm, place, records, OPTIONS, finished)
+    row = cluster_study.row(slurm, place, records, local, OPTIONS, finished)
     table = csv.DictWriter(stream, row, lineterminator="\n")
     table.writeheader()
     table.writerow(row)
@@ -111,25 +118,48 @@ def studied(slurm: Slurm, place: Path, records: int, stream) -> int:
     return int(row["exit"] != 0 or not row["same_bytes"])
 
 
+@contextmanager
+def folder(named: Path | None):
+    """The folder that is named, or one that goes away."""
+    if named:
+        named.mkdir(parents=True, exist_ok=True)
+        for made_anew in ("slurm", "trials"):
+            shutil.rmtree(named / made_anew, ignore_errors=True)
+        yield named.resolve()
+    else:
+        with tempfile.TemporaryDirectory() as name:
+            yield Path(name).resolve()
+
+
 def main() -> int:
     """The table; 1 where a trial did not end as it should."""
+    all_of_it = cluster_study.whole()
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--trials", nargs="*", choices=TRIALS, default=TRIALS)
-    parser.add_argument("--records", type=int, default=0, help="Of the full blind study; 2034 are all.")
+    parser.add_argument(
+        "--records", type=int, default=0, help=f"Of the full blind study; {all_of_it} are all."
+    )
+    parser.add_argument("--local", type=int, help="So many of them locally too; all if not given.")
+    parser.add_argument(
+        "--place", type=Path, help="Folder for the runs, kept: a further start goes on in it."
+    )
     parser.add_argument("--out", type=Path, required=True, help="Table; that of the study gets -study.")
     asked = parser.parse_args()
+    records = min(asked.records, all_of_it)
+    local = records if asked.local is None else max(1, min(asked.local, records))
     failed = 0
+    # Asked to end, it ends its run and its Slurm as after an interruption.
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
     asked.out.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory() as name:
-        place = Path(name).resolve()
+    with folder(asked.place) as place:
         place.chmod(0o755)
         with Slurm(place / "slurm") as slurm:
             if asked.trials:
                 with open(asked.out, "w", newline="") as stream:
-                    failed += tried(slurm, place, asked.trials, stream)
-            if asked.records:
+                    failed += tried(slurm, place / "trials", asked.trials, stream)
+            if records:
                 with open(asked.out.with_stem(f"{asked.out.stem}-study"), "w", newline="") as stream:
-                    failed += studied(slurm, place, asked.records, stream)
+                    failed += studied(slurm, place, records, local, stream)
     return int(failed > 0)
 
 

@@ -1,24 +1,33 @@
 """The full blind study on a Slurm of one node, or the first records of it, held against a local run.
 
-One number says how many records: 2034 is the study as `make study` makes it, in 24 batches; for fewer the
-study is cut into smaller batches, of which the first are made. Records, truths, verdicts and scores must be
-the same to the byte, times excepted.
+Two numbers say how much: records made on Slurm, and how many of these are made locally too. All of them are
+the study as `make study` makes it, in its batches; for fewer the study is cut into smaller batches, of which
+the first are made. Records, truths, verdicts and scores must be the same to the byte, times excepted. Both
+runs stand in folders that are kept where one is named: a further start goes on in them.
 """
 
 import csv
+import json
 import math
+import shutil
+from functools import cache
 from pathlib import Path
 
 from crash import Run, project
 from one_node import Slurm
 from reproduce import equal
 
-RECORDS, BATCHES = 2034, 24
-TARGET = "results/blind/full/score.csv"
+from sonicvacuum_blind import study
+
+# As in workflow/rules/blind_common.smk.
+BATCHES = 48
+STUDY = "results/blind/full"
+TARGET = f"{STUDY}/score.csv"
 COLUMNS = (
     "records",
     "batches",
     "exit",
+    "compared",
     "same_bytes",
     "slurm_jobs",
     "in_jobs_s",
@@ -27,10 +36,19 @@ COLUMNS = (
 )
 
 
-def size(records: int) -> tuple[str, ...]:
-    """Options of Snakemake for so many records, two jobs at least."""
-    batch = min(math.ceil(RECORDS / BATCHES), math.ceil(records / 2))
-    parts = {"full_batches": math.ceil(RECORDS / batch), "full_taken": math.ceil(records / batch)}
+@cache
+def whole() -> int:
+    """Records of the full study."""
+    return len(study.cases("full"))
+
+
+def size(records: int, made: int) -> tuple[str, ...]:
+    """Options of Snakemake for the batches that hold the first `made` records of a study of `records`.
+
+    A batch is one of the full study's, or half of the records if that is less.
+    """
+    batch = min(math.ceil(whole() / BATCHES), math.ceil(records / 2))
+    parts = {"full_batches": math.ceil(whole() / batch), "full_taken": math.ceil(made / batch)}
     # The last option ends the list of the first, so that the target is not taken for one of it.
     return ("--config", *(f"{key}={value}" for key, value in parts.items()), "--nocolor")
 
@@ -42,23 +60,32 @@ def untimed(path: Path) -> list[dict]:
     return [row for row in rows if row.get("measure") != "seconds per record"]
 
 
-def unequal(one: Path, other: Path) -> list[str]:
-    """Files of the study that are missing on one side or differ in more than times."""
-    studies = [folder / "results/blind/full" for folder in (one, other)]
+def unequal(all_of_it: Path, part: Path) -> list[str]:
+    """Files that one folder holds of the study's batches in another, missing or different in more than times.
+
+    Tables over all records are compared where both folders hold the same batches; of the scores, those of
+    the records that both hold.
+    """
+    ours, theirs = (folder / STUDY for folder in (all_of_it, part))
+    batches = {path.name for path in (theirs / "records").iterdir()}
     mine, yours = (
-        {p.relative_to(s).as_posix() for p in s.rglob("*") if p.is_file() and p.name != "seconds.csv"}
-        for s in studies
+        {
+            path.relative_to(s)
+            for kind in s.iterdir()
+            if kind.is_dir()
+            for path in kind.rglob("*")
+            if path.is_file()
+        }
+        for s in (ours, theirs)
     )
-    differ = {
-        p
-        for p in mine & yours
-        if (
-            untimed(studies[0] / p) != untimed(studies[1] / p)
-            if "/" not in p
-            else not equal(studies[0] / p, studies[1] / p)
-        )
-    }
-    return sorted(differ | (mine ^ yours))
+    mine = {path for path in mine if path.parts[1] in batches}
+    differ = (mine ^ yours) | {path for path in mine & yours if not equal(ours / path, theirs / path)}
+    if batches == {path.name for path in (ours / "records").iterdir()}:
+        tables = {p.name for s in (ours, theirs) for p in s.glob("*.csv")} - {"seconds.csv"}
+        differ |= {Path(name) for name in tables if untimed(ours / name) != untimed(theirs / name)}
+    elif not all(row in untimed(ours / "score.csv") for row in untimed(theirs / "score.csv")):
+        differ.add(Path("score.csv"))
+    return sorted(map(str, differ))
 
 
 def processor_s(folder: Path) -> float:
@@ -67,29 +94,52 @@ def processor_s(folder: Path) -> float:
     return sum(float(next(csv.DictReader(path.open(), delimiter="\t"))["cpu_time"]) for path in tables)
 
 
-def row(slurm: Slurm, place: Path, records: int, options: tuple[str, ...], finished) -> dict:
+def kept(folder: Path) -> Path:
+    """The folder of a run: made at its first start, and as it was left at each further one."""
+    if not folder.exists():
+        partial = folder.with_name(f".{folder.name}.partial")
+        shutil.rmtree(partial, ignore_errors=True)
+        project(partial).rename(folder)
+    return folder
+
+
+def ended(slurm: Slurm, place: Path, before, finished) -> dict[str, float]:
+    """Jobs of this and of earlier starts in a folder → seconds each took; written beside the runs."""
+    path = place / "jobs.json"
+    earlier = json.loads(path.read_text()) if path.exists() else {}
+    # Numbers of jobs begin anew with each Slurm.
+    new = {f"{len(earlier)}+{n}": took for n, took in finished(slurm).items() if n not in before}
+    path.write_text(json.dumps(earlier | new, indent=1))
+    return earlier | new
+
+
+def row(slurm: Slurm, place: Path, records: int, local: int, options: tuple[str, ...], finished) -> dict:
     """One row of `COLUMNS`; the run on Slurm in a folder of its own beside the local one.
 
     Args:
         slurm: at work.
         place: folder that both runs are made in.
         records: how many.
+        local: how many of these are made locally too, and compared.
         options: of Snakemake, to run on this Slurm.
         finished: call, job of this Slurm that has ended → seconds that it took.
     """
-    local = Run(project(place / "study-local"), TARGET, *size(records))
-    if local.end():
-        raise SystemExit(f"the local run failed:\n{local.log.read_text()[-4000:]}")
     before = finished(slurm)
-    run = Run(project(place / "study"), TARGET, *options, *size(records), environment=slurm.environment)
-    code = run.end()
+    options = (*options, *size(records, records))
+    run = Run(kept(place / "study"), TARGET, *options, environment=slurm.environment)
+    try:
+        code = run.end()
+    finally:
+        took = ended(slurm, place, before, finished)
     if code:
-        print(run.log.read_text()[-4000:])
-    different = unequal(place / "study-local", place / "study")
+        raise SystemExit(f"the run on Slurm failed:\n{run.log.read_text()[-4000:]}")
+    beside = Run(kept(place / "study-local"), TARGET, *size(records, local))
+    if beside.end():
+        raise SystemExit(f"the local run failed:\n{beside.log.read_text()[-4000:]}")
+    different = unequal(place / "study", place / "study-local")
     print("".join(f"  differs: {path}\n" for path in different), end="")
-    took = [seconds for number, seconds in finished(slurm).items() if number not in before]
-    made = len(untimed(place / "study-local" / TARGET))
-    each = processor_s(place / "study-local") / made
-    batches = len(list((place / "study-local/results/blind/full/verdicts").iterdir()))
-    values = (made, batches, code, not different, len(took), sum(took), round(each, 1))
-    return dict(zip(COLUMNS, (*values, round(each * RECORDS / 3600.0, 2)), strict=True))
+    made, compared = (len(untimed(place / name / TARGET)) for name in ("study", "study-local"))
+    each = processor_s(place / "study") / made
+    batches = len(list((place / "study" / STUDY / "verdicts").iterdir()))
+    values = (made, batches, code, compared, not different, len(took), sum(took.values()), round(each, 1))
+    return dict(zip(COLUMNS, (*values, round(each * whole() / 3600.0, 2)), strict=True))

@@ -141,8 +141,13 @@ class Run:
             return
 
     def end(self) -> int:
-        """Exit code; negative where a signal ended it."""
-        return self.process.wait()
+        """Exit code; negative where a signal ended it. An interruption is handed on and waited for."""
+        try:
+            return self.process.wait()
+        except KeyboardInterrupt:
+            self.disturb("interrupt")
+            self.process.wait()
+            raise
 
 
 def jobs(group: int) -> Iterator[int]:

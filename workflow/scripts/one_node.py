@@ -35,7 +35,7 @@ SelectType=select/cons_tres
 SelectTypeParameters=CR_Core
 AccountingStorageType=accounting_storage/none
 JobAcctGatherType=jobacct_gather/none
-MinJobAge=3600
+MinJobAge=604800
 SlurmdTimeout=20
 ReturnToService=2
 JobRequeue=1
@@ -98,6 +98,8 @@ class Slurm:
         return self
 
     def __exit__(self, *_) -> None:
+        if "slurmctld" in self.running:
+            self.call("scancel", "--user", _user())
         for name in reversed(DAEMONS):
             self.kill(name)
 
