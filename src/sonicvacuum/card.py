@@ -29,7 +29,8 @@ from sonicvacuum.laboratory.specimen import Bead, Material, NonNegative, Positiv
 GaugeKind = Annotated[str, Meta(extra_json_schema={"enum": list(KINDS)})]
 # What stands beside the gauges in the table of a card's traces.
 COLUMNS = {checks.TIME: "times", "run": "numbers of runs", "speed_m_s": "striker's speeds"}
-Name = Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]*$")]
+# Part of a file's name; without (?!\n), $ would let a new line stand at the end.
+Name = Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]*(?!\n)$", max_length=100)]
 
 
 class _Block(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

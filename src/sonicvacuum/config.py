@@ -103,9 +103,10 @@ def card(config: Config, case: str, variant: str, path="config.yaml") -> Card:
     ):
         raise InputError(f"{path}: cases.{case}.variants: expected name: {{overrides}}, one line each")
     for name in variant_names(written):
-        if not (isinstance(name, str) and re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_-]*", name)):
+        if not (isinstance(name, str) and re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_-]{,99}", name)):
             raise InputError(
-                f"{path}: cases.{case}.variants: {name!r} becomes a file's name: use letters, digits, _ and -"
+                f"{path}: cases.{case}.variants: {name!r} becomes a file's name: use letters, digits, _, - "
+                "(at most 100)"
             )
     if variant not in variant_names(written):
         known = ", ".join(variant_names(written))

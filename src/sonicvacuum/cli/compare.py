@@ -7,6 +7,7 @@ import click
 from sonicvacuum.cli import existing
 from sonicvacuum.cli.helped import WRITTEN, verb
 from sonicvacuum.cli.own_effects import catalogue, own_effects
+from sonicvacuum.files import in_one_line
 
 
 @verb("sonicvacuum compare other-record --model found/model.json --json score.json")
@@ -29,4 +30,4 @@ def compare(record, model, path, threads, own):
     found = scoring.read_model(model, known)
     score = scoring.compare(found, read(record), threads or available_threads(), known)
     write_json(score, Path(path))
-    click.echo(f"{record}: {score.gap.before:.3g} before, {score.gap.after:.3g} after, floor 1")
+    click.echo(f"{in_one_line(record)}: {score.gap.before:.3g} before, {score.gap.after:.3g} after, floor 1")

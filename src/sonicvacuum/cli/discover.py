@@ -9,6 +9,7 @@ import click
 
 from sonicvacuum.cli.helped import FOLDER, verb
 from sonicvacuum.cli.own_effects import catalogue, own_effects
+from sonicvacuum.files import in_one_line
 
 
 @verb(
@@ -73,8 +74,8 @@ def discover(records, out, together, figures, threads, own, quiet, no_limits):
                 illustrate(fresh, known)
         if not quiet:
             for note in result.notes:
-                click.echo(f"{', '.join(paths)}: {note}")
-        click.echo(f"{', '.join(paths)}: {_sentence(result.verdict)}")
+                click.echo(in_one_line(f"{', '.join(paths)}: {note}"))
+        click.echo(in_one_line(f"{', '.join(paths)}: {_sentence(result.verdict)}"))
 
 
 @contextmanager

@@ -4,6 +4,7 @@ import click
 
 from sonicvacuum.cli.helped import FOLDER, examples
 from sonicvacuum.cli.scope import import_
+from sonicvacuum.files import in_one_line
 
 
 @click.group(epilog=examples("sonicvacuum record check my-record"))
@@ -17,7 +18,7 @@ def new(folder):
     """Write a commented record.yaml into FOLDER."""
     from sonicvacuum.records import commands
 
-    click.echo(commands.new(folder))
+    click.echo(in_one_line(str(commands.new(folder))))
 
 
 @record.command(

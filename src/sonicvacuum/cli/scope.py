@@ -6,6 +6,7 @@ import sys
 import click
 
 from sonicvacuum.cli.helped import FOLDER, verb
+from sonicvacuum.files import in_one_line
 
 
 @verb(
@@ -62,7 +63,7 @@ def import_(files, listed, as_json, out, like, template, title, force, **given):
 
     chosen = options(**given)
     done = importing.import_files(files, out, chosen, like=like, record=template, title=title, force=force)
-    click.echo("\n".join(done))
+    click.echo("\n".join(map(in_one_line, done)))
 
 
 def _list(files, as_json):
@@ -73,6 +74,6 @@ def _list(files, as_json):
     click.echo(json.dumps(entries, indent=1, ensure_ascii=False) if as_json else listing.text(entries))
     refused = [e["refused"] for e in entries if "refused" in e]
     for reason in refused:
-        click.echo(f"Error: {reason}", err=True)
+        click.echo(f"Error: {in_one_line(reason)}", err=True)
     if refused:
         sys.exit(2)

@@ -17,7 +17,8 @@ from sonicvacuum.laboratory.blocks import ChainBlock, MaterialBlock, StrikerBloc
 from sonicvacuum.laboratory.specimen import NonNegative, Positive
 
 # Names of gauges and runs: they become column headings and file names.
-Id = Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9_.+-]*$")]
+# Without (?!\n), $ would let a new line stand at the end.
+Id = Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9_.+-]*(?!\n)$")]
 FileName = Annotated[str, Meta(pattern=r"^[^/\\.][^/\\]*$")]
 # An error that is not known at all: the gain of an uncalibrated gauge, the time zero of a free-running clock.
 Unknown = Literal["unknown"]

@@ -45,7 +45,7 @@ def summary(record: Record, seen: "Review") -> str:
 
     gauges = ", ".join(f"{g.id} ({'wall' if g.bead is None else f'bead {g.bead}'})" for g in record.gauges)
     said = [
-        f"{record.name}: {record.title}",
+        f"{record.name}: {' '.join(record.title.split())}",
         f"  {chain_of(record)}; gauges: {gauges or 'none'}",
         *(
             line

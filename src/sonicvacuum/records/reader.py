@@ -4,7 +4,7 @@ import hashlib
 import re
 from pathlib import Path
 
-from sonicvacuum.files import InputError, check_values, convert, read_yaml
+from sonicvacuum.files import InputError, check_values, convert, in_one_line, read_yaml
 from sonicvacuum.gauges import KINDS
 from sonicvacuum.laboratory.checks import TIME
 from sonicvacuum.laboratory.ranges import FORCE, LONGEST_INTERVAL, SHORTEST_RECORD, LaboratoryError
@@ -44,6 +44,8 @@ def read(path) -> Record:
         folder = folder.parent
     if not folder.is_dir():
         raise InputError(f"{path}: no such folder; give the folder that holds {FILE}")
+    if in_one_line(name := folder.resolve().name) != name:
+        raise InputError(f"{path}: the folder's name holds control characters; rename it")
     file = folder / FILE
     if not file.is_file():
         raise InputError(f"{folder}: has no {FILE}; sonicvacuum record new {folder} writes one to fill in")
@@ -51,7 +53,7 @@ def read(path) -> Record:
     ids = [s.id for s in block.sensors]
     traces = {r.id: signals.read(folder / r.signals, ids) for r in block.runs if r.signals}
     files = dict.fromkeys([file, *(folder / r.signals for r in block.runs if r.signals)])
-    record = Record(block, traces, folder.resolve().name, _digest(files))
+    record = Record(block, traces, name, _digest(files))
     for run in block.runs:
         if run.signals:
             check_scales(record, run.id, folder / run.signals)

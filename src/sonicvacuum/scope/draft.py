@@ -5,7 +5,7 @@ from pathlib import Path
 import msgspec
 import yaml
 
-from sonicvacuum.files import InputError, read_yaml
+from sonicvacuum.files import InputError, in_one_line, read_yaml
 from sonicvacuum.records import writer
 from sonicvacuum.records.blocks import RecordBlock, RecordSensorBlock
 from sonicvacuum.records.reader import FILE
@@ -144,16 +144,21 @@ def text(record: dict, runs: list[CleanRun], options: Options) -> str:
     ]
     parts.append(_yaml(chain) if "chain" in chain else _CHAIN + (_yaml(chain) if chain else ""))
     parts.append("# Positive readings = compression. sigma: white noise of one sample, estimated at rest.\n")
-    parts += [f"# {line}\n" for line in _gauge_remarks(record, runs, options)]
+    parts += [_comment(line) for line in _gauge_remarks(record, runs, options)]
     parts.append(_yaml({"sensors": record["sensors"]}))
     if any(r.zero_sigma_s is None for r in runs):
         parts.append("# The moment of impact is not known (--impact-at gives it): time zero is free.\n")
     parts.append(_yaml({"trigger_sigma_us": record["trigger_sigma_us"]}))
-    parts += [f"# To be filled in: {line}\n" for line in _striker_gaps(record)]
+    parts += [_comment(f"To be filled in: {line}") for line in _striker_gaps(record)]
     parts.append(_yaml({"runs": record["runs"]}))
     for run in runs:
-        parts.append(f"# Run {run.id}:\n" + "".join(f"#   {note}\n" for note in run.notes))
+        parts += [_comment(f"Run {run.id}:"), *(_comment(f"  {note}") for note in run.notes)]
     return "".join(parts)
+
+
+def _comment(text):
+    """A line of YAML that says nothing to a reader of the format, whatever a file's name holds."""
+    return f"# {in_one_line(text)}\n"
 
 
 def _gauge_remarks(record, runs, options):

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from sonicvacuum.files import InputError
+from sonicvacuum.files import InputError, in_one_line
 from sonicvacuum.scope.reader import read
 from sonicvacuum.scope.recording import Channel
 from sonicvacuum.scope.timebase import tidy
@@ -60,7 +60,7 @@ def text(entries: list[dict[str, Any]]) -> str:
         ]
         said = dict.fromkeys(n for c in entry["channels"] for n in c["notes"])
         lines += [f"    note: {n}" for n in said]
-    return "\n".join(line.rstrip() for line in lines)
+    return "\n".join(in_one_line(line.rstrip()) for line in lines)
 
 
 def _row(channel):
