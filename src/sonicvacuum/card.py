@@ -102,7 +102,7 @@ class CardStriker(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
 class CardSensor(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A gauge as a card's file holds it: `gauge` is the gauge itself."""
 
-    id: str
+    id: Name
     kind: str
     bead: int | None = None
     droop_s: Positive | None = None
@@ -131,8 +131,8 @@ class Card(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """
 
     format: Literal[1] = 1
-    case: str
-    variant: str
+    case: Name
+    variant: Name
     title: str
     beads: Annotated[int, Meta(ge=1)]
     bead: Bead

@@ -3,6 +3,7 @@
 A study is a fixed list: case k of a study of one seed is the same whatever else is made, on any machine.
 """
 
+import re
 from collections.abc import Iterable
 from dataclasses import asdict, fields
 
@@ -152,7 +153,20 @@ def read_cases(path) -> list[Spec]:
     """
     names = [f.name for f in fields(Spec)]
     rows = read_csv(path, f"write {','.join(names)} and one line for each case", names)
+    seen: dict[str, int] = {}
+    for line, row in enumerate(rows, start=2):
+        _check_id(row["id"], seen.setdefault(row["id"].lower(), line), path, line)
     return [_spec(row, path, line) for line, row in enumerate(rows, start=2)]
+
+
+def _check_id(name, first, path, line):
+    """Ids become folders: none outside of those that are written, and no two of them one."""
+    if not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_.+-]{,99}", name):
+        raise InputError(
+            f"{path}, line {line}: id is {name!r}; a folder is called so: use letters, digits and _ . + -"
+        )
+    if first != line:
+        raise InputError(f"{path}, line {line}: id {name} stands in line {first} already; rename one")
 
 
 def _spec(row, path, line):

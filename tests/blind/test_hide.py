@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from sonicvacuum import records
+from sonicvacuum.files import InputError
 from sonicvacuum_blind import catalogue, design, foreign, study
 from sonicvacuum_blind.hide import Spec, hide, write
 
@@ -160,6 +161,14 @@ def test_bad_case_lists_name_the_line(tmp_path):
     study.write_cases(CASES[:2], path)
     path.write_text(path.read_text().replace("ar1", "pink"))
     with pytest.raises(Exception, match=r"line 3: case b: noise is 'pink'"):
+        study.read_cases(path)
+
+
+@pytest.mark.parametrize("name", ["../../a", "/a", "..", "", "a/b", "a\nb", "a\n", "A"])
+def test_a_case_is_written_nowhere_else(tmp_path, name):
+    path = tmp_path / "cases.csv"
+    study.write_cases([CASES[0], replace(CASES[1], id=name)], path)
+    with pytest.raises(InputError, match=r"cases.csv, line 3: id "):
         study.read_cases(path)
 
 

@@ -13,6 +13,7 @@ from sonicvacuum.cli import cli
 from sonicvacuum.files import InputError
 from sonicvacuum.records import read as read_record
 from sonicvacuum.records.checks import check
+from sonicvacuum.scope import listing
 from sonicvacuum.scope.importing import import_files
 from sonicvacuum.scope.options import options
 
@@ -130,6 +131,16 @@ def test_a_run_has_the_name_of_its_file_and_that_of_the_given_record_is_missed(t
         said = import_files([file], tmp_path / id, options(), record=given)
         assert (tmp_path / id / "shot1.csv").exists()
         assert any("no file is called like v044" in line and "--run v044=" in line for line in said) == missed
+
+
+def test_a_name_of_a_file_writes_no_key_into_the_record(tmp_path):
+    file = tmp_path / "shot\x1b[31m\nmaterials: {evil: 1}\n.csv"
+    file.write_bytes(one_channel(PULSE))
+    import_files([file], tmp_path / "r", options())
+    written = (tmp_path / "r/record.yaml").read_text()
+    assert "materials" not in yaml.safe_load(written)
+    assert "\x1b" not in written
+    assert "\x1b" not in listing.text(listing.listing([file]))
 
 
 def test_lost_and_clipped_samples(tmp_path):

@@ -200,6 +200,8 @@ DAMAGED_CARDS = [
     (["sensors", 1, "id"], "g1", r"sensors\[1\].id.*'g1'"),
     (["sensors", 1, "id"], "wall\n", r"sensors\[1\].id"),
     (["sensors", 1, "kind"], "ear", r"sensors\[1\].kind.*'ear'"),
+    (["case"], "../c", "case: is '../c'"),
+    (["title"], "a\x1b[31m", "title.*control characters"),
     (["wall", "poisson"], 0.7, "wall.poisson.*0.7"),
     (["bead", "surface", "poisson"], -1.0, "bead.surface.poisson"),
     (["bead", "core"], None, "bead: coating_um is given without core"),

@@ -41,6 +41,14 @@ def test_a_whole_crate_has_no_fault(folder):
     assert crate.faults(folder) == []
 
 
+def test_a_folder_of_any_name_is_found(folder):
+    (folder / "a b #%41 ü").mkdir()
+    (folder / "ledger.csv").rename(folder / "a b #%41 ü/ledger.csv")
+    path = folder / "ro-crate-metadata.json"
+    path.write_text(path.read_text().replace("ledger.csv", "a%20b%20%23%2541%20%C3%BC/ledger.csv"))
+    assert crate.faults(folder) == []
+
+
 def test_a_product_that_was_changed_or_lost_is_named(folder):
     (folder / "ledger.csv").write_text("claim,verdict\nx,agrees\n")
     assert crate.faults(folder) == ["ledger.csv: not the file that is described"]

@@ -210,6 +210,15 @@ def test_the_readme_in_git_shows_the_ledger_in_git(pytestconfig):
     assert publish.with_part(readme, "results", publish.summary(ledger)) == readme
 
 
+def test_words_of_a_ledger_stay_in_their_cell(pytestconfig):
+    ledger = tables.read_ledger(pytestconfig.rootpath / "workflow/resources/reference/ledger.csv")
+    for column in ("claim", "reason"):
+        ledger[column] = "a | b\n<script>x</script> <!-- end of results -->"
+    text = publish.summary(ledger)
+    assert "<script" not in text and "<!--" not in text
+    assert " | b" not in text
+
+
 def test_the_headlines_are_claims(pytestconfig):
     claims = tables.read(pytestconfig.rootpath / "workflow/resources/claims.csv", CLAIMS)
     assert set(tables.FIRST) <= set(claims["claim"])

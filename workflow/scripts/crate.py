@@ -12,6 +12,7 @@ from collections.abc import Iterable
 from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
+from urllib.parse import unquote
 
 import yaml
 
@@ -118,7 +119,7 @@ def faults(folder: Path) -> list[str]:
     ]
     for name, about in entities.items():
         if "sha256" in about:
-            path = folder / name
+            path = folder / unquote(name)  # an id is an address: spaces and the like are escaped in it
             if not path.is_file():
                 found.append(f"{name}: missing")
             elif hashlib.sha256(path.read_bytes()).hexdigest() != about["sha256"]:

@@ -10,6 +10,7 @@ command; exit code 1 where one told a traceback, ended otherwise than interrupte
 import argparse
 import csv
 import json
+import math
 import os
 import re
 import shutil
@@ -43,7 +44,6 @@ OTHERS = {
     "record import": "record import docs/example/shot1.csv --record docs/example/chain.yaml --impact-at 0us "
     "--channel CH1=g5 --channel CH2=g11 --channel CH3=wall --scale g5=25N/V --scale g11=25N/V "
     "--scale wall=50N/V --out made/scope",
-    "discover --together": "discover --together results/blind/small/records/0/* --out made/together",
     "page (verdict)": f"page results/discover/{Path(MEASURED).name}-coated",
     "compare": f"compare {MEASURED}-coated --model results/discover/{Path(MEASURED).name}-coated/model.json "
     "--json made/score.json",
@@ -167,6 +167,16 @@ def changes(folder: Path, before: dict[Path, tuple], kept: Path) -> list[str]:
     return found
 
 
+def renewed(folder: Path, line: str, kept: Path, environment: dict) -> None:
+    """Let a command make its products anew, undisturbed: the finished run may be of other sources."""
+    before = state(kept)
+    interrupted(kept, line, math.inf, environment)
+    after = state(kept)
+    shutil.rmtree(kept / "made", ignore_errors=True)
+    for path in sorted(path for path in after if path.exists() and before.get(path) != after[path]):
+        shutil.copy2(path, folder / path.relative_to(kept))
+
+
 def row(name: str, line: str, folder: Path, kept: Path, moments, cache: Path | None = None) -> dict:
     """One command at all its moments, until it ends by itself before one.
 
@@ -183,7 +193,12 @@ def row(name: str, line: str, folder: Path, kept: Path, moments, cache: Path | N
             shutil.rmtree(cache, ignore_errors=True)
         before = state(folder)
         result = interrupted(folder, line, moment, environment)
-        wrong += [f"at {moment} s: {fault}" for fault in faults(result, changes(folder, before, kept))]
+        if changed := changes(folder, before, kept):
+            renewed(folder, line, kept, environment)
+            before = state(folder)
+            result = interrupted(folder, line, moment, environment)
+            changed = changes(folder, before, kept)
+        wrong += [f"at {moment} s: {fault}" for fault in faults(result, changed)]
         if not result["running"]:
             if result["code"]:
                 wrong.append(f"failed without an interruption: {result['said'][-300:]}")

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
-from sonicvacuum.files import InputError, explain, read_text
+from sonicvacuum.files import InputError, check_values, explain, read_text
 
 if TYPE_CHECKING:
     from sonicvacuum.card import Card
@@ -19,6 +19,7 @@ def read_card(path) -> "Card":
     text = read_text(path).encode()
     try:
         found = load(text)
+        check_values(_plain(text), path)
         check(found)
         return found
     except msgspec.ValidationError as error:

@@ -23,15 +23,24 @@ def summary(ledger: pd.DataFrame) -> str:
         "| printed | " + " | ".join(ladder.title(c) for c in models) + " |",
         "|---|" + "---:|" * len(models),
     ]
-    lines += [f"| {row['printed']} | " + " | ".join(row["cells"]) + " |" for row in tables.first(ledger)]
+    lines += [
+        f"| {' | '.join(map(_cell, (row['printed'], *row['cells'])))} |" for row in tables.first(ledger)
+    ]
     totals = {t.model: t for t in ladder.totals(ledger.to_dict("records"))}
     for part, name in (("agrees", "agrees"), ("fitted", "fitted to it"), ("excluded", "excluded by")):
         cells = [str(getattr(totals[c], part)) if c in totals else "–" for c in models]
         lines.append(f"| *statements: {name}* | " + " | ".join(cells) + " |")
     lines.append("| *free parameters* | " + " | ".join(ladder.MODELS[c].free for c in models) + " |")
     lines += ["", "Where paper and layer disagree, largest difference first:", ""]
-    lines += [f"* `{row.claim}`: {row.reason}" for row in tables.disagreements(ledger).itertuples()]
+    lines += [
+        f"* `{_cell(row.claim)}`: {_cell(row.reason)}" for row in tables.disagreements(ledger).itertuples()
+    ]
     return "\n".join(lines)
+
+
+def _cell(text):
+    """A text of a table as one cell or line of Markdown, in which nothing of it is a tag or a border."""
+    return re.sub(r"<(?=[A-Za-z/!?])", "&lt;", " ".join(text.split()).replace("|", "\\|"))
 
 
 def with_part(readme: str, name: str, text: str, path="README.md") -> str:
