@@ -21,7 +21,7 @@ COMPILE := pip compile --quiet --universal --generate-hashes --no-emit-index-url
 	--custom-compile-command "make lock"
 
 .DELETE_ON_ERROR:
-.PHONY: always all env test browser bare fuzz crash slurm crate generic reproduce bench nested study slips extras docs lock clean help
+.PHONY: always all env test browser bare fuzz crash interrupt slurm crate generic reproduce bench nested study slips extras docs lock clean help
 
 all: env  ## build the environment, then run the whole pipeline
 	$(START) --cores $(CORES)
@@ -84,6 +84,9 @@ fuzz: env  ## try 5500 damaged files of every kind that users hand over; table i
 
 crash: env  ## disturb 60 runs of a small pipeline and let `make` recover; table in results/crash.csv
 	$(BIN)/python workflow/scripts/crash.py --moments 60 --out results/crash.csv
+
+interrupt: env  ## interrupt every verb at several moments, on the finished run in results/; table in results/interrupt.csv
+	$(BIN)/python workflow/scripts/interrupt.py --out results/interrupt.csv
 
 slurm: .venv/clustered  ## a small pipeline and RECORDS of the full study (2052: all) on a Slurm of one node, started here, against a local run
 	$(BIN)/python workflow/scripts/cluster.py --records $(RECORDS) --local $(LOCAL) $(if $(PLACE),--place $(PLACE)) \

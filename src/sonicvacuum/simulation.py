@@ -138,13 +138,17 @@ def recorded_contacts(card: Card) -> tuple[int, ...]:
     return (*range(min(inside) - 1, max(inside) + 1), card.beads)
 
 
+def extent(card: Card, catalogue: Catalogue = CATALOGUE) -> Extent:
+    """What simulating a card, at the chosen step and at half of it, asks for: steps, samples, memory."""
+    chain, contacts = set_up(card, catalogue=catalogue).chain, len(recorded_contacts(card))
+    return estimate(chain, contacts, card.duration_s, card.interval_s, copies=3)
+
+
 def check_extent(card: Card, catalogue: Catalogue = CATALOGUE) -> None:
     """InputError for a card that asks for more than a computer gives, see `physics.extent`."""
     try:
         Extent(card.beads, 1.0, 1.0, 1.0).check()  # before anything is made for each bead
-        chain, contacts = set_up(card, catalogue=catalogue).chain, len(recorded_contacts(card))
-        # At the step and at half of it.
-        estimate(chain, contacts, card.duration_s, card.interval_s, copies=3).check()
+        extent(card, catalogue).check()
     except TooLargeError as error:
         raise InputError(f"{card.name}: {error}") from None
 

@@ -8,6 +8,11 @@ from sonicvacuum.cli.helped import WRITTEN, verb
 from sonicvacuum.cli.own_effects import catalogue, own_effects
 from sonicvacuum.outputs import check_apart
 
+# Steps of a bead that a core does in a second, from a chain in many runs to a long one; told from so many on.
+RATES = (5e7, 5e8)
+LONG = 2e9
+LARGE = 1 << 30  # bytes
+
 
 @verb("sonicvacuum simulate card.json --out history.npz")
 @click.argument("card", type=existing())
@@ -31,8 +36,25 @@ def simulate(card, model, no_limits, out, own):
         from sonicvacuum.cli.model import with_model
 
         resolved = with_model(resolved, model, known)
+    _tell_beforehand(resolved, known, not no_limits)
     with progress():
         simulated = simulation.simulate(resolved, known, limits=not no_limits)
     for told in simulated.warnings:
         click.echo(f"Warning: {resolved.name}: {told}", err=True)
     simulation.save(simulated, out)
+
+
+def _tell_beforehand(card, known, limits):
+    """What a long or large simulation asks for, on standard error; InputError beyond the ceilings."""
+    from sonicvacuum import simulation
+
+    if limits:
+        simulation.check_extent(card, known)
+    asked = simulation.extent(card, known)
+    if asked.work > LONG or asked.memory > LARGE:
+        least, most = (asked.work / rate for rate in reversed(RATES))
+        click.echo(
+            f"{card.name}: {asked.work:.2g} steps of a bead, some {least:.3g} to {most:.3g} s of one core; "
+            f"{asked.memory / 2**30:.2g} GiB of memory",
+            err=True,
+        )
