@@ -107,7 +107,9 @@ def test_a_verb_that_is_still_starting_ends_without_a_word(moment, tmp_path):
     found = interrupt.interrupted(tmp_path, line, moment, dict(os.environ))
     assert found["code"] in (*interrupt.CODES, 0)
     assert interrupt.faults(found, []) == []
-    assert list(tmp_path.iterdir()) == [] or found["code"] == 0
+    written = [path for path in tmp_path.rglob("*") if path.is_file()]
+    assert [path.name for path in written] in ([], ["shown.svg"])
+    assert all(path.read_text().endswith("</svg>\n") for path in written)
 
 
 def test_errors_of_the_work_arrive():
