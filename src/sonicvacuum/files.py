@@ -144,16 +144,19 @@ def read_text(path: str | os.PathLike) -> str:
 def read_yaml(path: str | os.PathLike) -> dict[str, Any]:
     """Mapping of a YAML file; InputError names the line at fault.
 
-    Faults are also keys that stand twice, and more than a hand-written file holds (`LARGEST_YAML`,
-    `MOST_VALUES`, `DEEPEST`): aliases let a few lines stand for more values than a computer holds.
+    Faults are also keys that stand twice, numbers that are not decimal (`strict_yaml`), and more than a
+    hand-written file holds (`LARGEST_YAML`, `MOST_VALUES`, `DEEPEST`): aliases let a few lines stand for more
+    values than a computer holds.
     """
     import yaml
+
+    from sonicvacuum.strict_yaml import loader_of
 
     check_file(path)
     if os.path.getsize(path) > LARGEST_YAML:
         raise InputError(f"{path}: larger than {LARGEST_YAML >> 20} MB; leave out what does not belong here")
     try:
-        loader = _loader(path)(read_text(path))
+        loader = loader_of(path)(read_text(path))
         node = loader.get_single_node()
         _check_extent(node, path)
         content = loader.construct_document(node) if node else None
@@ -167,28 +170,6 @@ def read_yaml(path: str | os.PathLike) -> dict[str, Any]:
     if not isinstance(content, dict):
         raise InputError(f"{path}: expected keys and values at the top level, found {type(content).__name__}")
     return content
-
-
-def _loader(path):
-    """Class of a safe YAML loader that refuses keys that stand twice."""
-    import yaml
-
-    class Loader(yaml.SafeLoader):
-        pass
-
-    def mapping(loader, node):
-        seen = {}
-        for key_node, _ in node.value:
-            key = key_node.value
-            if key in seen and key != "<<":
-                line = key_node.start_mark.line + 1
-                raise InputError(f"{path}, line {line}: key {key!r} stands here twice; remove one")
-            seen[key] = True
-        loader.flatten_mapping(node)
-        return yaml.SafeLoader.construct_mapping(loader, node, deep=True)
-
-    Loader.add_constructor(yaml.resolver.BaseResolver.DEFAULT_MAPPING_TAG, mapping)
-    return Loader
 
 
 def _check_extent(root, path):

@@ -37,6 +37,10 @@ def test_success_replaces_and_makes_folders(tmp_path):
     [
         ("a: 1\na: 2\n", "line 2: key 'a' stands here twice"),
         ("a: [1\n", "not valid YAML"),
+        ("a: 1\nb: 010\n", "line 2: 010 is 8 in YAML"),
+        ("a: 0x1F\n", "0x1F is 31 in YAML"),
+        ("a: 1:30\n", "1:30 is 90 in YAML"),
+        ("a: 1_000.5\n", "1_000.5 is 1000.5 in YAML"),
         ("- 1\n", "found list"),
         ("", "found NoneType"),
         ("a: !!python/object:os.system {}\n", "not valid YAML"),

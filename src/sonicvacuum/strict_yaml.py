@@ -1,0 +1,44 @@
+"""YAML as people write it by hand: what means something else than it seems to is refused."""
+
+import re
+
+import yaml
+
+from sonicvacuum.files import InputError
+
+# YAML 1.1 reads 010 as eight, 1:30 as ninety and 1_5 as fifteen; who writes a record does not.
+_DECIMAL = re.compile(
+    r"[-+]?(0|[1-9][0-9]*|[0-9]*\.[0-9]*([eE][-+]?[0-9]+)?|\.(inf|Inf|INF))|\.(nan|NaN|NAN)"
+)
+
+
+def loader_of(path) -> type[yaml.SafeLoader]:
+    """Class of a safe loader for one file; InputError names the line of a key that stands twice, or of a
+    number that is not decimal."""
+
+    class Loader(yaml.SafeLoader):
+        pass
+
+    def mapping(loader, node):
+        seen = {}
+        for key_node, _ in node.value:
+            key = key_node.value
+            if key in seen and key != "<<":
+                line = key_node.start_mark.line + 1
+                raise InputError(f"{path}, line {line}: key {key!r} stands here twice; remove one")
+            seen[key] = True
+        loader.flatten_mapping(node)
+        return yaml.SafeLoader.construct_mapping(loader, node, deep=True)
+
+    def number(loader, node):
+        kind = node.tag.rpartition(":")[2]
+        value = getattr(yaml.SafeLoader, f"construct_yaml_{kind}")(loader, node)
+        if _DECIMAL.fullmatch(node.value):
+            return value
+        line = node.start_mark.line + 1
+        raise InputError(f"{path}, line {line}: {node.value} is {value} in YAML; write that, or quote a text")
+
+    Loader.add_constructor(yaml.resolver.BaseResolver.DEFAULT_MAPPING_TAG, mapping)
+    for kind in ("int", "float"):
+        Loader.add_constructor(f"tag:yaml.org,2002:{kind}", number)
+    return Loader
