@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
-from scipy import signal
+import scipy
 
 from sonicvacuum_blind.integrate import TOLERANCE, integrate
 from sonicvacuum_blind.laws import static_forces
@@ -69,10 +69,10 @@ def _filtered(shown, interval, electronics):
     if lowpass := electronics.get("lowpass", 0.0):
         stay = math.exp(-interval / lowpass)
         mean = -math.expm1(-interval / lowpass) * lowpass / interval
-        shown = signal.lfilter([1.0 - mean, mean - stay], [1.0, -stay], shown, axis=1)
+        shown = scipy.signal.lfilter([1.0 - mean, mean - stay], [1.0, -stay], shown, axis=1)
     if rate := electronics.get("inverse_droop", 0.0):
         mean = -math.expm1(-interval * rate) / (interval * rate)
-        shown = signal.lfilter([mean, -mean], [1.0, -math.exp(-interval * rate)], shown, axis=1)
+        shown = scipy.signal.lfilter([mean, -mean], [1.0, -math.exp(-interval * rate)], shown, axis=1)
     return shown
 
 

@@ -14,7 +14,7 @@ takes the ratio of Hertz force to force as a polynomial of u = 1/(1 + χ), χ = 
 from functools import cache, lru_cache
 
 import numpy as np
-from scipy.special import roots_legendre, spherical_jn
+import scipy
 
 # Highest power of u; contact radii of the least squares in layer thicknesses.
 DEGREE = 12
@@ -71,12 +71,12 @@ def _contact(a, lack):
 def _waves(a):
     """(n, points) cosine transforms (−1)^n j_2n(a x) of the even Legendre polynomials."""
     order = np.arange(int(14 + 1.3 * a))[:, None]
-    return (-1.0) ** order * spherical_jn(2 * order, a * _wavenumbers()[0])
+    return (-1.0) ** order * scipy.special.spherical_jn(2 * order, a * _wavenumbers()[0])
 
 
 @cache
 def _wavenumbers():
-    x, w = roots_legendre(POINTS)
+    x, w = scipy.special.roots_legendre(POINTS)
     return 0.5 * END * (x + 1.0), 0.5 * END * w
 
 

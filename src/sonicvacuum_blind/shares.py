@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterable
 
 import numpy as np
-from scipy import stats
+import scipy
 
 from sonicvacuum_blind.score import Line, Row
 from sonicvacuum_blind.study import STRENGTHS
@@ -16,7 +16,7 @@ def wilson(successes: int, count: int) -> tuple[float, float]:
     """95 % interval of a share (Wilson 1927; scipy.stats.binomtest); NaN without cases."""
     if not count:
         return math.nan, math.nan
-    interval = stats.binomtest(successes, count).proportion_ci(CONFIDENCE, method="wilson")
+    interval = scipy.stats.binomtest(successes, count).proportion_ci(CONFIDENCE, method="wilson")
     return float(interval.low), float(interval.high)
 
 
@@ -41,7 +41,9 @@ def quantile(values, level: float) -> tuple[int, float, float, float]:
     n = len(values)
     if not n:
         return 0, math.nan, math.nan, math.nan
-    below, above = stats.binom.ppf([0.5 - CONFIDENCE / 2.0, 0.5 + CONFIDENCE / 2.0], n, level).astype(int)
+    below, above = scipy.stats.binom.ppf([0.5 - CONFIDENCE / 2.0, 0.5 + CONFIDENCE / 2.0], n, level).astype(
+        int
+    )
     return n, float(np.quantile(values, level)), float(values[below]), float(values[min(above, n - 1)])
 
 
@@ -51,7 +53,7 @@ def ratio_of_sums(upper: np.ndarray, lower: np.ndarray) -> tuple[float, float, f
         return (float(upper.sum() / lower.sum()) if len(lower) else math.nan, math.nan, math.nan)
     # The standard error, which scipy works out besides, does not exist where a resample gives infinity.
     with np.errstate(invalid="ignore"):
-        found = stats.bootstrap(
+        found = scipy.stats.bootstrap(
             (upper, lower),
             _ratio,
             paired=True,

@@ -1,27 +1,37 @@
 """Dormand and Prince's pair 5(4) with error control for one chain, compiled.
 
-The tableau is scipy's (`scipy.integrate.RK45`; Dormand & Prince, J. Comput. Appl. Math. 6, 19, 1980). The
-state is one vector: displacements, velocities and relaxing parts of the forces, each with one place more than
-there are bodies, for a wall that does not move. Steps shrink where contacts open, close or turn, so that no
-law needs events. Between steps displacements come from the fifth-degree Hermite polynomial of displacement,
-velocity and acceleration at both ends, relaxing parts from the third-degree one.
+The tableau is Table 2 of J. R. Dormand & P. J. Prince, J. Comput. Appl. Math. 6, 19 (1980), as
+`scipy.integrate.RK45` has it, which takes longer to load than a small study to be scored. The state is one
+vector: displacements, velocities and relaxing parts of the forces, each with one place more than there are
+bodies, for a wall that does not move. Steps shrink where contacts open, close or turn, so that no law needs
+events. Between steps displacements come from the fifth-degree Hermite polynomial of displacement, velocity
+and acceleration at both ends, relaxing parts from the third-degree one.
 """
 
 import math
 
 import numpy as np
 from numba import njit
-from scipy.integrate import RK45
 
 from sonicvacuum_blind.laws import FORCE, INVERSE, LARGEST, LOAD, REST, decelerate, forces
 
 SAFETY, SHRINK, GROW = 0.9, 0.2, 4.0
 TRIES = 10_000_000
-_A = np.zeros((7, 6))
-_A[:6, :5] = RK45.A
-_A[6, :6] = RK45.B
-_C = np.append(RK45.C, 1.0)
-_E = np.array(RK45.E)
+# Weights of the slopes before each stage, the last row for the step itself; times of the stages; weights of
+# the error, fifth less fourth order.
+_A = np.array(
+    [
+        [0, 0, 0, 0, 0, 0],
+        [1 / 5, 0, 0, 0, 0, 0],
+        [3 / 40, 9 / 40, 0, 0, 0, 0],
+        [44 / 45, -56 / 15, 32 / 9, 0, 0, 0],
+        [19372 / 6561, -25360 / 2187, 64448 / 6561, -212 / 729, 0, 0],
+        [9017 / 3168, -355 / 33, 46732 / 5247, 49 / 176, -5103 / 18656, 0],
+        [35 / 384, 0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84],
+    ]
+)
+_C = np.array([0, 1 / 5, 3 / 10, 4 / 5, 8 / 9, 1, 1])
+_E = np.array([-71 / 57600, 0, 71 / 16695, -71 / 1920, 17253 / 339200, -22 / 525, 1 / 40])
 # Rows of the states: at the start and at the end of a step, in between; error of a step, and one over the
 # error allowed.
 START, END, BETWEEN, ERROR, WEIGHT = range(5)

@@ -5,7 +5,7 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy import special
+import scipy
 
 from sonicvacuum_blind.catalogue import BY_ID, STUDIED, Entry, hidden
 from sonicvacuum_blind.integrate import NoSolution
@@ -175,8 +175,8 @@ def log_evidence(z: np.ndarray) -> np.ndarray:
     """
     # Φ(L − z) − Φ(−z) = Φ(z) − Φ(z − L): the form whose terms are the smaller keeps the digits.
     small = z < 0.5 * LARGEST
-    large = special.log_ndtr(np.where(small, z, LARGEST - z))
-    less = special.log_ndtr(np.where(small, z - LARGEST, -z))
+    large = scipy.special.log_ndtr(np.where(small, z, LARGEST - z))
+    less = scipy.special.log_ndtr(np.where(small, z - LARGEST, -z))
     inside = large + np.log1p(-np.exp(less - large))
     return 0.5 * math.log(2.0 * math.pi) + 0.5 * z**2 + inside - math.log(LARGEST)
 
@@ -210,7 +210,7 @@ def _evidence(directions, ids, z):
     log, total = log_evidence(z), []
     for id in ids:
         own = [k for k, d in enumerate(directions) if d.id == id]
-        total.append(special.logsumexp(log[:, own], axis=1) - math.log(len(own)))
+        total.append(scipy.special.logsumexp(log[:, own], axis=1) - math.log(len(own)))
     return np.stack(total)
 
 

@@ -10,7 +10,7 @@ what an ideal test sees beside it can be worked out (`Smooth.seen`).
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import linalg
+import scipy
 
 # It sets in between so many widths before the peak.
 BEGINS, WHOLE = -1.5, -0.75
@@ -75,7 +75,9 @@ class Smooth:
             deviation = deviation / sigma[gauge]
             covariance *= np.outer(deviation, deviation)
             root = np.linalg.cholesky(covariance + np.eye(runs * samples))
-            own = linalg.solve_triangular(root, columns[:, gauge].reshape(runs * samples, -1), lower=True)
+            own = scipy.linalg.solve_triangular(
+                root, columns[:, gauge].reshape(runs * samples, -1), lower=True
+            )
             products += own.T @ own
         cross, square = products[0, 1:], products[1:, 1:] + np.eye(len(products) - 1)
         return float(np.sqrt(max(0.0, products[0, 0] - cross @ np.linalg.solve(square, cross))))

@@ -5,9 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.integrate import RK45
 from scipy.special import gamma
 
 from sonicvacuum.laboratory.specimen import GRAVITY
+from sonicvacuum_blind import stepper
 from sonicvacuum_blind.gauges import bounce
 from sonicvacuum_blind.integrate import Problem, integrate
 from sonicvacuum_blind.laws import B, hertz_rows
@@ -24,6 +26,13 @@ def chain(beads=12, **changes):
 
 def ball(speed=1.0, **law):
     return replace(chain(0, speed=speed), law=law)
+
+
+def test_the_tableau_is_that_of_scipy_to_the_bit():
+    assert (stepper._A[:6, :5] == RK45.A).all() and not stepper._A[:6, 5].any()
+    assert (stepper._A[6, :6] == RK45.B).all()
+    assert (stepper._C[:6] == RK45.C).all() and stepper._C[6] == 1.0
+    assert (stepper._E == RK45.E).all()
 
 
 def energy(plan, setting, motion, contacts):

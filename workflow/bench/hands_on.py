@@ -20,7 +20,13 @@ HEADS = {
         "named": "named",
         "told_besides": "told besides",
     },
-    "starts": {"verb": "verb", "help_s": "`--help`, s", "load_s": "loading, s", "run_s": "run, s"},
+    "starts": {
+        "verb": "verb",
+        "help_s": "`--help`, s",
+        "load_s": "loading, s",
+        "kernels_s": "kernels, s",
+        "run_s": "run, s",
+    },
 }
 
 

@@ -12,7 +12,7 @@ import math
 from itertools import chain
 
 import numpy as np
-from scipy.special import chdtri, ndtri
+import scipy
 
 from sonicvacuum.discover.draws import PROFILE, SAMPLED, TRUSTED, Draws, pareto_k
 from sonicvacuum.discover.fit.refit import Fit
@@ -57,8 +57,8 @@ def proposed(fit: Fit, count: int = DRAWS, seed: int = SEED) -> tuple[np.ndarray
     phi = np.real(np.roots([1.0, *np.zeros(p), -1.0, -1.0])).max()
     steps = phi ** -np.arange(1.0, p + 2.0)
     points = np.modf(shift + np.arange(1, 16 * count + 1)[:, None] * steps)[0]
-    wide = np.sqrt(FREEDOM / chdtri(FREEDOM, points[:, p]))[:, None]
-    scaled = wide * ndtri(points[:, :p])
+    wide = np.sqrt(FREEDOM / scipy.special.chdtri(FREEDOM, points[:, p]))[:, None]
+    scaled = wide * scipy.special.ndtri(points[:, :p])
     u = fit.u + scaled @ root.T
     inside = np.flatnonzero(((u >= low) & (u <= high)).all(axis=1))[:count]
     radius = np.square(scaled[inside]).sum(axis=1)

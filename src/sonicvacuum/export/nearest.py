@@ -8,7 +8,7 @@ and by how much is found by bouncing both.
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import brentq
+import scipy
 
 from sonicvacuum.effects import effect
 from sonicvacuum.effects.base import Setup
@@ -152,7 +152,11 @@ def _fitted(id, name, bare: Chain, ball: Ball):
     for _ in range(3):
         value = 0.0
         if excess(low) > 0.0:
-            value = float(np.exp(brentq(lambda x: np.nan_to_num(excess(x), nan=-1.0), low, high, xtol=1e-7)))
+            value = float(
+                np.exp(
+                    scipy.optimize.brentq(lambda x: np.nan_to_num(excess(x), nan=-1.0), low, high, xtol=1e-7)
+                )
+            )
         near = _with(one, chain, {name: value})
         ratio = (ball_of(near, ball.speed).duration / ball.duration) ** 2.5
         chain = chain.with_defect("stiffness", 0, ratio)
