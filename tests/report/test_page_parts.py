@@ -205,6 +205,7 @@ def test_a_law_without_a_name_is_told_and_drawn(folder):
 
 def test_formulas_are_set():
     assert inline.formula("F = K delta^{3/2} v, A < 1") == "F = K δ<sup>3/2</sup> v, A &lt; 1"
+    assert inline.formula("F = K delta^1.5 v^-0.5.") == "F = K δ<sup>1.5</sup> v<sup>-0.5</sup>."
     assert inline.formula("m u'^2/tau") == "m u&#39;<sup>2</sup>/τ"
 
 
@@ -227,5 +228,5 @@ def test_what_the_record_says_acts_is_part_of_the_nominal_model():
     effects = {"coating-thickness": {"layer_thickness_um": 50.3}, "kuwabara-kono": {"time_us": 6.1}}
     held, one = SimpleNamespace(effects=effects), SimpleNamespace(named=["kuwabara-kono"])
     told = rows.present(one, held, CATALOGUE)
-    assert told == "bonded coating on its core (thickness of the layer on its core 50 µm)"
+    assert told == "bonded coating on its core (thickness of the layer on its core = 50 µm)"
     assert rows.present(SimpleNamespace(named=list(effects)), held, CATALOGUE) == ""

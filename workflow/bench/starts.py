@@ -89,7 +89,7 @@ POINTS = """format: 1
 figure: fig4
 panel: a
 what: one point
-provenance: {who: nobody, how: made up, scale: none, date: 2026-01-31}
+provenance: {who: nobody, how: made up, scale: none, date: "2026-01-31"}
 error: {x: 0.01, y: 1.0}
 points: [[1.0, 200.0]]
 """

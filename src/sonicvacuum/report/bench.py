@@ -35,7 +35,7 @@ def _slip(one) -> str:
 def corrected(verdict: Verdict) -> str:
     """That what follows is of the record put right, "" where nothing was."""
     said = next((r for r in verdict.reasons if r.startswith(PUT_RIGHT)), "")
-    return f"{said[0].upper()}{said[1:]}." if said else ""
+    return f"{said[0].upper()}{said[1:]}.".replace("-", " ") if said else ""
 
 
 def slip(one: Fault) -> str:

@@ -88,13 +88,13 @@ def odds(verdict, catalogue, singles=()) -> list[dict]:
 
 
 def in_words(parameters, catalogue):
-    """`dynamic-modulus modulus_ratio 3.87` of candidates.csv in words: `modulus over handbook value 3.9`."""
+    """`dynamic-modulus modulus_ratio 3.87` of candidates.csv in words: `modulus over handbook value = 3.9`."""
     told = []
     for part in filter(None, (p.strip() for p in parameters.split(";"))):
         effect, name, value = part.rsplit(" ", 2)
         if effect in catalogue and name in {p.name for p in catalogue.effect(effect).parameters}:
             p = catalogue.effect(effect).parameter(name)
-            told.append(f"{p.help} {number(value, 2)}{unit_of(p.unit)}")
+            told.append(f"{p.help} = {number(value, 2)}{unit_of(p.unit)}")
     return ", ".join(told)
 
 

@@ -182,7 +182,7 @@ def where(verdict: Verdict, cells: list[dict]) -> str:
             "comparisons give by chance."
         )
     first = verdict.where[0]
-    groups = joined([f"{name} ({count})" for name, count in Counter(failing).most_common()])
+    groups = joined([f"{name.replace('_', ' ')} ({count})" for name, count in Counter(failing).most_common()])
     place = f"run {first.run}" + (f", gauge {first.sensor}" if first.sensor else "")
     return (
         f"In {len(failing)} of {plural(len(cells), 'comparison')} ({kind}) the nominal model fails: "
@@ -209,7 +209,8 @@ def law(verdict: Verdict, catalogue: Catalogue = CATALOGUE) -> str:
         scale = "with their distance from it (0: the same, 1: no nearer than Hertz)"
         text += f" The nearest named laws, {scale}: {joined(near)}."
     if found.closed is not None:
-        text += f" On runs left out of its fit it closes {100.0 * found.closed:.0f} % of what was left."
+        part = f"{100.0 * found.closed:.0f} %" if found.closed > 0.0 else "nothing"
+        text += f" On runs left out of its fit it closes {part} of what was left."
     return text
 
 
