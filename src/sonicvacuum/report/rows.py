@@ -88,7 +88,7 @@ def odds(verdict, catalogue, singles=()) -> list[dict]:
 
 
 def in_words(parameters, catalogue):
-    """`dynamic-modulus modulus_ratio 3.87` of candidates.csv in words: `modulus over handbook value = 3.9`."""
+    """`dynamic-modulus modulus_ratio 3.87` of candidates.csv in words: `modulus over … = 3.9`."""
     told = []
     for part in filter(None, (p.strip() for p in parameters.split(";"))):
         effect, name, value = part.rsplit(" ", 2)
