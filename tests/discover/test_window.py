@@ -5,7 +5,8 @@ import pytest
 from made_records import block
 
 from sonicvacuum.discover.model.window import ENOUGH, fitted
-from sonicvacuum.records import Record, Signals
+from sonicvacuum.files import InputError
+from sonicvacuum.records import Record, Signals, extent
 from sonicvacuum.records.reader import parse
 from sonicvacuum.records.review import content, lines
 from sonicvacuum.report.checked import looked_through
@@ -48,6 +49,14 @@ def test_a_million_samples_become_some_hundred_that_hold_pulse_and_echo():
     assert after.time_us[-1] > ARRIVALS["wall"] + ECHO + 2.0 * WIDTH
     assert "cut to what the passage needs" in notes[0]
     assert "thinned by" in notes[1]
+
+
+def test_a_search_is_refused_for_what_it_takes_and_not_for_what_was_recorded(monkeypatch):
+    record = recorded(0.02, -5000.0, 15000.0)
+    monkeypatch.setattr(extent, "AT_ONCE", 1000)
+    with pytest.raises(InputError, match="GiB of memory"):
+        extent.check_extent(record)
+    extent.check_extent(fitted(record)[0])
 
 
 def test_what_is_left_is_the_pulse_and_the_stated_noise():

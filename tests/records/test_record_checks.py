@@ -42,6 +42,7 @@ SUSPICIOUS = {
     "upside down": (one(lambda f: -f), "is the sign right"),
     "clipped": (one(clipped), "clip"),
     "offset": (one(lambda f: f + 0.3), "rests at 0.29 N"),
+    "large offset": (one(lambda f: f + 5.0), "rests at 5 N"),
     "noisy": (one(lambda f: f + np.random.default_rng(1).normal(0.0, 0.2, len(f))), "noise before the pulse"),
     "coarse steps": (one(lambda f: np.round(f / 0.5) * 0.5), "0.5 N apart"),
     "no signal": (one(lambda f: 0.01 * f), "times the noise"),

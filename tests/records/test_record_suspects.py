@@ -72,7 +72,7 @@ def test_one_gauge_off_is_told_from_all():
     assert slip(change=scaled(5.0, "far"), sensors__1__gain_rel_sigma="unknown") == []
 
 
-@pytest.mark.parametrize(("sensor", "bead", "said"), [(0, 4, 3), (1, 5, 6), (1, 7, 6)])
+@pytest.mark.parametrize(("sensor", "bead", "said"), [(0, 4, 3), (1, 5, 6), (1, 7, 6), (1, 8, 6)])
 def test_a_bead_counted_wrongly_is_named_with_the_right_one(sensor, bead, said):
     found = slip(**{f"sensors__{sensor}__bead": bead})
     gauge = CONTENT["sensors"][sensor]["id"]

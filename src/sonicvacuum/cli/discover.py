@@ -43,6 +43,7 @@ def discover(records, out, together, figures, threads, own, quiet, no_limits):
     before the first is searched. On a terminal, a line shows how far the search is.
     """
     from sonicvacuum.cli.page import illustrate, page_files
+    from sonicvacuum.discover.model import window
     from sonicvacuum.outputs import renewed
     from sonicvacuum.physics.run import available_threads
     from sonicvacuum.records import read
@@ -56,16 +57,21 @@ def discover(records, out, together, figures, threads, own, quiet, no_limits):
     groups = {Path(out): records} if together else {f: (p,) for p, f in _folders(records, Path(out)).items()}
     for folder in groups:
         check_out(folder, records)
+    sound = {}
     for path in records:  # all of them are sound before hours are spent on the first
-        record = read(path)
+        sound[path] = read(path)
         if not no_limits:
-            check_extent(record)
+            check_extent(window.fitted(sound[path])[0])
+        if len(groups) > 1:
+            del sound[path]  # of many records, all at once may be more than the memory holds
     from sonicvacuum.discover import session  # long to load: what is wrong with a record is said before
 
     for folder, paths in groups.items():
         with stages_shown(", ".join(paths), quiet):
             result = session.discover(
-                *(read(p) for p in paths), threads=threads or available_threads(), catalogue=known
+                *(sound.get(p) or read(p) for p in paths),
+                threads=threads or available_threads(),
+                catalogue=known,
             )
         stale = (*page_files(), "law.csv", "posterior.csv")
         with renewed(folder, last="verdict.json", stale=stale) as fresh:

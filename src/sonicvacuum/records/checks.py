@@ -45,7 +45,9 @@ def warnings(record: Record) -> list[str]:
 def noise_at_rest(run: Run, gauge: Gauge) -> tuple[float, float, int]:
     """Mean and standard deviation of a trace before the pulse arrives, and the number of samples."""
     force = run.signals.readings[gauge.id]
-    above = np.abs(force) > max(ONSET * gauge.sigma, 0.05 * float(np.abs(force).max()))
+    # A trace that rests far off zero rests all the same.
+    level = np.median(force[:REST_SAMPLES])
+    above = np.abs(force - level) > max(ONSET * gauge.sigma, 0.05 * float(np.abs(force).max()))
     quiet = force[: int(QUIET * (above.argmax() if above.any() else len(force)))]
     if len(quiet) < 2:
         return 0.0, 0.0, len(quiet)

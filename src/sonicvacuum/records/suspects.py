@@ -26,6 +26,8 @@ SLOWNESS, SCATTER = 0.1, 0.1
 SIGMAS, HALF_WIDTHS = 5.0, 0.5
 # A moved gauge must explain the arrivals better by so much (in chi²) than none, and than any other one.
 GAIN, LEAD = 25.0, 9.0
+# By how many beads a gauge may have been counted wrongly.
+STEPS = (-3, -2, -1, 1, 2, 3)
 # An unknown time zero has a standard error of this many passages of a bead.
 _FREE = 1e3
 
@@ -109,9 +111,9 @@ def _trigger(record, expected, run) -> Iterator[str]:
 
 
 def _beads(record, expected) -> Iterator[str]:
-    """A gauge whose arrivals in all runs fit the neighbouring bead, better than a late trigger does."""
+    """A gauge whose arrivals in all runs fit a bead nearby, better than a late trigger does."""
     inside = {g.id: g.bead for g in record.gauges if g.bead is not None}
-    moves = [(g, s) for g, b in inside.items() for s in (-1, 1) if 1 <= b + s <= record.beads]
+    moves = [(g, s) for g, b in inside.items() for s in STEPS if 1 <= b + s <= record.beads]
     stated = record.trigger_sigma_s
     moved = {move: _misfit(expected, stated, *move) for move in moves}
     if not moved:
