@@ -11,12 +11,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from sonicvacuum_blind import catalogue, design
+from sonicvacuum_blind.calibration import BINS, band, distance
 from sonicvacuum_blind.score import NONE, UNKNOWN, Row
 from sonicvacuum_blind.shares import quantile, share, strength_bin
+from sonicvacuum_blind.stated import Parameter
 from sonicvacuum_blind.study import STRENGTHS
 
-BINS = 10
-KINDS = ("single", "pair", "null", "foreign")
+KINDS = ("single", "pair", "set", "null", "foreign")
+LEVELS = (0.5, 0.8, 0.9, 0.95)
 # More than one effect, or an effect and a rest that nothing explains.
 SEVERAL = "several"
 
@@ -35,7 +37,7 @@ class Confusion:
 class Accuracy:
     """Singles of one design and strength: exact and class-level names with 95 % intervals, and the ceiling.
 
-    `d_prime` is the median reached in the bin; `strength` the bin's nominal one, 0 for less than 4.
+    `d_prime` is the median reached in the bin; `strength` the bin's nominal one, 0 for less than 2.4.
     """
 
     design: str
@@ -53,8 +55,8 @@ class Accuracy:
 
 @dataclass(frozen=True)
 class Bin:
-    """Verdicts whose most probable entry has a probability from `low_edge` to `high_edge`: the mean of what
-    they state, and the share that is right with its 95 % interval.
+    """Verdicts that give the name (or names) given a probability from `low_edge` to `high_edge`: the mean of
+    what they state, and the share that is right with its 95 % interval.
     """
 
     low_edge: float
@@ -68,15 +70,38 @@ class Bin:
 
 @dataclass(frozen=True)
 class Coverage:
-    """Share of stated 90 % intervals of an effect's parameters that hold the truth (singles named rightly;
-    `all`: pairs too).
+    """Share of central intervals of one level that hold the truth, of an effect's parameters (`all`: of all)
+    where it is hidden and named.
     """
 
     effect: str
+    level: float
     count: int
     value: float
     low: float
     high: float
+
+
+@dataclass(frozen=True)
+class Pit:
+    """Posterior probabilities below the truth, of an effect's parameters (`all`: of all).
+
+    Attributes:
+        effect, count: whose, and how many.
+        distance: largest distance of their ECDF from the diagonal.
+        band: what that is below in 95 % of studies with right intervals, in all effects at once.
+        inside: whether it is; empty without parameters.
+        offset: mean of (stated value − truth) / standard error, zero where nothing is biased.
+        ecdf: the ECDF at 0.05, 0.10 … 0.95, in words `0.04 0.11 …`.
+    """
+
+    effect: str
+    count: int
+    distance: float
+    band: float
+    inside: str
+    offset: float
+    ecdf: str
 
 
 @dataclass(frozen=True)
@@ -104,7 +129,7 @@ def label_of_verdict(row: Row) -> str:
 def confusion(rows: Iterable[Row]) -> list[Confusion]:
     """All combinations of what is hidden (22 effects, none, unknown) with what is named (and several)."""
     hidden = [*(e.id for e in catalogue.ENTRIES), NONE, UNKNOWN]
-    chosen = [r for r in rows if r.kind != "pair"]
+    chosen = [r for r in rows if r.kind not in ("pair", "set")]
     counts = Counter((label_of_truth(r), label_of_verdict(r)) for r in chosen)
     total = Counter(label_of_truth(r) for r in chosen)
     return [
@@ -140,12 +165,10 @@ def ideal_share(rows: Iterable[Row]) -> float:
 
 
 def reliability(rows: Iterable[Row]) -> list[Bin]:
-    """Ten bins of the most probable entry's probability; pairs, which have none, are left out."""
+    """Ten bins of the probability of the name given."""
     bins = [[] for _ in range(BINS)]
     for row in rows:
-        if row.kind != "pair":
-            place = min(int(row.confidence * BINS), BINS - 1)
-            bins[place].append((row.confidence, row.top == label_of_truth(row)))
+        bins[min(int(row.stated * BINS), BINS - 1)].append((row.stated, row.exact))
     return [_bin(k, members) for k, members in enumerate(bins)]
 
 
@@ -155,16 +178,38 @@ def _bin(place, members):
     return Bin(place / BINS, (place + 1) / BINS, stated, len(members), *right)
 
 
-def coverage(rows: Iterable[Row]) -> list[Coverage]:
-    """All intervals together, then by effect."""
-    rows = list(rows)
-    groups = {"all": rows}
-    groups |= {e.id: [r for r in rows if r.effects == e.id] for e in catalogue.ENTRIES}
+def coverage(parameters: Iterable[Parameter]) -> list[Coverage]:
+    """By effect and level; all intervals together first."""
     found = []
-    for name, group in groups.items():
-        count = sum(r.intervals for r in group)
-        found.append(Coverage(name, count, *share(sum(r.inside for r in group), count)))
+    for name, group in _by_effect(parameters).items():
+        for level in LEVELS:
+            hits = sum(abs(p.pit - 0.5) <= 0.5 * level for p in group)
+            found.append(Coverage(name, level, len(group), *share(hits, len(group))))
     return found
+
+
+def pit(parameters: Iterable[Parameter]) -> list[Pit]:
+    """By effect; all together first, held against a band of their own."""
+    groups = _by_effect(parameters)
+    filled = sum(bool(group) for name, group in groups.items() if name != "all")
+    at, found = np.linspace(0.05, 0.95, 19), []
+    for name, group in groups.items():
+        numbers = np.array([p.pit for p in group])
+        far, limit = distance(numbers), band(len(group), 1 if name == "all" else max(filled, 1))
+        inside = ("yes" if far <= limit else "no") if group else ""
+        offset = float(np.mean([(p.value - p.truth) / p.sigma for p in group])) if group else math.nan
+        ecdf = " ".join(f"{np.mean(numbers <= x):.4g}" for x in at) if group else ""
+        found.append(Pit(name, len(group), far, limit, inside, offset, ecdf))
+    return found
+
+
+def _by_effect(parameters):
+    """Name → parameters: `all`, and each effect's first of every record: others are not independent."""
+    parameters = list(parameters)
+    first = {(p.id, p.effect): p for p in reversed(parameters)}.values()
+    return {"all": parameters} | {
+        e.id: sorted((p for p in first if p.effect == e.id), key=lambda p: p.id) for e in catalogue.ENTRIES
+    }
 
 
 def seconds(rows: Iterable[Row]) -> list[Seconds]:
@@ -183,6 +228,7 @@ TABLES = {
     "confusion": (Confusion, confusion),
     "accuracy": (Accuracy, accuracy),
     "reliability": (Bin, reliability),
-    "coverage": (Coverage, coverage),
     "seconds": (Seconds, seconds),
 }
+# The same of stated intervals.
+INTERVALS = {"parameters": (Parameter, list), "coverage": (Coverage, coverage), "pit": (Pit, pit)}

@@ -1,7 +1,9 @@
-"""The blind study in four pictures: what is taken for what, accuracy against d′, reliability, simpler rules.
+"""The blind study in pictures: what is taken for what, accuracy against d′, reliability, intervals, simpler
+rules.
 
 Drawn from the tables that `sonicvacuum blind score --tables` and `sonicvacuum blind baselines` write:
-confusion.csv, accuracy.csv, reliability.csv, baselines.csv. A picture whose table is not there is left out.
+confusion.csv, accuracy.csv, reliability.csv, pit.csv, baselines.csv. A picture whose table is
+not there is left out.
 """
 
 from pathlib import Path
@@ -31,6 +33,13 @@ CAPTIONS = {
     "reliability": style.paragraph("""
         Stated probability of the most probable explanation against the share of cases in which it is right,
         with 95 % intervals; below, the number of cases. On the dashed line probabilities mean what they say.
+    """),
+    "pit": style.paragraph("""
+        Posterior probability below the truth (PIT) of the parameters of effects hidden and named: its
+        cumulative distribution (ECDF) less the diagonal, all parameters together (a) and by effect (b), in
+        units of the half width of the band that right intervals stay in: everywhere, in 95 % of studies, in
+        all effects at once. Grey: that band. Falling from the left, stated values are too large; an S that
+        starts upwards, intervals are too narrow.
     """),
     "baselines": style.paragraph("""
         Simpler rules on the same records: (a) exact names of single hidden effects of all strengths and kinds
@@ -63,6 +72,7 @@ def draw(folder: Path, wanted=(), out: Path | None = None, prefix: str = "") -> 
         "confusion": confusion,
         "accuracy": accuracy,
         "reliability": reliability,
+        "pit": pit,
         "baselines": baselines,
     }
     for name in chosen:
@@ -124,9 +134,10 @@ def accuracy(table: pandas.DataFrame) -> Figure:
         style.title(figure, 14.0, "(a) Traces, several speeds")
         _shares(axes, traces.d_prime.to_numpy(float), traces, 1.02)
         axes.set_xscale("log")
-        axes.set_xticks([5, 7.5, 10, 20], ["5", "7.5", "10", "20"])
+        ticks = [s for s in (3, 5, 7.5, 10, 20, 50, 150, 500) if s < 1.3 * max(traces.d_prime, default=20.0)]
+        axes.set_xticks(ticks, [f"{s:g}" for s in ticks])
         axes.set_xticks([], minor=True)
-        axes.set_xlim(4.2, 25.0)
+        axes.set_xlim(0.84 * min(traces.d_prime, default=5.0), 1.25 * max(traces.d_prime, default=20.0))
         axes.set_xlabel("signal-to-noise ratio d′ of the hidden effect")
         axes.set_ylabel("share of records")
         handles, labels = axes.get_legend_handles_labels()
@@ -203,6 +214,34 @@ def reliability(table: pandas.DataFrame) -> Figure:
         for one in (axes, below):
             one.set_xlim(0.0, 1.0)
         axes.set_xticklabels([])
+    return figure
+
+
+def pit(table: pandas.DataFrame) -> Figure:
+    """ECDFs of posterior probabilities below the truth, from pit.csv."""
+    filled = table[table["count"] > 0]
+    with style.context():
+        figure = style.canvas(style.DOUBLE, 78.0)
+        groups = (filled[filled.effect == "all"], filled[filled.effect != "all"])
+        for k, (rows, title) in enumerate(zip(groups, ("(a) All parameters", "(b) By effect"), strict=True)):
+            axes = style.panel(figure, (17.0 + 84.0 * k, 12.0, 70.0, 58.0))
+            style.title(figure, 17.0 + 84.0 * k, title)
+            axes.axhspan(-1.0, 1.0, color=style.BAND, lw=0)
+            for row in rows.itertuples():
+                ecdf = np.array([0.0, *map(float, row.ecdf.split()), 1.0])
+                x = np.linspace(0.0, 1.0, len(ecdf))
+                far = row.inside == "no"
+                look = {"color": style.ORANGE if far else style.BLUE, "lw": 1.4 if far else 0.8}
+                y = (ecdf - x) / row.band
+                axes.plot(x, y, ls="-" if far or k == 0 else (0, (4, 1.5)), **look)
+                if far and k:
+                    at = int(np.argmax(np.abs(y)))
+                    axes.text(x[at], y[at], row.effect, fontsize=6.5, ha="center", va="bottom")
+            axes.axhline(0.0, color=style.GREY, lw=0.6)
+            axes.set_xlim(0.0, 1.0)
+            axes.set_xlabel("posterior probability below the truth")
+            if k == 0:
+                axes.set_ylabel("(ECDF − diagonal) / half width of band")
     return figure
 
 

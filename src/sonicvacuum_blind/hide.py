@@ -21,7 +21,7 @@ from sonicvacuum_blind.integrate import NoSolution
 from sonicvacuum_blind.prediction import Errors, predict
 from sonicvacuum_blind.record import as_record
 from sonicvacuum_blind.signature import Frame
-from sonicvacuum_blind.strength import Rival, ceiling, leftover, nearest, pair_ceiling, rivals, scale
+from sonicvacuum_blind.strength import Rival, leftover, nearest, rivals, scale
 
 KINDS = ("null", "single", "pair", "set", "foreign")
 NOISES = ("white", "ar1", "quantised")
@@ -167,7 +167,7 @@ def hide(spec: Spec) -> tuple[records.Record, dict]:
     scalars = clean.scalars + sigmas * noise_random.standard_normal(len(sigmas))
     # The folder's name says nothing of what is inside; neither does the title.
     record = as_record(made, traces, scalars, title=f"Data set {spec.id}")
-    return record, _truth(spec, own.case, own.errors, noise, stream(spec, "rule"))
+    return record, _truth(spec, own.case, own.errors, noise)
 
 
 @one_thread
@@ -279,7 +279,7 @@ def noisy(made: Design, traces: np.ndarray, kind: str, correlation: float, rando
     return traces + sigma * fresh, {"kind": kind}
 
 
-def _truth(spec, case, errors, noise, random):
+def _truth(spec, case, errors, noise):
     frame, made = case.frame, case.frame.design
     # In the linear approximation, effects of a pair add up.
     seen = sum((h.seen for h in case.hidden), np.zeros(len(frame.base) + frame.slopes.shape[1]))
@@ -306,7 +306,6 @@ def _truth(spec, case, errors, noise, random):
         "d_prime_all": float(np.linalg.norm(seen)),
         "leftover_d_prime": leftover(directions, seen) if directions else 0.0,
         "nearest": {"id": near[0], "leaves_d_prime": near[1]},
-        "ideal": _ideal(spec, case.hidden, directions, random),
         "runs": len(made.runs),
         "gauges": len(made.reference.gauges),
         "noise_drawn": noise,
@@ -317,11 +316,3 @@ def _truth(spec, case, errors, noise, random):
             "triggers": errors.triggers.tolist(),
         },
     }
-
-
-def _ideal(spec, hidden, directions, random):
-    """Verdict → share of data sets in which an ideal rule gives it."""
-    if spec.kind == "pair":
-        share = pair_ceiling(directions, [(h.id, h.seen) for h in hidden], random)
-        return {"+".join(spec.effects): share}
-    return ceiling(directions, hidden[0].seen, random) if spec.kind == "single" else {}

@@ -7,10 +7,16 @@ PICTURES = {
     "blind_accuracy": "Blind study: right names",
     "blind_confusion": "Blind study: what is taken for what",
     "blind_reliability": "Blind study: stated probabilities",
+    "blind_pit": "Blind study: stated intervals",
     "blind_baselines": "Blind study: simpler rules",
 }
 # Folder of the tables.
 TABLES = "workflow/resources/reference/blind_full"
+
+
+def table(name: str, folder=TABLES) -> str:
+    """File of the table that a picture is drawn from; not every one is made of every study."""
+    return f"{folder}/{name.removeprefix('blind_')}.csv"
 
 
 def caption(name: str) -> str:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from sonicvacuum.report import inline, interactive
 from sonicvacuum.report.tables import read
-from sonicvacuum_blind import report
+from sonicvacuum_blind import published, report
 
 
 def build(small_path=None, full_folder=None, pictures: Iterable = ()) -> str:
@@ -31,11 +31,12 @@ def build(small_path=None, full_folder=None, pictures: Iterable = ()) -> str:
 def _full(found: report.Study) -> dict:
     """What the page shows of the full study."""
     return {
-        "cases": found.cases,
-        "goals": found.goals,
+        "told": published.told(found),
+        "meant": "" if found.score is None else published.MEANT,
         "results": report.results(found.summary),
-        "held_out": report.HELD_OUT,
+        "held_out": published.HELD_OUT,
         "baselines": None if found.baselines is None else report.rivals(found.baselines),
+        "fresh": None if found.fresh is None else report.followed(found.fresh),
         "followed": None if found.resolved is None else report.followed(found.resolved),
     }
 

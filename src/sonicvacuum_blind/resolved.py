@@ -124,7 +124,7 @@ def summary(rows: Iterable[Followed]) -> list[Line]:
     rows = list(rows)
     of = {choice: {r.id: r for r in rows if r.choice == choice} for choice in CHOICES}
     both = [id for id in of["proposed"] if id in of["random"]]
-    goals = {"proposed": ">= 0.8"}
+    goals = {"proposed": ">= 0.9"}
     lines = [
         counted("resolved by one more run", c, (r.resolved for r in of[c].values()), goals.get(c, ""))
         for c in CHOICES
@@ -132,7 +132,7 @@ def summary(rows: Iterable[Followed]) -> list[Line]:
     if any(of["random"][id].resolved for id in both):
         hits = (np.array([of[c][id].resolved for id in both]) for c in CHOICES)
         found = ratio_of_sums(*hits)
-        lines.append(Line("resolved, ratio", "proposed over random", len(both), *found, goal=">= 2"))
+        lines.append(Line("resolved, ratio", "proposed over random", len(both), *found, goal=">= 2.5"))
     for one, other in (CHOICES, CHOICES[::-1]):
         alone = [of[one][id].resolved and not of[other][id].resolved for id in both]
         lines.append(counted("resolved by this run alone", one, alone))

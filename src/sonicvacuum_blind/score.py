@@ -1,17 +1,17 @@
 """Verdicts against truths: one row for each case; tables made of the rows: `summary` and `breakdown`."""
 
-import json
 import math
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 
-from sonicvacuum.files import InputError, read_text, reading
-from sonicvacuum.tables import write_csv
-from sonicvacuum_blind import TRUTH
+from sonicvacuum.files import InputError, reading
+from sonicvacuum.tables import read_csv, write_csv
+from sonicvacuum_blind import TRUTH, stated
+from sonicvacuum_blind.stated import load
 
 CONFIDENT = 0.9
-NINETY = 1.6448536269514722  # standard deviations on either side of a 90 % interval
-NONE, UNKNOWN = "none", "unknown"
+IDEAL = ("id", "ideal", "before", "cells")
+NONE, UNKNOWN = "none", stated.UNKNOWN
 
 
 @dataclass(frozen=True)
@@ -26,14 +26,23 @@ class Row:
         ideal: share of data sets of this record in which an ideal rule gives the true names (singles, pairs).
         named: verdict, joined by `+`.
         top, confidence: most probable entry of the probabilities, and its probability.
+        stated: probability of the name given.
+        brier: squared error of all probabilities, 0 to 2.
+        credible, credible_size: the truth is in the 95 % credible set of explanations, which has so many.
+        place: hidden bead, contact or gauge named, NaN where there is none or its effect is not named.
         exact: named exactly what is hidden; nothing for null, unknown for foreign.
         class_level: single named, or one that the verdict itself calls confusable with it.
         false_alarm: an effect of the catalogue was named that is not hidden.
         says_unknown: the verdict holds unknown.
-        confident_wrong: such a name with probability 0.9 or more and no word of unknown.
+        wrong: such a name, and no word of unknown.
+        confident_wrong: the same where it, or the set named, has probability 0.9 or more.
         closed: held-out gap closed.
         before, chi2: held-out mean squared residual over the floor, without and with what is named.
-        inside, intervals: stated 90 % intervals of rightly named effects that hold the truth, of so many.
+        held, limits: upper limits on hidden effects not named that hold the truth, of so many.
+        errors_before, errors_after: by how much the record's own errors are off, root mean square in stated
+            errors: moved there by what is hidden if nothing is named, and as the verdict has them.
+        cells_right, cells_wrong, cells_seen, cells_large: cells (run and gauge) of the map of disagreement
+            found where something is left and where nothing is; of those where much is, found and all.
         seconds, simulations: what it cost.
     """
 
@@ -50,28 +59,58 @@ class Row:
     named: str
     top: str
     confidence: float
+    stated: float
+    brier: float
+    credible: int
+    credible_size: int
+    place: float
     exact: int
     class_level: int
     false_alarm: int
     says_unknown: int
+    wrong: int
     confident_wrong: int
     closed: float
     before: float
     chi2: float
-    inside: int
-    intervals: int
+    held: int
+    limits: int
+    errors_before: float
+    errors_after: float
+    cells_right: int
+    cells_wrong: int
+    cells_seen: int
+    cells_large: int
     seconds: float
     simulations: int
 
 
-def score(truth_folder, verdict_folder) -> list[Row]:
+def score(truth_folder, verdict_folder, ideal_paths=()) -> list[Row]:
     """Rows of all cases below a folder of truths, by id.
 
-    Folders may be nested; a case is found by the name of the folder that holds its file.
+    Folders may be nested; a case is found by the name of the folder that holds its file. What an ideal rule
+    makes of a case, and where the case shows, stands in tables of `sonicvacuum blind ideal`.
 
     Raises:
         InputError: where a case has no verdict, or a file is not what it should be.
     """
+    known = {line["id"]: line for path in ideal_paths for line in read_csv(path, columns=IDEAL)}
+    return [
+        row(load(truth), load(path), f"{path} (truth: {truth})", path.parent, known.get(truth.parent.name))
+        for truth, path in _cases(truth_folder, verdict_folder)
+    ]
+
+
+def intervals(truth_folder, verdict_folder) -> list[stated.Parameter]:
+    """Stated intervals of all cases, with what was hidden; InputError as from `score`."""
+    found = []
+    for truth, path in _cases(truth_folder, verdict_folder):
+        found += stated.parameters(load(truth), load(path), path.parent)
+    return found
+
+
+def _cases(truth_folder, verdict_folder):
+    """Files of truth and verdict of each case, by id."""
     truths, verdicts = found_in(truth_folder, TRUTH), found_in(verdict_folder, "verdict.json")
     if not truths:
         raise InputError(f"{truth_folder}: holds no {TRUTH}; make cases with sonicvacuum blind hide")
@@ -81,10 +120,7 @@ def score(truth_folder, verdict_folder) -> list[Row]:
             f"{verdict_folder}: no verdict for {len(missing)} of {len(truths)} cases, first {missing[0]}; "
             "run sonicvacuum discover on their records"
         )
-    return [
-        row(load(truths[id]), load(verdicts[id]), f"{verdicts[id]} (truth: {truths[id]})")
-        for id in sorted(truths)
-    ]
+    return [(truths[id], verdicts[id]) for id in sorted(truths)]
 
 
 def found_in(folder, name: str) -> dict[str, Path]:
@@ -92,19 +128,14 @@ def found_in(folder, name: str) -> dict[str, Path]:
     return {path.parent.name: path for path in Path(folder).rglob(name)}
 
 
-def load(path: Path) -> dict:
-    """A truth, verdict or change; InputError where it is no JSON object."""
-    try:
-        content = json.loads(read_text(path))
-    except (ValueError, RecursionError) as error:
-        raise InputError(f"{path}: not valid JSON ({error})") from None
-    if not isinstance(content, dict):
-        raise InputError(f"{path}: expected keys and values at the top level, found {type(content).__name__}")
-    return content
-
-
-def row(truth: dict, verdict: dict, path="verdict.json") -> Row:
+def row(truth: dict, verdict: dict, path="verdict.json", folder: Path | None = None, ideal=None) -> Row:
     """One case.
+
+    Args:
+        truth, verdict: of the case.
+        path: for messages.
+        folder: of the verdict's tables; what needs them does not apply without.
+        ideal: the case's line of `sonicvacuum blind ideal`.
 
     Raises:
         InputError: where the verdict lacks a key that is needed, which the message names, or one of the two
@@ -112,12 +143,12 @@ def row(truth: dict, verdict: dict, path="verdict.json") -> Row:
     """
     with reading(path, "run sonicvacuum discover again, or hide"):
         try:
-            return _row(truth, verdict)
+            return _row(truth, verdict, folder, ideal)
         except KeyError as error:
             raise InputError(f"{path}: {error.args[0]}: missing; this key is required") from None
 
 
-def _row(truth, verdict):
+def _row(truth, verdict, folder, ideal):
     effects, named = truth["effects"], verdict["named"]
     claimed = [n for n in named if n != UNKNOWN]
     probabilities = verdict["probabilities"]
@@ -125,7 +156,10 @@ def _row(truth, verdict):
     real = [] if truth["kind"] == "foreign" else effects
     wrong = [n for n in claimed if n not in real]
     held_out = (verdict.get("gap") or {}).get("held_out") or {}
-    inside, intervals = _coverage(truth, verdict) if real else (0, 0)
+    given, right = stated.key_of(named), stated.key_of([UNKNOWN] if truth["kind"] == "foreign" else effects)
+    likely = stated.credible_set(probabilities)
+    held, limits = stated.limits(truth, verdict)
+    cells = stated.located(ideal["cells"] if ideal else "", folder)
     return Row(
         id=truth["id"],
         kind=truth["kind"],
@@ -136,20 +170,36 @@ def _row(truth, verdict):
         reached=_reached(truth),
         leftover=truth["leftover_d_prime"],
         nearest=truth["nearest"]["id"],
-        ideal=truth["ideal"].get("+".join(effects), 0.0) if truth["ideal"] else math.nan,
+        ideal=float(ideal["ideal"]) if ideal else math.nan,
         named="+".join(named),
         top=top.replace(" + ", "+"),
         confidence=probabilities[top],
+        stated=probabilities.get(given, 0.0),
+        brier=stated.brier(probabilities, right),
+        credible=int(right in likely),
+        credible_size=len(likely),
+        place=stated.place_right(truth, folder),
         exact=int(set(named) == ({UNKNOWN} if truth["kind"] == "foreign" else set(effects))),
         class_level=int(_class_level(effects, named, verdict["confusable"])),
         false_alarm=int(bool(wrong)),
         says_unknown=int(UNKNOWN in named),
-        confident_wrong=int(UNKNOWN not in named and confidently(probabilities, wrong)),
+        wrong=int(bool(wrong) and UNKNOWN not in named),
+        confident_wrong=int(
+            bool(wrong)
+            and UNKNOWN not in named
+            and (confidently(probabilities, wrong) or probabilities.get(given, 0.0) >= CONFIDENT)
+        ),
         closed=_number(held_out.get("closed")),
         before=_over_floor(held_out, "before"),
         chi2=_over_floor(held_out, "after"),
-        inside=inside,
-        intervals=intervals,
+        held=held,
+        limits=limits,
+        errors_before=float(ideal["before"]) if ideal else math.nan,
+        errors_after=stated.errors_left(truth, folder),
+        cells_right=cells[0],
+        cells_wrong=cells[1],
+        cells_seen=cells[2],
+        cells_large=cells[3],
         seconds=_number((verdict.get("timing_s") or {}).get("total")),
         simulations=int(verdict.get("simulations") or 0),
     )
@@ -191,20 +241,6 @@ def _class_level(effects, named, confusable):
     return all(any(covers(e, n) for n in named) for e in effects)
 
 
-def _coverage(truth, verdict):
-    """(inside, all) of the stated 90 % intervals of effects that are hidden and named."""
-    inside = total = 0
-    for hidden in truth["hidden"]:
-        stated = verdict["parameters"].get(hidden["id"], {}) if hidden["id"] in verdict["named"] else {}
-        for name, true in hidden["parameters"].items():
-            found = stated.get(name)
-            if not isinstance(found, dict) or not found.get("sigma"):
-                continue
-            total += 1
-            inside += abs(found["value"] - true) <= NINETY * found["sigma"]
-    return inside, total
-
-
 @dataclass(frozen=True)
 class Line:
     """One line: a share or a median of so many cases, its 95 % interval, and what it is measured against.
@@ -233,3 +269,11 @@ def write_table(lines: list, kind: type, path) -> None:
     """Rows or lines as CSV, numbers to six digits."""
     cells = ([f"{v:.6g}" if isinstance(v, float) else v for v in asdict(line).values()] for line in lines)
     write_csv(path, [f.name for f in fields(kind)], cells)
+
+
+def read_table(kind: type, path) -> list:
+    """Lines of a table that `write_table` wrote, as that dataclass; InputError where it is none."""
+    names = {f.name: f.type for f in fields(kind)}
+    with reading(path, "make it with sonicvacuum blind score"):
+        rows = read_csv(path, columns=names)
+        return [kind(**{name: type(row[name]) for name, type in names.items()}) for row in rows]

@@ -73,10 +73,10 @@ def _ratio(upper, lower, axis):
 
 
 def strength_bin(row: Row) -> float:
-    """The study's strength that is nearest to the d′ reached, on a logarithmic scale; 0 below 4."""
+    """The study's strength that is nearest to the d′ reached, on a logarithmic scale; 0 below 2.4."""
     return bin_of(row.reached)
 
 
 def bin_of(d_prime: float) -> float:
     """The same of a number."""
-    return min(STRENGTHS, key=lambda s: abs(math.log(d_prime / s))) if d_prime >= 4.0 else 0.0
+    return min(STRENGTHS, key=lambda s: abs(math.log(d_prime / s))) if d_prime >= 2.4 else 0.0

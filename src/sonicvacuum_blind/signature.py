@@ -168,7 +168,7 @@ class Frame:
         whiten = Whitener(design, correlation)
         base = predict(design)
         slopes = nuisances(design, whiten, base=base)
-        return cls(design, whiten, whiten.vector(base), slopes, _solver(slopes))
+        return cls(design, whiten, whiten.vector(base), slopes, solver(slopes))
 
     def nominal(self, vector: np.ndarray) -> np.ndarray:
         """(data,) whitened prediction with errors alone."""
@@ -265,6 +265,6 @@ def _norm(x):
     return float(np.sqrt(x @ x))
 
 
-def _solver(slopes):
+def solver(slopes: np.ndarray) -> np.ndarray:
     """(errors, data) least squares with a standard normal prior on the errors."""
     return np.linalg.solve(slopes.T @ slopes + np.eye(slopes.shape[1]), slopes.T)

@@ -2,7 +2,7 @@
 
 import itertools
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import scipy
@@ -21,8 +21,8 @@ NOTHING = 1e-3
 ABSORBED = 8.0
 # Probability of a false alarm of the ideal rule on noise alone: what the method itself is allowed.
 FALSE_ALARM = 0.01
-# A direction that keeps less than this beside a known one is that one.
-APART = 0.05
+# Log evidence that differs by less decides nothing: then chance does.
+TIE = 0.05
 
 
 @dataclass(frozen=True)
@@ -90,11 +90,24 @@ class Rival:
 
     The two signs are two directions: behind the pulse contacts stand open, and a bead slightly too heavy
     leaves them otherwise than one too light, so that signatures of small deviations are no mirror images.
+
+    Attributes:
+        id, place, sign, shape: of the effect.
+        direction: (data + errors,), of the effect's signature at a strength, whose d′ is size.
     """
 
     id: str
     place: str | int | None
     direction: np.ndarray
+    sign: int = 1
+    shape: float | str | None = None
+    strength: float = 1.0
+    size: float = 1.0
+
+    @property
+    def kind(self) -> tuple:
+        """What tells it from other directions of the effect but for strength and a shape that is a number."""
+        return self.id, self.place, self.sign, self.shape if isinstance(self.shape, str) else None
 
 
 def rivals(frame: Frame, size: float = 4.0) -> list[Rival]:
@@ -113,7 +126,7 @@ def rivals(frame: Frame, size: float = 4.0) -> list[Rival]:
                 strength, seen = _direction(frame, change, strength, entry.most, size)
                 length = np.linalg.norm(seen)
                 if length > NOTHING * size:
-                    found.append(Rival(entry.id, place, seen / length))
+                    found.append(Rival(entry.id, place, seen / length, sign, shape, strength, length))
     return found
 
 
@@ -187,8 +200,8 @@ def ceiling(
     """How often an ideal rule names each effect when data hold the signature `seen` and noise.
 
     The rule knows all directions, takes effects as equally likely, shares an effect's probability equally
-    among its places, shapes and signs, and names the most probable one; none unless the evidence passes what
-    noise alone reaches in a share `FALSE_ALARM` of data sets.
+    among its places, shapes and signs, and names the most probable one, or tosses a coin;
+    none unless the evidence passes what noise alone reaches in a share `FALSE_ALARM` of data sets.
 
     Returns:
         Verdict ("none" or an id) → share of `draws` data sets, in descending order.
@@ -200,7 +213,8 @@ def ceiling(
     ids = sorted({d.id for d in directions})
     threshold = np.quantile(_evidence(directions, ids, noise).max(axis=0), 1.0 - FALSE_ALARM)
     total = _evidence(directions, ids, basis @ seen + noise)
-    winner = np.where(total.max(axis=0) > threshold, np.argmax(total, axis=0), len(ids))
+    chosen = np.argmax(total + TIE * random.random(total.shape), axis=0)
+    winner = np.where(total.max(axis=0) > threshold, chosen, len(ids))
     shares = {name: float(np.mean(winner == k)) for k, name in enumerate([*ids, "none"])}
     return dict(sorted(((k, v) for k, v in shares.items() if v > 0.0), key=lambda kv: (-kv[1], kv[0])))
 
@@ -212,28 +226,3 @@ def _evidence(directions, ids, z):
         own = [k for k, d in enumerate(directions) if d.id == id]
         total.append(scipy.special.logsumexp(log[:, own], axis=1) - math.log(len(own)))
     return np.stack(total)
-
-
-def pair_ceiling(
-    directions: list[Rival], hidden: list[tuple[str, np.ndarray]], random: np.random.Generator
-) -> float:
-    """How often an ideal rule names both effects of a pair: each of them, told the other.
-
-    The known effect's strength is free, so that its direction is projected out of all others; the two shares
-    are multiplied. A rule that is told nothing does no better.
-
-    Args:
-        directions: of the catalogue.
-        hidden: (id, signature) of the two effects.
-        random: for the draws.
-    """
-    shares = []
-    for (id, seen), (_, known) in (hidden, hidden[::-1]):
-        unit = known / np.linalg.norm(known)
-        left = [replace(r, direction=r.direction - (r.direction @ unit) * unit) for r in directions]
-        lengths = [np.linalg.norm(r.direction) for r in left]
-        left = [
-            replace(r, direction=r.direction / n) for r, n in zip(left, lengths, strict=True) if n > APART
-        ]
-        shares.append(ceiling(left, seen - (seen @ unit) * unit, random).get(id, 0.0))
-    return float(np.prod(shares))

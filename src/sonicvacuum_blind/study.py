@@ -14,8 +14,9 @@ from sonicvacuum.tables import read_csv, write_csv
 from sonicvacuum_blind import catalogue, foreign
 from sonicvacuum_blind.hide import Spec
 
-# That of the full study was drawn after its method was fixed (git tag study-2); of the one before it, 20062,
+# That of the full study was drawn after its method was fixed, git tag `TAG`; of the one before it, 20062,
 # a part had been read while the method was mended.
+TAG = "study-2"
 SEEDS = {"small": 20061, "full": 88_822_325, "training": 20063}
 TRAINING = 300
 # Single effects in traces of several speeds: d′ → records of each effect.
@@ -183,3 +184,10 @@ def batch(specs: list[Spec], place: int, of: int) -> list[Spec]:
     if not 0 <= place < of:
         raise ValueError(f"batch {place} of {of} does not exist")
     return specs[place::of]
+
+
+def chosen(study: str | None, path, place: int, of: int) -> list[Spec]:
+    """A batch of a study, or of a list of cases; InputError unless one of the two is given."""
+    if (study is None) == (path is None):
+        raise InputError("give --study or --cases, one of them")
+    return batch(cases(study) if study else read_cases(path), place, of)

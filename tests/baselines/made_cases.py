@@ -5,7 +5,9 @@ import math
 from sonicvacuum_blind.baselines.cases import Case, Cell, Single
 from sonicvacuum_blind.score import Row
 
-BLANK = dict.fromkeys(("closed", "before", "chi2", "seconds"), math.nan)
+BLANK = dict.fromkeys(
+    ("brier", "place", "closed", "before", "chi2", "errors_before", "errors_after", "seconds"), math.nan
+)
 
 
 def row(id="a", kind="single", effects="tsuji", **changes):
@@ -22,11 +24,12 @@ def row(id="a", kind="single", effects="tsuji", **changes):
         "ideal": 0.9 if kind == "single" else math.nan,
         "named": effects,
         "top": effects,
-        "confidence": 0.9,
+        **dict.fromkeys(("confidence", "stated"), 0.9),
         **dict.fromkeys(("exact", "class_level"), 1),
-        **dict.fromkeys(("false_alarm", "says_unknown", "confident_wrong"), 0),
+        **dict.fromkeys(("false_alarm", "says_unknown", "wrong", "confident_wrong"), 0),
         **BLANK,
-        **dict.fromkeys(("inside", "intervals", "simulations"), 0),
+        **dict.fromkeys(("credible", "credible_size", "held", "limits", "simulations"), 0),
+        **dict.fromkeys(("cells_right", "cells_wrong", "cells_seen", "cells_large"), 0),
     }
     return Row(**(base | changes))
 

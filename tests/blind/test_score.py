@@ -7,12 +7,14 @@ import math
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from scipy import stats
 
 from sonicvacuum.cli import cli
 from sonicvacuum.files import InputError
 from sonicvacuum_blind import breakdown
 from sonicvacuum_blind.score import Row, row, score
 from sonicvacuum_blind.shares import quantile, wilson
+from sonicvacuum_blind.stated import parameters
 from sonicvacuum_blind.summary import summary
 
 
@@ -28,7 +30,6 @@ def truth(id="x", kind="single", effects=("tsuji",), d_prime=10.0, **changes):
         "hidden": hidden,
         "leftover_d_prime": 9.0 if kind == "foreign" else 0.5,
         "nearest": {"id": "viscous-drag", "leaves_d_prime": 3.0},
-        "ideal": {"tsuji": 0.9, "viscous-drag": 0.1},
     }
     return base | changes
 
@@ -46,17 +47,48 @@ def verdict(named=("tsuji",), probabilities=None, **changes):
     return base | changes
 
 
+IDEAL = {"ideal": "0.9", "before": "0.3", "cells": "r1/g1=9 r1/wall=2 r2/g1=0.2 r2/wall=6"}
+
+
 def test_right_name():
-    found = row(truth(), verdict())
+    found = row(truth(), verdict(), ideal=IDEAL)
     assert (found.exact, found.class_level, found.false_alarm, found.confident_wrong) == (1, 1, 0, 0)
     assert found.ideal == 0.9
-    assert (found.inside, found.intervals) == (1, 1)
+    assert (found.stated, found.credible, found.credible_size, found.wrong) == (0.98, 1, 1, 0)
+    assert found.brier == pytest.approx(2 * 0.02**2)
     assert found.chi2 == pytest.approx(1.02)
 
 
-def test_interval_that_misses():
-    far = {"tsuji": {"alpha": {"value": 0.12, "sigma": 0.01}}}
-    assert row(truth(), verdict(parameters=far)).inside == 0
+def test_what_stands_beside_a_verdict_is_scored(tmp_path):
+    """Two draws of three below the truth; the right bead; one cell found rightly, one wrongly, one missed."""
+    (tmp_path / "posterior.csv").write_text(
+        "effect,parameter,how,value,weight\n"
+        + "".join(f"tsuji,alpha,sampled,{v},1\n" for v in (0.08, 0.09, 0.2))
+    )
+    assert parameters(truth(), verdict(), tmp_path)[0].pit == pytest.approx(2 / 3)
+    (tmp_path / "model.json").write_text(json.dumps({"effects": {"tsuji": {"alpha": 0.1, "bead": 4.0}}}))
+    placed = [{"id": "tsuji", "parameters": {"alpha": 0.1}, "d_prime": 10.0, "bead": 4}]
+    assert row(truth(hidden=placed), verdict(), folder=tmp_path).place == 1.0
+    placed[0]["bead"] = 5
+    assert row(truth(hidden=placed), verdict(), folder=tmp_path).place == 0.0
+    cells = "r1,g1,delay,0.001\nr1,g1,width,0.001\nr2,g1,delay,0.002\nr2,wall,delay,0.3\n"
+    (tmp_path / "where.csv").write_text("run,sensor,feature,q_before\n" + cells)
+    found = row(truth(), verdict(), folder=tmp_path, ideal=IDEAL)
+    assert (found.cells_right, found.cells_wrong, found.cells_seen, found.cells_large) == (1, 1, 1, 2)
+
+
+def test_without_draws_an_interval_is_normal():
+    (found,) = parameters(truth(), verdict())
+    assert found.pit == pytest.approx(stats.norm.cdf(-1.0))
+    assert parameters(truth(), verdict(["gravity"])) == []
+
+
+def test_limits_count_for_hidden_effects_that_are_not_named():
+    def held(limit):
+        return row(truth(), verdict([], upper_limits={"tsuji": {"alpha": limit}})).held
+
+    assert (held(0.2), held(0.05)) == (1, 0)
+    assert row(truth(), verdict(upper_limits={"tsuji": {"alpha": 0.2}})).limits == 0
 
 
 def test_name_of_the_same_class():
@@ -124,9 +156,11 @@ def test_gaps_are_added_up_where_one_is_lost_in_noise():
 
 
 def test_summary_puts_cases_where_they_belong():
-    rows = [row(truth(str(k), d_prime=d), verdict()) for k, d in enumerate((5.0, 5.2, 9.6, 21.0))]
+    strengths = enumerate((5.0, 5.2, 9.6, 21.0))
+    rows = [row(truth(str(k), d_prime=d), verdict(), ideal=IDEAL) for k, d in strengths]
     exact = {one.group: one for one in summary(rows) if one.measure == "exact name"}
-    assert [exact[f"traces, d' {s}"].count for s in ("5", "7.5", "10", "20")] == [2, 0, 1, 1]
+    assert [exact[f"traces, d' {s}"].count for s in ("5", "10", "20")] == [2, 1, 1]
+    assert exact["all"].count == 4
     assert exact["traces, d' 5"].ideal == pytest.approx(0.9)
     assert exact["traces, d' 5"].value == 1.0
     assert exact["traces, d' 5"].of_ideal == pytest.approx(1.0 / 0.9)
@@ -156,7 +190,8 @@ def test_confusion_has_every_name_and_counts_every_single_case():
 
 def test_accuracy_by_design_and_strength():
     rows = [row(truth(str(k), d_prime=d), verdict()) for k, d in enumerate((5.0, 5.4, 20.0))]
-    rows.append(row(truth("w", design="ball"), verdict(["gravity"], confusable=[["gravity", "tsuji"]])))
+    alike = verdict(["gravity"], confusable=[["gravity", "tsuji"]])
+    rows.append(row(truth("w", design="ball"), alike, ideal=IDEAL))
     found = {(a.design, a.strength): a for a in breakdown.accuracy(rows)}
     assert set(found) == {("traces", 5.0), ("traces", 20.0), ("ball", 10.0)}
     assert found["traces", 5.0].d_prime == pytest.approx(5.2)
@@ -166,11 +201,13 @@ def test_accuracy_by_design_and_strength():
 
 
 def test_coverage_by_effect_and_seconds_by_kind():
-    far = {"tsuji": {"alpha": {"value": 0.12, "sigma": 0.01}}}
-    rows = [row(truth("a"), verdict()), row(truth("b"), verdict(parameters=far, timing_s={"total": 4.0}))]
-    found = {c.effect: c for c in breakdown.coverage(rows)}
-    assert (found["tsuji"].count, found["tsuji"].value) == (2, 0.5)
-    assert (found["all"].count, found["gravity"].count) == (2, 0)
+    far = verdict(parameters={"tsuji": {"alpha": {"value": 0.12, "sigma": 0.01}}}, timing_s={"total": 4.0})
+    rows = [row(truth("a"), verdict()), row(truth("b"), far)]
+    intervals = [*parameters(truth("a"), verdict()), *parameters(truth("b"), far)]
+    found = {(c.effect, c.level): c for c in breakdown.coverage(intervals)}
+    assert (found["tsuji", 0.9].count, found["tsuji", 0.9].value) == (2, 0.5)
+    assert found["tsuji", 0.5].value == 0.0
+    assert (found["all", 0.9].count, found["gravity", 0.9].count) == (2, 0)
     times = {s.kind: s for s in breakdown.seconds(rows)}
     # Linear between order statistics, numpy's default.
     assert (times["single"].median, times["single"].percentile_90) == pytest.approx((3.0, 3.8))

@@ -18,7 +18,6 @@ from sonicvacuum_blind.strength import (
     leftover,
     log_evidence,
     nearest,
-    pair_ceiling,
     rivals,
     scale,
 )
@@ -156,16 +155,6 @@ def test_ideal_rule_pays_for_a_low_rate_of_false_alarms():
     assert found["a"] == pytest.approx(
         stats.norm.sf(limit - 3.0), abs=0.06
     )  # 2000 draws, 20 beyond the limit
-
-
-def test_pair_is_as_hard_as_each_of_it_beside_the_other():
-    one, two, three = np.eye(50)[:3]
-    catalogue = [Rival("a", None, one), Rival("b", None, two), Rival("c", None, three)]
-    random = np.random.default_rng(3)
-    assert pair_ceiling(catalogue, [("a", 8.0 * one), ("b", 8.0 * two)], random) > 0.98
-    # Once one effect is known, the third is all but like the other one: two guesses.
-    blend = [*catalogue[:2], Rival("c", None, np.sqrt(0.5) * (one + two) + 1e-4 * three)]
-    assert pair_ceiling(blend, [("a", 8.0 * one), ("b", 8.0 * two)], random) == pytest.approx(0.25, abs=0.05)
 
 
 def test_impossible_strengths_are_capped(frame):

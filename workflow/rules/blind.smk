@@ -51,10 +51,36 @@ rule discover_hidden:
         "sonicvacuum discover {input.records:q}/* --out {output:q} --no-figures --threads {threads:q} > {log:q} 2>&1"
 
 
+# Known from the list of cases alone, while records are still being looked into.
+rule ideal:
+    output:
+        f"{BLIND}/ideal/{{batch}}.csv",
+    log:
+        "results/logs/ideal/{study}-{batch}.log",
+    benchmark:
+        "results/benchmarks/ideal/{study}-{batch}.tsv"
+    conda:
+        ENVIRONMENT
+    params:
+        sources=sources("blind ideal", without=CATALOGUE),
+        batches=lambda wildcards: BATCHES[wildcards.study],
+    message:
+        "Asking the ideal rule about batch {wildcards.batch} of the {wildcards.study} study"
+    shell:
+        "sonicvacuum blind ideal --study {wildcards.study:q} --batch {wildcards.batch:q}/{params.batches:q}"
+        " --out {output:q} > {log:q} 2>&1"
+
+
 rule score:
     input:
         truth=batches("truth"),
         verdicts=batches("verdicts"),
+        ideal=lambda wildcards: expand(
+            f"{BLIND}/ideal/{{batch}}.csv",
+            study=wildcards.study,
+            # The others are too small to be judged by it.
+            batch=range(TAKEN["full"] if wildcards.study == "full" else 0),
+        ),
     output:
         f"{BLIND}/score.csv",
         f"{BLIND}/summary.csv",
@@ -68,10 +94,11 @@ rule score:
     params:
         sources=sources("blind score", without=CATALOGUE),
         folder=lambda wildcards: f"results/blind/{wildcards.study}",
+        ideal=lambda wildcards, input: repeated("--ideal", input.ideal),
     message:
         "Scoring the {wildcards.study} study"
     shell:
-        "sonicvacuum blind score --truth {params.folder:q}/truth --verdicts {params.folder:q}/verdicts"
+        "sonicvacuum blind score --truth {params.folder:q}/truth --verdicts {params.folder:q}/verdicts {params.ideal:q}"
         " --out {params.folder:q}/score.csv --summary {params.folder:q}/summary.csv --tables {params.folder:q}"
         " > {log:q} 2>&1"
 
@@ -185,11 +212,11 @@ rule blind_full:
         expand("results/blind/full/{picture}.svg", picture=PICTURES),
 
 
-# Run on purpose: the tables of this run become those that docs/study.md and report quote.
+# Run on purpose: the tables of this run become those that docs/study.md, README and report quote. What takes longer
+# (simpler rules, one more run, fresh runs) is kept where it has been made.
 rule publish_study:
     input:
-        tables=expand("results/blind/full/{table}.csv", table=["summary", "baselines", *DETAILS]),
-        resolved="results/blind/full/resolved_summary.csv",
+        tables=expand("results/blind/full/{table}.csv", table=["summary", "score", *DETAILS]),
     log:
         "results/logs/publish_study.log",
     localrule: True
@@ -197,12 +224,13 @@ rule publish_study:
         ENVIRONMENT
     params:
         page="docs/study.md",
-        folder=lambda wildcards, input: Path(input.resolved).parent,
+        readme="README.md",
+        folder=lambda wildcards, input: Path(input.tables[0]).parent,
         keep=STUDY_TABLES,
     message:
         "Keeping the blind study in git and in docs/study.md"
     shell:
-        "sonicvacuum blind publish {params.folder:q} --page {params.page:q} --keep {params.keep:q} > {log:q} 2>&1"
+        "sonicvacuum blind publish {params.folder:q} --page {params.page:q} --readme {params.readme:q} --keep {params.keep:q} > {log:q} 2>&1"
 
 
 # One more run for each case left ambiguous: the one that its verdict proposes, or a random one.

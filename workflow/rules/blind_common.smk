@@ -10,8 +10,8 @@ FOLLOWED = {"small": 4, "training": 4, "full": 8}
 BLIND = "results/blind/{study}"
 # Asked only for the priors that a record may state, which hidden data never do: they stay when an effect changes.
 CATALOGUE = ("sonicvacuum.effects",)
-PICTURES = ["confusion", "accuracy", "reliability", "baselines"]
-DETAILS = ["confusion", "accuracy", "reliability", "coverage", "seconds"]
+PICTURES = ["confusion", "accuracy", "reliability", "pit", "baselines"]
+DETAILS = ["confusion", "accuracy", "reliability", "seconds", "parameters", "coverage", "pit"]
 CHOICES = ["proposed", "random"]
 
 

@@ -22,8 +22,8 @@ FIGURES = [name for name in names() if drawable(name, CARDS)]
 # Those of cases that the paper does not have.
 OWN = list(filter(own, CARDS))
 # Pictures of the full study and its tables as kept in git.
-STUDY = kept.PICTURES
 STUDY_TABLES = home(kept.TABLES)
+STUDY = [name for name in kept.PICTURES if os.path.exists(kept.table(name, STUDY_TABLES))]
 
 
 @cache

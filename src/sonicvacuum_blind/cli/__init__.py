@@ -7,7 +7,9 @@ blind = Verbs(
     help="The blind test of discover: data with hidden effects, their score, and simpler rules beside it.",
     verbs={
         "hide": "sonicvacuum_blind.cli.hide:hide",
+        "ideal": "sonicvacuum_blind.cli.ideal:ideal",
         "score": "sonicvacuum_blind.cli.score:score",
+        "tables": "sonicvacuum_blind.cli.score:tables",
         "slips": "sonicvacuum_blind.cli.slips:slips",
         "slips-score": "sonicvacuum_blind.cli.slips:slips_score",
         "extras": "sonicvacuum_blind.cli.extras:extras",

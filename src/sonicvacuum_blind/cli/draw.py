@@ -13,13 +13,13 @@ from sonicvacuum.cli.helped import FOLDER, PRESENT, verb
     "--picture",
     "wanted",
     multiple=True,
-    type=click.Choice(["confusion", "accuracy", "reliability", "baselines"]),
+    type=click.Choice(["confusion", "accuracy", "reliability", "pit", "baselines"]),
     help="Only these; repeat.",
 )
 @click.option("--out", type=FOLDER, help="Folder for the pictures instead of FOLDER.")
 @click.option("--prefix", default="", help="Put before their names.")
 def draw(folder, wanted, out, prefix):
-    """Draw the tables of a blind study in FOLDER: confusion, accuracy, reliability, baselines."""
+    """Draw the tables of a blind study in FOLDER: confusion, accuracy, reliability, pit, baselines."""
     from sonicvacuum_blind import figures
 
     for path in figures.draw(Path(folder), wanted, out, prefix):

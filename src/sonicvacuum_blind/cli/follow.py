@@ -32,9 +32,7 @@ def follow(study, path, verdicts, out, choice, batch):
     from sonicvacuum_blind import followup
     from sonicvacuum_blind import study as studies
 
-    if (study is None) == (path is None):
-        raise InputError("follow: give --study or --cases, one of them")
-    specs = studies.batch(studies.cases(study) if study else studies.read_cases(path), *batch_of(batch))
+    specs = studies.chosen(study, path, *batch_of(batch))
     check_apart_from_verdicts(out, verdicts)
     check_collection(out, [spec.id for spec in specs], lambda name: Path(out) / name / followup.FILE)
     # The folder stands for the batch also where nothing in it is ambiguous.

@@ -1,12 +1,15 @@
-"""`sonicvacuum blind score`: how well `discover` did on hidden effects."""
+"""`sonicvacuum blind score` and `tables`: how well `discover` did on hidden effects."""
 
 from pathlib import Path
 
 import click
 
+from sonicvacuum.cli import existing
 from sonicvacuum.cli.helped import FOLDER, PRESENT, WRITTEN, verb
 from sonicvacuum.outputs import check_apart
 from sonicvacuum_blind.cli.options import say
+
+DETAILS = "confusion, accuracy, reliability, seconds, parameters, coverage, pit (CSV)"
 
 
 @verb("sonicvacuum blind score --truth truth --verdicts found --out scores.csv --summary summary.csv")
@@ -15,23 +18,57 @@ from sonicvacuum_blind.cli.options import say
 @click.option("--out", required=True, type=WRITTEN, help="Score of each case (CSV) to write.")
 @click.option("--summary", required=True, type=WRITTEN, help="Table (CSV) to write.")
 @click.option(
-    "--tables",
-    type=FOLDER,
-    help="Folder for the tables in detail: confusion, accuracy, reliability, coverage, seconds (CSV).",
+    "--ideal", multiple=True, type=existing(), help="Table of sonicvacuum blind ideal; repeat for batches."
 )
-def score(truth, verdicts, out, summary, tables):
+@click.option("--tables", type=FOLDER, help=f"Folder for the tables in detail: {DETAILS}.")
+def score(truth, verdicts, out, summary, ideal, tables):
     """Compare verdicts with the truth: one row for each case, and a table with 95 % intervals."""
+    from sonicvacuum_blind import score as scoring
+
+    check_apart([out, summary, *_paths(tables).values()], [truth, verdicts, *ideal])
+    scoring.write_table(scoring.score(truth, verdicts, ideal), scoring.Row, out)
+    # The tables are of what is written, digit by digit, so that they can be made of it again.
+    rows = scoring.read_table(scoring.Row, out)
+    _tabulate(rows, scoring.intervals(truth, verdicts), summary, tables)
+
+
+@verb("sonicvacuum blind tables scored --out tables")
+@click.argument("folder", type=PRESENT)
+@click.option("--out", required=True, type=FOLDER, help="Folder for the tables.")
+def tables(folder, out):
+    """Make the tables of a study of FOLDER's score.csv and parameters.csv again."""
+    from sonicvacuum_blind import score as scoring
+    from sonicvacuum_blind.stated import Parameter
+
+    check_apart([Path(out) / "summary.csv", *_paths(out).values()], [folder])
+    rows = scoring.read_table(scoring.Row, Path(folder) / "score.csv")
+    intervals = scoring.read_table(Parameter, Path(folder) / "parameters.csv")
+    _tabulate(rows, intervals, Path(out) / "summary.csv", out)
+
+
+def _paths(folder):
+    """Name of each table in detail → its file."""
+    from sonicvacuum_blind import breakdown
+
+    names = (*breakdown.TABLES, *breakdown.INTERVALS) if folder else ()
+    return {name: Path(folder) / f"{name}.csv" for name in names}
+
+
+def _tabulate(rows, intervals, summary, folder):
+    """Write and say what the rows and the stated intervals come to."""
     from sonicvacuum_blind import breakdown
     from sonicvacuum_blind import score as scoring
+    from sonicvacuum_blind.stated import Parameter
     from sonicvacuum_blind.summary import summary as summarise
 
-    details = {name: Path(tables) / f"{name}.csv" for name in breakdown.TABLES} if tables else {}
-    check_apart([out, summary, *details.values()], [truth, verdicts])
-    rows = scoring.score(truth, verdicts)
-    lines = summarise(rows)
-    scoring.write_table(rows, scoring.Row, out)
+    paths = _paths(folder)
+    if folder:
+        scoring.write_table(intervals, Parameter, paths["parameters"])
+        intervals = scoring.read_table(Parameter, paths["parameters"])
+    lines = summarise(rows, intervals)
     scoring.write_table(lines, scoring.Line, summary)
-    for name, path in details.items():
-        kind, table = breakdown.TABLES[name]
-        scoring.write_table(table(rows), kind, path)
+    for tables, given in ((breakdown.TABLES, rows), (breakdown.INTERVALS, intervals)):
+        for name, (kind, table) in tables.items():
+            if folder:
+                scoring.write_table(table(given), kind, paths[name])
     say(lines)

@@ -1,5 +1,6 @@
 """`figures/README.md`: each figure with its caption, and what it is made from."""
 
+from pathlib import Path
 from re import escape, search
 
 from sonicvacuum.tables import read_csv
@@ -24,6 +25,8 @@ def text(claims) -> str:
 
     Args:
         claims: path of the table of claims; a claim belongs to the figures that its section names.
+
+    Pictures of the blind study are those whose tables are kept below the working folder.
     """
     lines = [_HEAD]
     found = _claims(claims)
@@ -40,7 +43,9 @@ def text(claims) -> str:
             f"* Claims: {', '.join(f'`{claim}`' for claim in found[name])}\n",
         ]
     for name, title in kept.PICTURES.items():
-        table = f"{kept.TABLES}/{name.removeprefix('blind_')}.csv"
+        table = kept.table(name)
+        if not Path(table).exists():
+            continue
         lines += [
             f"## {title}\n",
             f"![{title}]({name}.png)\n",

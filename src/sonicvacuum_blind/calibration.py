@@ -1,0 +1,65 @@
+"""Whether what is stated comes true: probabilities of names, and posterior probabilities of parameters."""
+
+import math
+from collections.abc import Callable, Iterable, Mapping
+
+import numpy as np
+from scipy import stats
+
+from sonicvacuum_blind.score import Row
+
+BINS = 10
+RESAMPLES = 500
+# Base rates of kinds of record unlike those of the study, to which its records are weighed.
+BASE_RATES: Mapping[str, Mapping[str, float]] = {
+    "half empty": {"null": 0.5, "single": 0.4, "pair": 0.05, "set": 0.0, "foreign": 0.05},
+    "nine in ten empty": {"null": 0.9, "single": 0.08, "pair": 0.01, "set": 0.0, "foreign": 0.01},
+    "a third foreign": {"null": 0.2, "single": 0.4, "pair": 0.05, "set": 0.0, "foreign": 0.35},
+}
+
+
+def ece(rows: Iterable[Row], rates: Mapping[str, float] | None = None) -> tuple[int, float, float, float]:
+    """(count, error, low, high): mean distance of stated probabilities of names given from shares right.
+
+    In ten bins, weighed by the records in them; with base rates, each kind of record weighs as much as these
+    say. The interval is that of resampled records, of which the statistic itself is known to lie a little too
+    high (it has no sign), so that it errs to the unfavourable side.
+    """
+    rows = list(rows)
+    if not rows:
+        return 0, math.nan, math.nan, math.nan
+    sizes = {kind: sum(r.kind == kind for r in rows) for kind in {r.kind for r in rows}}
+    weight = np.array([rates[r.kind] / sizes[r.kind] if rates else 1.0 for r in rows])
+    place = np.array([min(int(r.stated * BINS), BINS - 1) for r in rows])
+    off = np.array([r.stated - r.exact for r in rows])
+
+    def error(index):
+        sums = np.bincount(place[index], weight[index] * off[index], BINS)
+        return float(np.abs(sums).sum() / weight[index].sum())
+
+    return len(rows), *resampled(error, len(rows))
+
+
+def resampled(statistic: Callable[[np.ndarray], float], count: int) -> tuple[float, float, float]:
+    """A statistic of records (by their places) with its 95 % interval from resampled records."""
+    random = np.random.default_rng(np.random.SeedSequence(20061))
+    if not count:
+        return math.nan, math.nan, math.nan
+    with np.errstate(invalid="ignore", divide="ignore"):
+        found = [statistic(random.integers(count, size=count)) for _ in range(RESAMPLES)]
+        low, high = np.nanquantile(found, [0.025, 0.975])
+        return float(statistic(np.arange(count))), float(low), float(high)
+
+
+def band(count: int, groups: int = 1) -> float:
+    """Half width of the band that holds the ECDF of uniform numbers everywhere in 95 % of samples, in all of
+    so many groups at once: Kolmogorov's distribution for `count` numbers (scipy.stats.kstwo), the level
+    divided by Šidák's rule.
+    """
+    return float(stats.kstwo.ppf(0.95 ** (1.0 / groups), count)) if count else math.nan
+
+
+def distance(pit: Iterable[float]) -> float:
+    """Largest distance of the ECDF of numbers in 0 to 1 from the diagonal (scipy.stats.kstest)."""
+    pit = list(pit)
+    return float(stats.kstest(pit, "uniform").statistic) if pit else math.nan

@@ -1,0 +1,26 @@
+"""`sonicvacuum blind ideal`: what an ideal rule could make of each case, known before any verdict."""
+
+import click
+
+from sonicvacuum.cli import existing
+from sonicvacuum.cli.helped import WRITTEN, verb
+from sonicvacuum_blind.cli.options import STUDIES, batch_of
+
+
+@verb("sonicvacuum blind ideal --study small --batch 0/4 --out ideal.csv")
+@click.option("--study", type=STUDIES, help="A fixed list of cases.")
+@click.option("--cases", "path", type=existing(), help="List of cases (CSV), instead of --study.")
+@click.option("--batch", default="0/1", show_default=True, help="k/n: every n-th case from the k-th on.")
+@click.option("--out", required=True, type=WRITTEN, help="Table (CSV) to write.")
+def ideal(study, path, batch, out):
+    """Work out how often a rule that knows all signatures names each hidden effect rightly.
+
+    Beside it, where the hidden effect shows and how far it moves the record's own errors. Needs neither
+    records nor verdicts: a case is the same whenever it is asked for.
+    """
+    from sonicvacuum_blind import ideal as rule
+    from sonicvacuum_blind.score import write_table
+    from sonicvacuum_blind.study import chosen
+
+    lines = [rule.line(spec) for spec in chosen(study, path, *batch_of(batch))]
+    write_table(lines, rule.Line, out)
