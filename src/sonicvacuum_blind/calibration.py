@@ -22,8 +22,8 @@ def ece(rows: Iterable[Row], rates: Mapping[str, float] | None = None) -> tuple[
     """(count, error, low, high): mean distance of stated probabilities of names given from shares right.
 
     In ten bins, weighed by the records in them; with base rates, each kind of record weighs as much as these
-    say. The interval is that of resampled records, of which the statistic itself is known to lie a little too
-    high (it has no sign), so that it errs to the unfavourable side.
+    say. An error without sign is on average a little larger than the true one, so that it errs to the
+    unfavourable side.
     """
     rows = list(rows)
     if not rows:
@@ -41,14 +41,17 @@ def ece(rows: Iterable[Row], rates: Mapping[str, float] | None = None) -> tuple[
 
 
 def resampled(statistic: Callable[[np.ndarray], float], count: int) -> tuple[float, float, float]:
-    """A statistic of records (by their places) with its 95 % interval from resampled records."""
+    """A statistic of records (by their places), which is not negative, with its 95 % interval from resampled
+    records, shifted so that their mean is the statistic: resampling alone makes errors without sign larger.
+    """
     random = np.random.default_rng(np.random.SeedSequence(20061))
     if not count:
         return math.nan, math.nan, math.nan
     with np.errstate(invalid="ignore", divide="ignore"):
         found = [statistic(random.integers(count, size=count)) for _ in range(RESAMPLES)]
-        low, high = np.nanquantile(found, [0.025, 0.975])
-        return float(statistic(np.arange(count))), float(low), float(high)
+        value = float(statistic(np.arange(count)))
+        low, high = np.nanquantile(found, [0.025, 0.975]) - np.nanmean(found) + value
+    return value, max(float(low), 0.0), float(high)
 
 
 def band(count: int, groups: int = 1) -> float:
@@ -60,6 +63,7 @@ def band(count: int, groups: int = 1) -> float:
 
 
 def distance(pit: Iterable[float]) -> float:
-    """Largest distance of the ECDF of numbers in 0 to 1 from the diagonal (scipy.stats.kstest)."""
-    pit = list(pit)
-    return float(stats.kstest(pit, "uniform").statistic) if pit else math.nan
+    """Largest distance of the ECDF of numbers in 0 to 1 from the diagonal, Kolmogorov's statistic."""
+    x = np.sort(list(pit))
+    steps = np.arange(len(x) + 1) / max(len(x), 1)
+    return float(max(np.max(steps[1:] - x), np.max(x - steps[:-1]))) if len(x) else math.nan

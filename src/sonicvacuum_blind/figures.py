@@ -38,8 +38,8 @@ CAPTIONS = {
         Posterior probability below the truth (PIT) of the parameters of effects hidden and named: its
         cumulative distribution (ECDF) less the diagonal, all parameters together (a) and by effect (b), in
         units of the half width of the band that right intervals stay in: everywhere, in 95 % of studies, in
-        all effects at once. Grey: that band. Falling from the left, stated values are too large; an S that
-        starts upwards, intervals are too narrow.
+        all effects at once. Grey: that band; orange: effects that leave it. Above the line, stated values are
+        too large; above on the left and below on the right, intervals are too narrow.
     """),
     "baselines": style.paragraph("""
         Simpler rules on the same records: (a) exact names of single hidden effects of all strengths and kinds

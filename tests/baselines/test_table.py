@@ -77,18 +77,19 @@ def study(tmp_path):
     """Folders of one case as hide and discover leave them."""
     truth = {
         **{"id": "x", "kind": "single", "design": "traces", "noise": "white", "effects": ["tsuji"]},
-        **{"d_prime": 10.0, "leftover_d_prime": 0.0, "nearest": {"id": "gravity"}, "ideal": {"tsuji": 0.8}},
+        **{"d_prime": 10.0, "leftover_d_prime": 0.0, "nearest": {"id": "gravity"}},
         "hidden": [{"id": "tsuji", "parameters": {"alpha": 0.1}, "d_prime": 10.0}],
     }
     verdict = {"named": ["tsuji"], "probabilities": {"tsuji": 1.0}, "confusable": [], "parameters": {}}
     files = {
         "records/0/x/record.yaml": "runs: []\n",
+        "ideal.csv": "id,ideal,before,cells\nx,0.8,0.1,r1/g1=3\n",
         "truth/0/x/truth.json": json.dumps(truth),
         "verdicts/0/x/verdict.json": json.dumps(verdict),
         "verdicts/0/x/candidates.csv": "effects,delta_chi2,parameters\ngravity,9,gravity fraction 0.5\n"
         "tsuji,12,tsuji alpha 0.1\ntsuji+gravity,40,\n",
         "verdicts/0/x/gap.csv": "run,data,before\nr1,500,1.2\nall,1000,1.1\n",
-        "verdicts/0/x/where.csv": "run,sensor,feature,z_before,size\nr1,g1,delay,3.0,\n",
+        "verdicts/0/x/where.csv": "run,sensor,feature,z_before,q_before,size\nr1,g1,delay,3.0,0.02,\n",
     }
     write(tmp_path, files)
     return tmp_path
@@ -100,7 +101,7 @@ def run(study, *more):
 
 
 def test_command_writes_the_table(study):
-    done = run(study, "--rule", "best-chi2", "--rule", "bic")
+    done = run(study, "--rule", "best-chi2", "--rule", "bic", f"--ideal={study / 'ideal.csv'}")
     assert done.exit_code == 0, done.output
     with open(study / "out.csv", newline="") as stream:
         lines = list(csv.DictReader(stream))

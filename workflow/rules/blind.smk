@@ -75,12 +75,7 @@ rule score:
     input:
         truth=batches("truth"),
         verdicts=batches("verdicts"),
-        ideal=lambda wildcards: expand(
-            f"{BLIND}/ideal/{{batch}}.csv",
-            study=wildcards.study,
-            # The others are too small to be judged by it.
-            batch=range(TAKEN["full"] if wildcards.study == "full" else 0),
-        ),
+        ideal=ideal,
     output:
         f"{BLIND}/score.csv",
         f"{BLIND}/summary.csv",
@@ -108,6 +103,7 @@ rule baselines:
         records=batches("records"),
         truth=batches("truth"),
         verdicts=batches("verdicts"),
+        ideal=ideal,
         training=training,
         lock=home("requirements-study.lock"),
     output:
@@ -121,6 +117,7 @@ rule baselines:
     params:
         sources=sources("blind baselines"),
         folder=lambda wildcards: f"results/blind/{wildcards.study}",
+        ideal=lambda wildcards, input: repeated("--ideal", input.ideal),
         training=lambda wildcards, input: repeated(
             "--training", ["results/blind/training"] if input.training else []
         ),
@@ -128,7 +125,7 @@ rule baselines:
         "Trying simpler rules on the {wildcards.study} study"
     shell:
         "sonicvacuum blind baselines --records {params.folder:q}/records --truth {params.folder:q}/truth"
-        " --verdicts {params.folder:q}/verdicts {params.training:q} --out {output:q} > {log:q} 2>&1"
+        " --verdicts {params.folder:q}/verdicts {params.ideal:q} {params.training:q} --out {output:q} > {log:q} 2>&1"
 
 
 rule draw_study:

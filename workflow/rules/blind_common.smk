@@ -29,6 +29,12 @@ def some_batches(part):
     )
 
 
+def ideal(wildcards):
+    """Tables of the ideal rule; the other studies are too small to be judged by it."""
+    count = TAKEN["full"] if wildcards.study == "full" else 0
+    return expand(f"{BLIND}/ideal/{{batch}}.csv", study=wildcards.study, batch=range(count))
+
+
 def training(wildcards):
     """What the rules that learn need of the training family; the small study does without."""
     if wildcards.study != "full":

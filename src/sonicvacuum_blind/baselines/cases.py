@@ -55,13 +55,13 @@ class Case:
     truth: Path
 
 
-def read(records, truths, verdicts) -> list[Case]:
-    """All cases below three folders, by id.
+def read(records, truths, verdicts, ideal=()) -> list[Case]:
+    """All cases below three folders, by id; tables of the ideal rule beside.
 
     Raises:
         InputError: where a case lacks its record, its verdict or one of the verdict's tables.
     """
-    rows = score.score(truths, verdicts)
+    rows = score.score(truths, verdicts, ideal)
     found = {p.parent.name: p.parent for p in Path(records).rglob("record.yaml")}
     told = {p.parent.name: p.parent for p in Path(verdicts).rglob("verdict.json")}
     known = {p.parent.name: p for p in Path(truths).rglob(TRUTH)}

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import click
 
+from sonicvacuum.cli import existing
 from sonicvacuum.cli.helped import PRESENT, WRITTEN, verb
 from sonicvacuum.outputs import check_apart
 
@@ -15,6 +16,7 @@ _RULES = ("best-chi2", "bic", "nearest-shape", "forest", "state")
 @click.option("--truth", required=True, type=PRESENT, help="Folder of truths.")
 @click.option("--verdicts", required=True, type=PRESENT, help="Folder of verdicts.")
 @click.option("--out", required=True, type=WRITTEN, help="Table (CSV) to write.")
+@click.option("--ideal", multiple=True, type=existing(), help="Table of sonicvacuum blind ideal; repeat.")
 @click.option("--training", type=PRESENT, help="Folder with records/, truth/ and verdicts/ to learn from.")
 @click.option(
     "--rule",
@@ -30,14 +32,14 @@ _RULES = ("best-chi2", "bic", "nearest-shape", "forest", "state")
     type=click.IntRange(1),
     help="So many cases, evenly spread, for the rule state, which integrates each chain again.",
 )
-def baselines(records, truth, verdicts, out, training, wanted, state_cases):
+def baselines(records, truth, verdicts, out, ideal, training, wanted, state_cases):
     """Name what is hidden by simpler rules on the same cases, and count how often they are right."""
     from sonicvacuum_blind.baselines import table
     from sonicvacuum_blind.baselines.cases import read
     from sonicvacuum_blind.score import write_table
 
-    check_apart([out], [records, truth, verdicts, training])
-    cases = read(records, truth, verdicts)
+    check_apart([out], [records, truth, verdicts, training, *ideal])
+    cases = read(records, truth, verdicts, ideal)
     known = read(*(Path(training) / part for part in ("records", "truth", "verdicts"))) if training else []
     lines = table.compare(cases, known, wanted or table.RULES, state_cases)
     write_table(lines, table.Line, out)
