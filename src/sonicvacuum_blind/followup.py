@@ -22,6 +22,8 @@ from sonicvacuum_blind.record import as_record
 
 ORIENTATIONS = {"horizontal": 0.0, "vertical": GRAVITY}
 CHOICES = ("proposed", "random")
+# The same run as a random one, of every record: what a verdict foretells of a run that it never had.
+FRESH = "fresh"
 # Beside the further run's record; the laboratory knows it.
 FILE = "change.json"
 

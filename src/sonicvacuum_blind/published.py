@@ -82,7 +82,7 @@ def in_short(study: Study) -> str:
 
     def found(measure, group):
         row = rows.get((measure, group), {})
-        if not row.get("value"):
+        if row.get("count", "0") == "0":
             return "–"
         value, low, high = (100.0 * float(row[key]) for key in ("value", "low", "high"))
         beside = "" if row["ideal"] in ("", "nan") else f", an ideal rule {100.0 * float(row['ideal']):.1f} %"

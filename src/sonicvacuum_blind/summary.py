@@ -62,7 +62,7 @@ def _places(rows):
 
 def _classes(of):
     for kind in KINDS:
-        yield _share(f"truth in the {CREDIBLE:.0%} credible set", kind, of[kind], "credible")
+        yield _share(f"truth in the {100 * CREDIBLE:.0f} % credible set", kind, of[kind], "credible")
         sizes = [float(r.credible_size) for r in of[kind]]
         yield Line("size of that set", f"{kind}, median", *quantile(sizes, 0.5))
 
@@ -114,7 +114,9 @@ def _intervals(rows, parameters):
     group = "effects whose ECDF leaves it"
     yield Line("PIT-ECDF inside its band", group, len(effects), outside, math.nan, math.nan, goal="<= 0")
     for one in coverage(parameters)[:4]:
-        yield Line(f"{one.level:.0%} interval holds truth", "all", one.count, one.value, one.low, one.high)
+        yield Line(
+            f"{100 * one.level:.0f} % interval holds truth", "all", one.count, one.value, one.low, one.high
+        )
     held, count = sum(r.held for r in rows), sum(r.limits for r in rows)
     yield Line("upper limit holds truth", "hidden, not named", count, *share(held, count))
 

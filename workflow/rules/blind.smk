@@ -304,6 +304,59 @@ rule resolved:
         " --out {output.rows:q} --summary {output.summary:q} > {log:q} 2>&1"
 
 
+# A run that discover never had, of a part of the study: what the model found foretells of it, and the nominal one.
+rule compare_fresh:
+    input:
+        verdicts=f"{BLIND}/verdicts/{{batch}}",
+        followed=f"{BLIND}/followed/fresh/{{batch}}",
+    output:
+        directory(f"{BLIND}/foretold/{{batch}}"),
+    log:
+        "results/logs/compare_fresh/{study}-{batch}.log",
+    benchmark:
+        "results/benchmarks/compare_fresh/{study}-{batch}.tsv"
+    conda:
+        ENVIRONMENT
+    params:
+        sources=sources("compare"),
+    message:
+        "Comparing models with fresh runs in batch {wildcards.batch} of the {wildcards.study} study"
+    shell:
+        'mkdir -p {output:q}; for run in {input.followed:q}/*/; do [ -d "$run" ] || continue;'
+        ' id=$(basename "$run"); mkdir -p {output:q}/"$id";'
+        ' sonicvacuum compare --model {input.verdicts:q}/"$id"/model.json "$run" --threads {threads:q}'
+        ' --json {output:q}/"$id"/compared.json; done > {log:q} 2>&1'
+
+
+rule foretold:
+    input:
+        truth=batches("truth"),
+        verdicts=batches("verdicts"),
+        compared=some_batches("foretold"),
+    output:
+        rows=f"{BLIND}/fresh_rows.csv",
+        summary=f"{BLIND}/fresh.csv",
+    log:
+        "results/logs/foretold/{study}.log",
+    benchmark:
+        "results/benchmarks/foretold/{study}.tsv"
+    conda:
+        ENVIRONMENT
+    params:
+        sources=sources("blind foretold", without=CATALOGUE),
+        folder=lambda wildcards: f"results/blind/{wildcards.study}",
+    message:
+        "Counting what models of the {wildcards.study} study foretell of fresh runs"
+    shell:
+        "sonicvacuum blind foretold --truth {params.folder:q}/truth --verdicts {params.folder:q}/verdicts"
+        " --compared {params.folder:q}/foretold --out {output.rows:q} --summary {output.summary:q} > {log:q} 2>&1"
+
+
+rule blind_fresh:
+    input:
+        "results/blind/full/fresh.csv",
+
+
 rule blind_resolved:
     input:
         "results/blind/full/resolved.csv",

@@ -12,7 +12,7 @@ BLIND = "results/blind/{study}"
 CATALOGUE = ("sonicvacuum.effects",)
 PICTURES = ["confusion", "accuracy", "reliability", "pit", "baselines"]
 DETAILS = ["confusion", "accuracy", "reliability", "seconds", "parameters", "coverage", "pit"]
-CHOICES = ["proposed", "random"]
+CHOICES = ["proposed", "random", "fresh"]
 
 
 def batches(part):
@@ -25,7 +25,9 @@ def batches(part):
 def some_batches(part):
     """The same of the batches of which ambiguous records are followed by one more run."""
     return lambda wildcards: expand(
-        f"{BLIND}/{part}/{{batch}}", study=wildcards.study, batch=range(FOLLOWED[wildcards.study])
+        f"{BLIND}/{part}/{{batch}}",
+        study=wildcards.study,
+        batch=range(min(FOLLOWED[wildcards.study], TAKEN[wildcards.study])),
     )
 
 

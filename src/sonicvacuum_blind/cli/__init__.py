@@ -15,6 +15,7 @@ blind = Verbs(
         "extras": "sonicvacuum_blind.cli.extras:extras",
         "extras-score": "sonicvacuum_blind.cli.extras:extras_score",
         "follow": "sonicvacuum_blind.cli.follow:follow",
+        "foretold": "sonicvacuum_blind.cli.foretold:foretold",
         "resolved": "sonicvacuum_blind.cli.resolved:resolved",
         "calibrate": "sonicvacuum_blind.cli.calibrate:calibrate",
         "baselines": "sonicvacuum_blind.cli.baselines:baselines",

@@ -9,6 +9,9 @@ from sonicvacuum.cli.helped import FOLDER, PRESENT, verb
 from sonicvacuum.files import InputError
 from sonicvacuum_blind.cli.options import STUDIES, batch_of
 
+# Designs whose records all have traces, so that a further run can be asked for.
+TRACED = ("traces", "one-speed")
+
 
 @verb("sonicvacuum blind follow --study small --verdicts found --choice proposed --records further")
 @click.option("--study", type=STUDIES, help="A fixed list of cases.")
@@ -18,12 +21,12 @@ from sonicvacuum_blind.cli.options import STUDIES, batch_of
 @click.option(
     "--choice",
     required=True,
-    type=click.Choice(["proposed", "random"]),
-    help="The run that the verdict proposes, or one drawn from all that could be proposed.",
+    type=click.Choice(["proposed", "random", "fresh"]),
+    help="The run that the verdict proposes, or one drawn from all that could be; fresh: that, of all.",
 )
 @click.option("--batch", default="0/1", show_default=True, help="k/n: every n-th case from the k-th on.")
 def follow(study, path, verdicts, out, choice, batch):
-    """Make one more run of the same laboratory for each case that its verdict leaves ambiguous.
+    """Make one more run of the same laboratory for each case that its verdict leaves ambiguous, or for all.
 
     Ambiguous: one effect is hidden, one is named, others could not be told from it, and the hidden one is
     among them. Take the record of a case and OUT/<id> together with sonicvacuum discover --together.
@@ -37,7 +40,7 @@ def follow(study, path, verdicts, out, choice, batch):
     check_collection(out, [spec.id for spec in specs], lambda name: Path(out) / name / followup.FILE)
     # The folder stands for the batch also where nothing in it is ambiguous.
     Path(out).mkdir(parents=True, exist_ok=True)
-    for spec, verdict in _ambiguous(specs, verdicts):
+    for spec, verdict in _chosen(specs, verdicts, choice):
         try:
             followup.write(spec, verdict, choice, out)
         except ValueError as error:
@@ -51,9 +54,11 @@ def check_apart_from_verdicts(out, verdicts):
         raise InputError(f"{out}: lies in {verdicts}, which is read here; give another folder for --records")
 
 
-def _ambiguous(specs, verdicts):
-    """(case, verdict) of the ambiguous cases; InputError where one has no verdict, or not a whole one."""
-    from sonicvacuum_blind.followup import ambiguous
+def _chosen(specs, verdicts, choice):
+    """(case, verdict) of ambiguous cases, or for fresh runs of all that hide effects in traces; InputError
+    where one has no verdict, or not a whole one.
+    """
+    from sonicvacuum_blind.followup import FRESH, ambiguous
     from sonicvacuum_blind.score import found_in, load
 
     paths = found_in(verdicts, "verdict.json")
@@ -66,7 +71,7 @@ def _ambiguous(specs, verdicts):
     for spec in specs:
         verdict = load(paths[spec.id])
         try:
-            chosen = ambiguous(spec, verdict)
+            chosen = spec.effects and spec.design in TRACED if choice == FRESH else ambiguous(spec, verdict)
         except KeyError as error:
             raise InputError(f"{paths[spec.id]}: {error.args[0]}: missing; this key is required") from None
         if chosen:
