@@ -110,7 +110,7 @@ nested: .venv/benched  ## evidence by nested sampling beside that of the search;
 
 study: .venv/studied  ## the full blind study with its baselines and further runs; takes hours
 	$(BIN)/pytest workflow/study
-	$(START) --cores $(CORES) blind_full blind_resolved
+	$(START) --cores $(CORES) blind_full blind_resolved blind_fresh
 
 slips: env  ## slips of the laboratory in 270 records, searched and counted; takes hours
 	$(START) --cores $(CORES) results/blind_slips/summary.csv

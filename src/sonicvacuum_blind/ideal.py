@@ -31,6 +31,8 @@ FITTED = 8.0
 RANGE = (1.0, 1000.0)
 # Fitted are hypotheses that leave less than NEAR + FAR × d′ in the linear approximation; LEAST to MOST.
 NEAR, FAR, LEAST, MOST = 6.0, 0.25, 12, 24
+# Beyond this d′ that approximation may be far off, and of every effect one hypothesis is fitted.
+CURVED = 40.0
 # A start that misses more than this many d′ has pulses elsewhere; then each parameter in turn is tried so far
 # away: the modulus and shapes in standard deviations, strengths in their logarithm.
 ELSEWHERE = 1.5
@@ -139,10 +141,13 @@ def _near(directions: list[Rival], seen: np.ndarray, most: int) -> Iterable[tupl
     found = [(size - max(a, 0.0) ** 2, (d,)) for a, d in zip(z, directions, strict=True)]
     if most == 2:
         found += _pairs(directions, z, size)
-    reach, kept = (NEAR + FAR * math.sqrt(size)) ** 2, {}
+    reach, kept, ids = (NEAR + FAR * math.sqrt(size)) ** 2, {}, set()
     for left, parts in sorted(found, key=lambda one: one[0]):
-        if len(kept) < (MOST if left < reach else LEAST):
+        names = tuple(d.id for d in parts)
+        first = most == 1 and size > CURVED**2 and names not in ids
+        if first or len(kept) < (MOST if left < reach else LEAST):
             kept.setdefault(tuple(d.kind for d in parts), parts)
+            ids.add(names)
     return kept.values()
 
 

@@ -16,8 +16,10 @@ from sonicvacuum.files import InputError
 from sonicvacuum.laboratory.specimen import GRAVITY
 from sonicvacuum_blind import followup, study
 from sonicvacuum_blind.followup import ambiguous, follow, offers, random_change, under
+from sonicvacuum_blind.foretold import foretold
 from sonicvacuum_blind.hide import TOLERANCE, Spec, hide, laboratory
 from sonicvacuum_blind.prediction import predict
+from sonicvacuum_blind.score import Line, read_table
 
 SPEC = Spec("a", "single", "one-speed", "white", ("sensor-gain",), 10.0, 5, 40)
 SCALARS = Spec("s", "null", "scalars", "white", (), 0.0, 5, 41)
@@ -192,3 +194,27 @@ def test_command_makes_the_runs_of_ambiguous_cases(tmp_path):
     refused = CliRunner().invoke(cli, [*call, "--records", str(tmp_path / "out")])
     assert isinstance(refused.exception, InputError)
     assert "no verdict for 1 of 2 cases, first s" in str(refused.exception)
+
+
+def test_fresh_runs_are_held_against_both_models(tmp_path):
+    """Two runs whose gaps of 0.5 and 0.3 shrink to 0.1 each: three quarters of them are closed."""
+    for id, before in (("a", 1.5), ("b", 1.3)):
+        for name, content in (
+            ("truth/truth", {"kind": "single", "effects": ["tsuji"], "d_prime": 10.0}),
+            ("found/verdict", {"named": ["tsuji"]}),
+            ("fresh/compared", {"data": 100, "gap": {"before": before, "after": 1.1}}),
+        ):
+            folder, stem = name.split("/")
+            (tmp_path / folder / id).mkdir(parents=True)
+            (tmp_path / folder / id / f"{stem}.json").write_text(json.dumps(content))
+    call = ["blind", "foretold", "--out", "rows.csv", "--summary", "fresh.csv"]
+    for option, folder in (("truth", "truth"), ("verdicts", "found"), ("compared", "fresh")):
+        call += [f"--{option}", str(tmp_path / folder)]
+    call = [str(tmp_path / part) if part.endswith(".csv") else part for part in call]
+    done = CliRunner().invoke(cli, call, catch_exceptions=False)
+    assert done.exit_code == 0
+    lines = {one.group: one for one in read_table(Line, tmp_path / "fresh.csv")}
+    assert lines["single, gaps added up"].value == pytest.approx(0.75)
+    assert lines["single, model found, names exact, median"].value == pytest.approx(1.1)
+    with pytest.raises(InputError, match="is empty"):
+        foretold(tmp_path / "truth", tmp_path / "found", tmp_path / "truth")
