@@ -223,8 +223,8 @@ def _fitted(frame: Frame, truth, seen, parts: tuple[Rival, ...], mass: float) ->
 
 
 def _elsewhere(whole, start, low, high):
-    """Parameters from which pulses are where they should be: the best of each in turn, twice."""
-    for k in [*range(1, len(start)), 0] * 2:
+    """Parameters from which pulses are where they should be: the best of each in turn."""
+    for k in [*range(1, len(start)), 0]:
         tried = np.tile(start, (len(AWAY), 1))
         tried[:, k] = np.clip(start[k] + AWAY, low[k] + 1e-9, high[k] - 1e-9)
         start = min(tried, key=lambda x: np.linalg.norm(whole(x)))

@@ -324,8 +324,8 @@ rule compare_fresh:
     shell:
         'mkdir -p {output:q}; for run in {input.followed:q}/*/; do [ -d "$run" ] || continue;'
         ' id=$(basename "$run"); mkdir -p {output:q}/"$id";'
-        ' sonicvacuum compare --model {input.verdicts:q}/"$id"/model.json "$run" --threads {threads:q}'
-        ' --json {output:q}/"$id"/compared.json; done > {log:q} 2>&1'
+        ' sonicvacuum compare --model {input.verdicts:q}/"$id/model.json" "$run" --threads {threads:q}'
+        ' --json {output:q}/"$id/compared.json"; done > {log:q} 2>&1'
 
 
 rule foretold:
