@@ -74,7 +74,7 @@ def test_the_full_study_stands_with_its_pictures_before_the_small_one(empty, sum
     drawing = tmp_path / "blind_accuracy.svg"
     drawing.write_text('<svg width="500pt"><g id="a"/></svg>')
     page = blind_page(summary, tmp_path, [(drawing, "What the picture shows.")])
-    assert "36 records. Of 1 goals 1 are met, 0 open and 0 missed" in page
+    assert "36 records. Of 1 goals 0 are met, 1 open and 0 missed" in page
     assert page.index("What the picture shows.") < page.index("The small study of this run</h2>")
     assert "<td>named on null</td><td>white</td>" in page
     assert "No table of this study has been made." not in page
