@@ -5,6 +5,7 @@ leave its stated error to do so, that is worth a look at the bench before any ef
 """
 
 import math
+import re
 from collections.abc import Iterator
 
 from sonicvacuum.discover.faults.table import FAULTS
@@ -35,7 +36,8 @@ def _slip(one) -> str:
 def corrected(verdict: Verdict) -> str:
     """That what follows is of the record put right, "" where nothing was."""
     said = next((r for r in verdict.reasons if r.startswith(PUT_RIGHT)), "")
-    return f"{said[0].upper()}{said[1:]}.".replace("-", " ") if said else ""
+    # Ids of slips in plain words; minus signs stay.
+    return re.sub(r"(?<=[a-z])-(?=[a-z])", " ", f"{said[0].upper()}{said[1:]}.") if said else ""
 
 
 def slip(one: Fault) -> str:
