@@ -80,6 +80,7 @@ INPUTS = {
     f"{SMALL}/verdicts --out {{out}}/study/resolved.csv --summary {{out}}/study/resolved_summary.csv",
     "blind calibrate": f"{STUDIED} --out {{out}}/calibration.json",
     "blind baselines": f"--rule bic --records {SMALL}/records {STUDIED} --out {{out}}/study/baselines.csv",
+    "blind ideal": "--study small --batch 0/36 --out {out}/ideal.csv",
     "blind draw": f"{SMALL} --picture accuracy --out {{out}}",
     "blind page": f"--small {SMALL}/summary.csv --out {{out}}/blind.html",
     "blind publish": "{out}/study --page {out}/study.md --keep {out}/kept",
@@ -133,8 +134,10 @@ def expanded(words: str) -> list[str]:
 
 
 def measured(verb: str, results: Path, folder: Path) -> list[str]:
-    """Row of one verb: seconds of `--help`, of loading, of reading kernels and of the run."""
+    """Row of one verb: seconds of `--help`, loading, reading kernels and the run; empty where not run."""
     helped = min(spent("-P", "-c", COMMAND, *verb.split(), "--help") for _ in range(REPEATS))
+    if verb not in INPUTS:
+        return [verb, f"{helped:.2f}", "", "", "", ""]
     options = expanded(INPUTS[verb].format(results=results, out=folder))
     told = folder / "told.json"
     rows: list[tuple[float, ...]] = []
