@@ -11,6 +11,11 @@ def main() -> None:
         run()
     except KeyboardInterrupt:
         os._exit(130)
+    except ImportError as error:
+        # Some compiled libraries tell an interruption of their own loading as a failure to load.
+        if isinstance(error.__cause__ or error.__context__, KeyboardInterrupt):
+            os._exit(130)
+        raise
 
 
 if __name__ == "__main__":
