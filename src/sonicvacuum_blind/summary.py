@@ -44,13 +44,22 @@ def summary(rows: Iterable[Row], parameters: Iterable[Parameter] = ()) -> list[L
 
 def _exact(measure, rows, goal):
     """All, then by design and d′."""
-    yield _share(measure, "all", rows, "exact")
+    yield from _judged(measure, "all", rows, "")
     for kind in design.KINDS:
         for strength in (0.0, *STRENGTHS):
             chosen = [r for r in rows if r.design == kind and strength_bin(r) == strength]
             group = f"{kind}, d' {strength:g}" if strength else f"{kind}, d' below 2.4"
             if chosen:
-                yield _share(measure, group, chosen, "exact", goal)
+                yield from _judged(measure, group, chosen, goal)
+
+
+def _judged(measure, group, rows, goal):
+    """The share of all; where some have no ideal rule, the goal is one of the rest."""
+    known = [r for r in rows if not math.isnan(r.ideal)]
+    if known and len(known) < len(rows):
+        yield counted(measure, group, (int(r.exact) for r in rows), "")
+        group += ", where an ideal rule is known"
+    yield _share(measure, group, known or rows, "exact", goal)
 
 
 def _places(rows):

@@ -166,6 +166,17 @@ def test_summary_puts_cases_where_they_belong():
     assert exact["traces, d' 5"].of_ideal == pytest.approx(1.0 / 0.9)
 
 
+def test_a_goal_beside_the_ideal_rule_is_one_of_records_that_have_one():
+    # Named wrongly is the record without: it counts in the share of all, and not against the ideal rule.
+    wrong, unknown = verdict(["gravity"]), IDEAL | {"ideal": "nan"}
+    rows = [row(truth("a"), verdict(), ideal=IDEAL), row(truth("b"), wrong, ideal=unknown)]
+    exact = {one.group: one for one in summary(rows) if one.measure == "exact name"}
+    assert (exact["traces, d' 10"].value, exact["traces, d' 10"].goal) == (0.5, "")
+    judged = exact["traces, d' 10, where an ideal rule is known"]
+    assert (judged.count, judged.value, judged.ideal) == (1, 1.0, pytest.approx(0.9))
+    assert judged.goal
+
+
 def test_confusion_has_every_name_and_counts_every_single_case():
     two = truth("b", effects=("tsuji", "gravity"), kind="pair")
     rows = [
