@@ -225,6 +225,10 @@ WRONG_TRACES = {
     "no time": (header("near,far,wall,x"), ["line 1", "time_us is missing"]),
     "semicolons": (changed_rows(lambda rows: [r.replace(",", ";") for r in rows]), ["line 1", "semicolons"]),
     "tabs": (changed_rows(lambda rows: [r.replace(",", "\t") for r in rows]), ["line 1", "tabs"]),
+    "digits of another script": (
+        changed_rows(lambda lines: [*lines[:4], lines[4] + "\u0663", *lines[5:]]),
+        ["line 5", "not a number"],
+    ),
     "row cut short": (changed_rows(lambda lines: [*lines[:-1], "189.75,0.1"]), ["line 801", "2 of 4"]),
     "decimal commas": (cell(20, 1, "0,5"), ["line 21", "5 cells", "decimal point"]),
     "text": (cell(33, 2, "overflow"), ["line 34", "column far", "'overflow'", "not a number"]),

@@ -9,6 +9,7 @@ line and the column at fault.
 import io
 import math
 import re
+import warnings
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -23,7 +24,7 @@ FEWEST = 16
 # printed while that is below the second fraction (a missing row puts times off by half an interval or more).
 EVEN = 0.01
 ROUNDED = 0.4
-_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
+_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", re.ASCII)
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,11 +94,13 @@ def read(path, sensors: list[str]) -> Signals:
     Raises:
         InputError: naming the file, the line, the column and the cure.
     """
-    lines = read_text(path).removeprefix("\ufeff").splitlines()
-    columns = _columns(path, lines, sensors)
-    rows = [(number, line) for number, line in enumerate(lines[1:], start=2) if line.strip()]
-    values = _values(path, rows, columns)
-    _check_time(path, values[:, columns.index(TIME)], rows, columns.index(TIME))
+    text = read_text(path).removeprefix("\ufeff")
+    if not text or text.isspace():
+        raise InputError(f"{path}: the file is empty; write the header {_header(sensors)} and the samples")
+    stream = io.StringIO(text, newline=None)
+    columns = _columns(path, stream.readline().splitlines()[0], sensors)
+    values = _values(path, stream, text, columns)
+    _check_time(path, values[:, columns.index(TIME)], text, columns.index(TIME))
     parts = {c: np.ascontiguousarray(values[:, k]) for k, c in enumerate(columns)}
     return Signals(parts.pop(TIME), parts)
 
@@ -117,10 +120,7 @@ def _text(number):
     return text.removesuffix(".0") if number else text
 
 
-def _columns(path, lines, sensors):
-    if not lines or not any(line.strip() for line in lines):
-        raise InputError(f"{path}: the file is empty; write the header {_header(sensors)} and the samples")
-    head = lines[0]
+def _columns(path, head, sensors):
     for mark, name in ((";", "semicolons"), ("\t", "tabs")):
         if mark in head:
             raise InputError(
@@ -155,22 +155,34 @@ def _header(sensors):
     return ",".join((TIME, *sensors))
 
 
-def _values(path, rows, columns):
-    """(S, columns) numbers of the numbered lines below the header."""
-    try:
-        text = io.StringIO("\n".join(line for _, line in rows))
-        values = np.loadtxt(text, delimiter=",", ndmin=2, comments=None) if rows else np.zeros((0, 0))
-    except ValueError:
-        values = None
-    if values is None or values.shape != (len(rows), len(columns)) or not np.isfinite(values).all():
+def _rows(text):
+    """(number, line) of the lines below the header that hold something: for messages, as it takes long."""
+    return [(number, line) for number, line in enumerate(text.splitlines()[1:], start=2) if line.strip()]
+
+
+def _values(path, stream, text, columns):
+    """(S, columns) numbers below the header of a text, which stand in the rest of a stream."""
+    values = _parsed(stream)
+    if values is None or values.shape[1] != len(columns) or not np.isfinite(values).all():
+        rows = _rows(text)
         for number, line in rows:
             _check_row(path, number, line, columns)
-        values = np.zeros((0, 0))
+        values = _parsed(io.StringIO("\n".join(line for _, line in rows)))
     if len(values) < FEWEST:
         raise InputError(
-            f"{path}: has {len(rows)} samples; at least {FEWEST} are needed: is the file complete?"
+            f"{path}: has {len(values)} samples; at least {FEWEST} are needed: is the file complete?"
         )
     return values
+
+
+def _parsed(stream):
+    """Numbers of a stream, None where a row is none of numbers, or has more or fewer than the first."""
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message=".*no data")  # said below, with the cure
+        try:
+            return np.loadtxt(stream, delimiter=",", ndmin=2, comments=None)
+        except ValueError:
+            return None
 
 
 def _check_row(path, number, line, columns):
@@ -199,17 +211,21 @@ def _fault(cell):
     return f"is {cell}; every sample must be a finite number: cut the record where the reading is lost"
 
 
-def _check_time(path, time, rows, column):
+def _check_time(path, time, text, column):
     steps = np.diff(time)
     usual = float(np.median(steps))
     if not np.all(steps > 0.0):
         k = int(np.argmin(steps > 0.0))
+        line, _ = _rows(text)[k + 1]
         raise InputError(
-            f"{path}, line {rows[k + 1][0]}, column {TIME}: is {time[k + 1]:g} after {time[k]:g}; times must "
-            "increase: sort the rows, remove repeated ones, and give times enough digits"
+            f"{path}, line {line}, column {TIME}: is {time[k + 1]:g} after {time[k]:g}; times "
+            "must increase: sort the rows, remove repeated ones, and give times enough digits"
         )
     start, interval = grid(time)
     off = np.abs(time - (start + interval * np.arange(len(time))))
+    if off.max() <= EVEN * interval:
+        return
+    rows = _rows(text)
     allowed = max(EVEN * interval, min(_rounding(rows, column), ROUNDED * interval))
     if off.max() > allowed:
         # The first odd step, where the reader should look.
