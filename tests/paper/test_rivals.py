@@ -143,7 +143,7 @@ def test_the_section_of_the_report_says_what_the_tables_say(
     )
     assert "0.3 (fitted)" in page and "±1 mm each" in page
     assert "by them the thickness of the coating decides" in page
-    assert "196 | 190" in page and "196 | –" in page and "modulus over handbook value 3.7" in page
+    assert "196 | 190" in page and "196 | –" in page and "modulus over handbook value = 3.7" in page
     assert "1.52 on the layer and 1.37 on Hertz" in page and "in proportion to the force" in page
     assert "None of the solids tried meets both speeds and the duration" in page
     assert "Nothing has been drawn" in template.render(probable=(), allowed=None, alone=False)
