@@ -144,13 +144,15 @@ def extent(card: Card, catalogue: Catalogue = CATALOGUE) -> Extent:
     return estimate(chain, contacts, card.duration_s, card.interval_s, copies=3)
 
 
-def check_extent(card: Card, catalogue: Catalogue = CATALOGUE) -> None:
-    """InputError for a card that asks for more than a computer gives, see `physics.extent`."""
+def check_extent(card: Card, catalogue: Catalogue = CATALOGUE) -> Extent:
+    """What a card asks for; InputError where that is more than a computer gives, see `physics.extent`."""
     try:
         Extent(card.beads, 1.0, 1.0, 1.0).check()  # before anything is made for each bead
-        extent(card, catalogue).check()
+        asked = extent(card, catalogue)
+        asked.check()
     except TooLargeError as error:
         raise InputError(f"{card.name}: {error}") from None
+    return asked
 
 
 def check_scales(card: Card, catalogue: Catalogue = CATALOGUE) -> None:

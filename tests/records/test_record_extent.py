@@ -37,7 +37,7 @@ def test_the_verb_refuses_and_may_be_overruled(tmp_path, monkeypatch):
     def search(*records, **_):
         raise Reached
 
-    monkeypatch.setattr(session, "discover", search)
+    monkeypatch.setattr(session.competition, "discover", search)
     folder = put(tmp_path / "rec", chain__beads=10**9)
     call = ["discover", str(folder), "--out", str(tmp_path / "out"), "--no-figures"]
     refused = CliRunner().invoke(cli, call)

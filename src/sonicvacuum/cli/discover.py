@@ -57,21 +57,22 @@ def discover(records, out, together, figures, threads, own, quiet, no_limits):
     groups = {Path(out): records} if together else {f: (p,) for p, f in _folders(records, Path(out)).items()}
     for folder in groups:
         check_out(folder, records)
-    sound = {}
+    kept = {}
     for path in records:  # all of them are sound before hours are spent on the first
-        sound[path] = read(path)
-        if not no_limits:
-            check_extent(window.fitted(sound[path])[0])
-        if len(groups) > 1:
-            del sound[path]  # of many records, all at once may be more than the memory holds
+        record = read(path)
+        if len(groups) == 1:  # of many records, all at once may be more than the memory holds
+            kept[path] = record
+        elif not no_limits:
+            check_extent(window.fitted(record)[0])
     from sonicvacuum.discover import session  # long to load: what is wrong with a record is said before
 
     for folder, paths in groups.items():
         with stages_shown(", ".join(paths), quiet):
             result = session.discover(
-                *(sound.get(p) or read(p) for p in paths),
+                *(kept.get(p) or read(p) for p in paths),
                 threads=threads or available_threads(),
                 catalogue=known,
+                limits=not no_limits,
             )
         stale = (*page_files(), "law.csv", "posterior.csv")
         with renewed(folder, last="verdict.json", stale=stale) as fresh:

@@ -48,9 +48,7 @@ def _tell_beforehand(card, known, limits):
     """What a long or large simulation asks for, on standard error; InputError beyond the ceilings."""
     from sonicvacuum import simulation
 
-    if limits:
-        simulation.check_extent(card, known)
-    asked = simulation.extent(card, known)
+    asked = simulation.check_extent(card, known) if limits else simulation.extent(card, known)
     if asked.work > LONG or asked.memory > LARGE:
         least, most = (asked.work / rate for rate in reversed(RATES))
         click.echo(

@@ -29,6 +29,7 @@ from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.physics import validity
 from sonicvacuum.physics.run import available_threads
 from sonicvacuum.records import Record
+from sonicvacuum.records.extent import check_extent
 
 
 @dataclass(frozen=True)
@@ -65,7 +66,9 @@ class Result:
 
 
 @one_thread
-def discover(*records: Record, threads: int | None = None, catalogue: Catalogue = CATALOGUE) -> Result:
+def discover(
+    *records: Record, threads: int | None = None, catalogue: Catalogue = CATALOGUE, limits: bool = True
+) -> Result:
     """What the nominal model of measured data lacks.
 
     Args:
@@ -78,10 +81,13 @@ def discover(*records: Record, threads: int | None = None, catalogue: Catalogue 
         that tables and pictures need.
 
     Raises:
-        InputError: for records that cannot be simulated or do not belong together.
+        InputError: for records that cannot be simulated or do not belong together; with `limits`, for a
+            search that asks for more than a computer gives.
     """
     clock = Clock()
     ready, notes = zip(*map(window.fitted, records), strict=True)
+    for one in ready if limits else ():
+        check_extent(one)
     outcome = competition.discover(ready, catalogue, threads or available_threads())
     found = outcome.found
     clock.mark("search")
@@ -291,10 +297,8 @@ def gap_rows(result: Result):
         fitted = (found.null.normal.chi2[k, 0] / size, final.normal.chi2[k, 0] / size)
         rows.append((run.id, size, *fitted, before.chi2[k] / size, after.chi2[k] / size, 1.0))
     total = found.sizes.sum()
-    steps = [("all", found.null, final)]
-    for name, first, last in steps:
-        fitted = (first.normal.chi2.sum() / total, last.normal.chi2.sum() / total)
-        rows.append((name, total, *fitted, before.mean, after.mean, 1.0))
+    fitted = (found.null.normal.chi2.sum() / total, final.normal.chi2.sum() / total)
+    rows.append(("all", total, *fitted, before.mean, after.mean, 1.0))
     for k, best in enumerate(rounds_of(found)):
         rows.append((f"round {k}: {best[0]}", total, math.nan, best[1] / total, math.nan, math.nan, 1.0))
     header = ["run", "data", "before", "after", "held_out_before", "held_out_after", "floor"]
