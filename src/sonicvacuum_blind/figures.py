@@ -31,8 +31,8 @@ CAPTIONS = {
         alarmed by 1 % of empty ones.
     """),
     "reliability": style.paragraph("""
-        Stated probability of the most probable explanation against the share of cases in which it is right,
-        with 95 % intervals; below, the number of cases. On the dashed line probabilities mean what they say.
+        Stated probability against the share of cases in which what is named with it is right, with 95 %
+        intervals; below, the number of cases. On the dashed line probabilities mean what they say.
     """),
     "pit": style.paragraph("""
         Posterior probability below the truth (PIT) of the parameters of effects hidden and named: its
@@ -210,7 +210,7 @@ def reliability(table: pandas.DataFrame) -> Figure:
                 below.text(at, count, f"{count:d}", ha="center", va="bottom", fontsize=6.5)
         below.set_ylim(0, 1.3 * table["count"].max())
         below.set_ylabel("cases")
-        below.set_xlabel("stated probability of the top explanation")
+        below.set_xlabel("stated probability of what is named")
         for one in (axes, below):
             one.set_xlim(0.0, 1.0)
         axes.set_xticklabels([])

@@ -132,29 +132,32 @@ def markdown(study: Study) -> str:
         "What is taken for what, and whether stated probabilities and intervals come true: "
         "[figures/README.md](../figures/README.md).",
     ]
-    if study.baselines is not None:
-        parts += [
-            "The same records given to simpler rules (shares in per cent, 95 % intervals):",
-            rivals(study.baselines).markdown,
-        ]
-    else:
-        parts.append("Simpler rules were not tried on these records.")
-    if study.resolved is not None:
-        parts += [
-            "Records of which several effects were left (of a part of the study), taken together with one "
-            "more run, the one that the verdict proposes or one drawn from all that it could propose:",
-            followed(study.resolved).markdown,
-        ]
-    else:
-        parts.append("No further run was tried on records left ambiguous.")
-    if study.fresh is not None:
-        parts += [
-            "One fresh run of the same laboratory, under conditions drawn at random, for a part of the "
-            "records: how well the model as found and the nominal one foretell it, nothing fitted but the "
-            "run's own errors:",
-            followed(study.fresh).markdown,
-        ]
+    parts += _section(
+        study.baselines,
+        rivals,
+        "The same records given to simpler rules (shares in per cent, 95 % intervals):",
+        "Simpler rules were not tried on these records.",
+    )
+    parts += _section(
+        study.resolved,
+        followed,
+        "Records of which several effects were left (of a part of the study), taken together with one "
+        "more run, the one that the verdict proposes or one drawn from all that it could propose:",
+        "No further run was tried on records left ambiguous.",
+    )
+    parts += _section(
+        study.fresh,
+        followed,
+        "One fresh run of the same laboratory, under conditions drawn at random, for a part of the "
+        "records: how well the model as found and the nominal one foretell it, nothing fitted but the "
+        "run's own errors:",
+    )
     return "\n\n".join(parts)
+
+
+def _section(table, shown, said, without=""):
+    """A sentence and the table as it is shown; what is said instead where there is none."""
+    return [said, shown(table).markdown] if table is not None else [without] * bool(without)
 
 
 def publish(folder, page_path, kept_folder, readme_path=None) -> None:

@@ -57,9 +57,10 @@ def _judged(measure, group, rows, goal):
     """The share of all; where some have no ideal rule, the goal is one of the rest."""
     known = [r for r in rows if not math.isnan(r.ideal)]
     if known and len(known) < len(rows):
-        yield counted(measure, group, (int(r.exact) for r in rows), "")
+        yield _share(measure, group, rows, "exact")
         group += ", where an ideal rule is known"
-    yield _share(measure, group, known or rows, "exact", goal)
+    found, ideal = _share(measure, group, known or rows, "exact", goal), ideal_share(known)
+    yield replace(found, ideal=ideal, of_ideal=found.value / ideal if ideal else math.nan)
 
 
 def _places(rows):
@@ -185,6 +186,4 @@ def _seconds(of):
 
 
 def _share(measure, group, rows: list[Row], what: str, goal=""):
-    found = counted(measure, group, (int(getattr(r, what)) for r in rows), goal)
-    ideal = ideal_share(rows) if measure in ("exact name", "exact pair") else math.nan
-    return replace(found, ideal=ideal, of_ideal=found.value / ideal if ideal else math.nan)
+    return counted(measure, group, (int(getattr(r, what)) for r in rows), goal)

@@ -100,6 +100,11 @@ def used(number: int) -> float:
     return (int(words[11]) + int(words[12])) / TICK
 
 
+def runs(number: int) -> bool:
+    """Whether a child still runs; one that has ended can be waited for afterwards."""
+    return os.waitid(os.P_PID, number, os.WEXITED | os.WNOHANG | os.WNOWAIT) is None
+
+
 def hears() -> None:
     """Let a process hear interruptions as one that was started at a terminal."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
@@ -119,12 +124,10 @@ def interrupted(folder: Path, line: str, moment: float, environment: dict) -> di
             preexec_fn=hears,
         )
         spent = 0.0
-        while (
-            spent < moment and os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOHANG | os.WNOWAIT) is None
-        ):
+        while spent < moment and runs(process.pid):
             time.sleep(0.01)
             spent = used(process.pid)
-        running = os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOHANG | os.WNOWAIT) is None
+        running = runs(process.pid)
         asked = time.monotonic()
         if running:
             os.killpg(process.pid, signal.SIGINT)

@@ -7,14 +7,14 @@ import click
 from sonicvacuum.cli import existing
 from sonicvacuum.cli.helped import PRESENT, WRITTEN, verb
 from sonicvacuum.outputs import check_apart
+from sonicvacuum_blind.cli.options import held_against
 
 _RULES = ("best-chi2", "bic", "nearest-shape", "forest", "state")
 
 
 @verb("sonicvacuum blind baselines --records records --truth truth --verdicts found --out rules.csv")
 @click.option("--records", required=True, type=PRESENT, help="Folder of the cases' records.")
-@click.option("--truth", required=True, type=PRESENT, help="Folder of truths.")
-@click.option("--verdicts", required=True, type=PRESENT, help="Folder of verdicts.")
+@held_against
 @click.option("--out", required=True, type=WRITTEN, help="Table (CSV) to write.")
 @click.option("--ideal", multiple=True, type=existing(), help="Table of sonicvacuum blind ideal; repeat.")
 @click.option("--training", type=PRESENT, help="Folder with records/, truth/ and verdicts/ to learn from.")

@@ -2,13 +2,13 @@
 
 import click
 
-from sonicvacuum.cli.helped import PRESENT, WRITTEN, verb
+from sonicvacuum.cli.helped import WRITTEN, verb
 from sonicvacuum.outputs import check_apart
+from sonicvacuum_blind.cli.options import held_against
 
 
 @verb("sonicvacuum blind calibrate --truth truth --verdicts found --out calibration.json")
-@click.option("--truth", required=True, type=PRESENT, help="Folder of truths.")
-@click.option("--verdicts", required=True, type=PRESENT, help="Folder of verdicts.")
+@held_against
 @click.option("--out", required=True, type=WRITTEN, help="Calibration (JSON) to write.")
 def calibrate(truth, verdicts, out):
     """Find how the evidence that discover works out becomes probabilities that come true."""

@@ -7,11 +7,11 @@ from pathlib import Path
 import click
 
 from sonicvacuum.cli import existing
-from sonicvacuum.cli.helped import PRESENT, WRITTEN, verb
+from sonicvacuum.cli.helped import WRITTEN, verb
 from sonicvacuum.outputs import check_apart
 from sonicvacuum_blind import TRUTH
 from sonicvacuum_blind.cli.hide import check_truth
-from sonicvacuum_blind.cli.options import batch_of, made_into, say
+from sonicvacuum_blind.cli.options import batch_of, held_against, made_into, say
 
 
 @verb("sonicvacuum blind extras --records extras/records --truth extras/truth --first 40")
@@ -38,8 +38,7 @@ def extras(batch, first, records_folder, truth_folder):
     " --out extras/records.csv --summary extras/summary.csv",
     name="extras-score",
 )
-@click.option("--truth", required=True, type=PRESENT, help="Folder of truths.")
-@click.option("--verdicts", required=True, type=PRESENT, help="Folder of verdicts.")
+@held_against
 @click.option("--partly", is_flag=True, help="Leave out cases that have no verdict yet.")
 @click.option("--out", required=True, type=WRITTEN, help="Row of each record (CSV) to write.")
 @click.option("--summary", required=True, type=WRITTEN, help="Table (CSV) to write.")

@@ -4,18 +4,16 @@ from pathlib import Path
 
 import click
 
-from sonicvacuum.cli import existing
 from sonicvacuum.cli.helped import FOLDER, PRESENT, verb
 from sonicvacuum.files import InputError
-from sonicvacuum_blind.cli.options import STUDIES, batch_of
+from sonicvacuum_blind.cli.options import batch_of, of_cases
 
 # Designs whose records all have traces, so that a further run can be asked for.
 TRACED = ("traces", "one-speed")
 
 
 @verb("sonicvacuum blind follow --study small --verdicts found --choice proposed --records further")
-@click.option("--study", type=STUDIES, help="A fixed list of cases.")
-@click.option("--cases", "path", type=existing(), help="List of cases (CSV), instead of --study.")
+@of_cases
 @click.option("--verdicts", required=True, type=PRESENT, help="Folder of the verdicts on their records.")
 @click.option("--records", "out", required=True, type=FOLDER, help="Folder for the records of further runs.")
 @click.option(
@@ -24,7 +22,6 @@ TRACED = ("traces", "one-speed")
     type=click.Choice(["proposed", "random", "fresh"]),
     help="The run that the verdict proposes, or one drawn from all that could be; fresh: that, of all.",
 )
-@click.option("--batch", default="0/1", show_default=True, help="k/n: every n-th case from the k-th on.")
 def follow(study, path, verdicts, out, choice, batch):
     """Make one more run of the same laboratory for each case that its verdict leaves ambiguous, or for all.
 

@@ -4,15 +4,14 @@ import click
 
 from sonicvacuum.cli.helped import PRESENT, WRITTEN, verb
 from sonicvacuum.outputs import check_apart
-from sonicvacuum_blind.cli.options import say
+from sonicvacuum_blind.cli.options import held_against, say
 
 
 @verb(
     "sonicvacuum blind foretold --truth truth --verdicts found --compared compared \\",
     "    --out rows.csv --summary fresh.csv",
 )
-@click.option("--truth", required=True, type=PRESENT, help="Folder of truths.")
-@click.option("--verdicts", required=True, type=PRESENT, help="Folder of verdicts.")
+@held_against
 @click.option(
     "--compared", required=True, type=PRESENT, help="Folder of what compare --json wrote: <id>/compared.json."
 )

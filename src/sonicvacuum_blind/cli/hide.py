@@ -4,22 +4,19 @@ from pathlib import Path
 
 import click
 
-from sonicvacuum.cli import existing
 from sonicvacuum.cli.helped import FOLDER, WRITTEN, verb
 from sonicvacuum.files import InputError
 from sonicvacuum.outputs import check_apart
 from sonicvacuum_blind import TRUTH
-from sonicvacuum_blind.cli.options import STUDIES, batch_of
+from sonicvacuum_blind.cli.options import batch_of, of_cases
 
 
 @verb(
     "sonicvacuum blind hide --study small --list cases.csv",
     "sonicvacuum blind hide --study small --batch 0/4 --records records --truth truth",
 )
-@click.option("--study", type=STUDIES, help="A fixed list of cases.")
-@click.option("--cases", "path", type=existing(), help="List of cases (CSV), instead of --study.")
+@of_cases
 @click.option("--list", "listing", type=WRITTEN, help="Write the list of cases (CSV) only.")
-@click.option("--batch", default="0/1", show_default=True, help="k/n: every n-th case from the k-th on.")
 @click.option("--records", "records_folder", type=FOLDER, help="Folder for the records, one for each case.")
 @click.option(
     "--truth", "truth_folder", type=FOLDER, help="Folder for the truth; keep it away from discover."
@@ -29,9 +26,7 @@ def hide(study, path, listing, batch, records_folder, truth_folder):
     from sonicvacuum.records.guard import check_collection
     from sonicvacuum_blind import study as studies
 
-    if (study is None) == (path is None):
-        raise InputError("hide: give --study or --cases, one of them")
-    specs = studies.cases(study) if study else studies.read_cases(path)
+    specs = studies.chosen(study, path, *((0, 1) if listing else batch_of(batch)))
     if listing:
         check_apart([listing], [path])
         studies.write_cases(specs, listing)
@@ -40,7 +35,6 @@ def hide(study, path, listing, batch, records_folder, truth_folder):
         raise InputError("hide: --records and --truth are both needed to make data (or --list to list cases)")
     from sonicvacuum_blind.hide import write
 
-    specs = studies.batch(specs, *batch_of(batch))
     check_truth(truth_folder, records_folder)
     check_collection(records_folder, [s.id for s in specs], lambda name: Path(truth_folder) / name / TRUTH)
     for spec in specs:

@@ -2,15 +2,12 @@
 
 import click
 
-from sonicvacuum.cli import existing
 from sonicvacuum.cli.helped import WRITTEN, verb
-from sonicvacuum_blind.cli.options import STUDIES, batch_of
+from sonicvacuum_blind.cli.options import batch_of, of_cases
 
 
 @verb("sonicvacuum blind ideal --study small --batch 0/4 --out ideal.csv")
-@click.option("--study", type=STUDIES, help="A fixed list of cases.")
-@click.option("--cases", "path", type=existing(), help="List of cases (CSV), instead of --study.")
-@click.option("--batch", default="0/1", show_default=True, help="k/n: every n-th case from the k-th on.")
+@of_cases
 @click.option("--out", required=True, type=WRITTEN, help="Table (CSV) to write.")
 def ideal(study, path, batch, out):
     """Work out how often a rule that knows all signatures names each hidden effect rightly.

@@ -4,7 +4,8 @@ import re
 
 import click
 
-from sonicvacuum.cli.helped import FOLDER
+from sonicvacuum.cli import existing
+from sonicvacuum.cli.helped import FOLDER, PRESENT
 from sonicvacuum.files import InputError
 
 STUDIES = click.Choice(["small", "full", "training"])
@@ -18,29 +19,49 @@ def batch_of(text: str) -> tuple[int, int]:
     return int(found[1]), int(found[2])
 
 
-def made_into(function):
-    """Options --batch, --records and --truth of a verb that makes records."""
-    for option in (
-        click.option(
-            "--truth",
-            "truth_folder",
-            required=True,
-            type=FOLDER,
-            help="Folder for the truth; keep it away from discover.",
-        ),
-        click.option(
-            "--records",
-            "records_folder",
-            required=True,
-            type=FOLDER,
-            help="Folder for the records, one for each case.",
-        ),
-        click.option(
-            "--batch", default="0/1", show_default=True, help="k/n: every n-th case from the k-th on."
-        ),
-    ):
-        function = option(function)
-    return function
+def _all_of(*options):
+    """One decorator for several options, in this order."""
+
+    def given(function):
+        for option in reversed(options):
+            function = option(function)
+        return function
+
+    return given
+
+
+_BATCH = click.option(
+    "--batch", default="0/1", show_default=True, help="k/n: every n-th case from the k-th on."
+)
+# Which cases, of a verb that takes a study or a list.
+of_cases = _all_of(
+    click.option("--study", type=STUDIES, help="A fixed list of cases."),
+    click.option("--cases", "path", type=existing(), help="List of cases (CSV), instead of --study."),
+    _BATCH,
+)
+# Where a verb that makes records writes them.
+made_into = _all_of(
+    _BATCH,
+    click.option(
+        "--records",
+        "records_folder",
+        required=True,
+        type=FOLDER,
+        help="Folder for the records, one for each case.",
+    ),
+    click.option(
+        "--truth",
+        "truth_folder",
+        required=True,
+        type=FOLDER,
+        help="Folder for the truth; keep it away from discover.",
+    ),
+)
+# What a verb that counts reads.
+held_against = _all_of(
+    click.option("--truth", required=True, type=PRESENT, help="Folder of truths."),
+    click.option("--verdicts", required=True, type=PRESENT, help="Folder of verdicts."),
+)
 
 
 def say(lines) -> None:

@@ -4,15 +4,14 @@ import click
 
 from sonicvacuum.cli.helped import PRESENT, WRITTEN, verb
 from sonicvacuum.outputs import check_apart
-from sonicvacuum_blind.cli.options import say
+from sonicvacuum_blind.cli.options import held_against, say
 
 
 @verb(
     "sonicvacuum blind resolved --truth truth --verdicts found --proposed further joint \\",
     "    --random drawn joint-drawn --out resolved.csv --summary summary.csv",
 )
-@click.option("--truth", required=True, type=PRESENT, help="Folder of truths.")
-@click.option("--verdicts", required=True, type=PRESENT, help="Folder of verdicts on the first records.")
+@held_against
 @click.option(
     "--proposed",
     required=True,

@@ -7,14 +7,13 @@ import click
 from sonicvacuum.cli import existing
 from sonicvacuum.cli.helped import FOLDER, PRESENT, WRITTEN, verb
 from sonicvacuum.outputs import check_apart
-from sonicvacuum_blind.cli.options import say
+from sonicvacuum_blind.cli.options import held_against, say
 
 DETAILS = "confusion, accuracy, reliability, seconds, parameters, coverage, pit (CSV)"
 
 
 @verb("sonicvacuum blind score --truth truth --verdicts found --out scores.csv --summary summary.csv")
-@click.option("--truth", required=True, type=PRESENT, help="Folder of truths.")
-@click.option("--verdicts", required=True, type=PRESENT, help="Folder of verdicts.")
+@held_against
 @click.option("--out", required=True, type=WRITTEN, help="Score of each case (CSV) to write.")
 @click.option("--summary", required=True, type=WRITTEN, help="Table (CSV) to write.")
 @click.option(

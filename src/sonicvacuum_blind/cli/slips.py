@@ -6,11 +6,11 @@ from pathlib import Path
 
 import click
 
-from sonicvacuum.cli.helped import PRESENT, WRITTEN, verb
+from sonicvacuum.cli.helped import WRITTEN, verb
 from sonicvacuum.outputs import check_apart
 from sonicvacuum_blind import TRUTH
 from sonicvacuum_blind.cli.hide import check_truth
-from sonicvacuum_blind.cli.options import batch_of, made_into, say
+from sonicvacuum_blind.cli.options import batch_of, held_against, made_into, say
 
 
 @verb("sonicvacuum blind slips --records slips/records --truth slips/truth --batch 0/8")
@@ -34,8 +34,7 @@ def slips(batch, records_folder, truth_folder):
     " --out slips/records.csv --summary slips/summary.csv",
     name="slips-score",
 )
-@click.option("--truth", required=True, type=PRESENT, help="Folder of truths.")
-@click.option("--verdicts", required=True, type=PRESENT, help="Folder of verdicts.")
+@held_against
 @click.option("--out", required=True, type=WRITTEN, help="Row of each record (CSV) to write.")
 @click.option("--summary", required=True, type=WRITTEN, help="Table (CSV) to write.")
 def slips_score(truth, verdicts, out, summary):
