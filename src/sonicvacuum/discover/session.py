@@ -75,6 +75,7 @@ def discover(
         *records: one record, or records of one chain and its gauges, which get one verdict.
         threads: of the compiled engine; all processors by default. The result does not depend on it.
         catalogue: the effects that may be missing, see `sonicvacuum.plugins.catalogue`.
+        limits: refuse a search that asks for more memory than the machine has.
 
     Returns:
         `verdict` (named effects, probabilities, parameters, gap before and after, limits, next run) and all
