@@ -23,7 +23,7 @@ from sonicvacuum_blind.catalogue import BY_ID, hidden
 from sonicvacuum_blind.hide import Laboratory, Spec, laboratory, stream
 from sonicvacuum_blind.integrate import NoSolution
 from sonicvacuum_blind.prediction import Errors, predict
-from sonicvacuum_blind.signature import Frame, solver
+from sonicvacuum_blind.signature import Frame
 from sonicvacuum_blind.strength import DRAWS, TIE, Rival, ceiling, rivals
 
 # From this d′ on noise alone is no rival, and hypotheses are fitted; below, strengths act linearly.
@@ -290,8 +290,8 @@ def _missed(frame, truth, shapes, x):
     missed = frame.whiten.vector(predict(design, change, Errors.of(design, vector))) - truth
     if not np.isfinite(missed).all():
         raise NoSolution("readings that are no numbers")
-    slopes = np.delete(frame.slopes, modulus, axis=1)
-    errors = solver(slopes) @ missed
+    slopes, solve = frame.but_modulus
+    errors = solve @ missed
     priors = [own[1] for _, own in parts if len(own) > 1]
     rest = missed - slopes @ errors
     return np.concatenate([rest, -errors, [vector[modulus]], priors])

@@ -185,6 +185,12 @@ class Frame:
         vectors[:, len(self.design.runs)] = MODULI
         return [(v, self.nominal(v)) for v in map(self.bounded, vectors)]
 
+    @cached_property
+    def but_modulus(self) -> tuple[np.ndarray, np.ndarray]:
+        """`slopes` and `solve` of all errors but the modulus."""
+        slopes = np.delete(self.slopes, len(self.design.runs), axis=1)
+        return slopes, solver(slopes)
+
     def change(self, change: Change, tolerance: float = TOLERANCE) -> np.ndarray:
         """(data,) whitened difference that a change makes."""
         return self.whiten.vector(predict(self.design, change, tolerance=tolerance)) - self.base
