@@ -22,7 +22,7 @@ from sonicvacuum.blas import one_thread
 from sonicvacuum_blind.catalogue import BY_ID, hidden
 from sonicvacuum_blind.hide import Laboratory, Spec, laboratory, stream
 from sonicvacuum_blind.integrate import NoSolution
-from sonicvacuum_blind.prediction import Errors, predict
+from sonicvacuum_blind.prediction import TOLERANCE, Errors, predict
 from sonicvacuum_blind.signature import Frame
 from sonicvacuum_blind.strength import DRAWS, TIE, Rival, ceiling, rivals
 
@@ -37,6 +37,8 @@ CURVED = 40.0
 # away: the modulus and shapes in standard deviations, strengths in their logarithm.
 ELSEWHERE = 1.5
 AWAY = np.linspace(-3.0, 3.0, 41)
+# Of the integrator there: a start need not be exact.
+COARSE = 1e-5
 # Forward differences: of ln strength, of the modulus and of shapes in standard deviations.
 STEP = 0.02
 SMALLEST = 1e-5  # share of an effect's largest strength
@@ -201,7 +203,8 @@ def _fitted(frame: Frame, truth, seen, parts: tuple[Rival, ...], mass: float) ->
     try:
         start = np.clip(start, low + 1e-9, high - 1e-9)
         if np.linalg.norm(whole(start)) > ELSEWHERE * np.linalg.norm(seen):
-            start = _elsewhere(whole, start, low, high)
+            coarse = partial(_missed, frame, truth, shapes, tolerance=COARSE)
+            start = _elsewhere(coarse, start, low, high)
         fit = optimize.least_squares(
             whole,
             np.clip(start, low + 1e-9, high - 1e-9),
@@ -268,10 +271,10 @@ def _shape(frame, part, factor):
     return Shape(*ends, shaped)
 
 
-def _missed(frame, truth, shapes, x):
+def _missed(frame, truth, shapes, x, tolerance=TOLERANCE):
     """(data + errors + priors,) what effects with parameters x miss; all errors but the modulus act linearly.
 
-    x: the modulus in standard deviations, then the parameters of each effect.
+    x: the modulus in standard deviations, then the parameters of each effect; tolerance: of the integrator.
     """
     parts, at = [], 1
     for shape in shapes:
@@ -287,7 +290,7 @@ def _missed(frame, truth, shapes, x):
     vector = np.zeros(frame.slopes.shape[1])
     vector[modulus] = x[0]
     vector = frame.bounded(vector)
-    missed = frame.whiten.vector(predict(design, change, Errors.of(design, vector))) - truth
+    missed = frame.whiten.vector(predict(design, change, Errors.of(design, vector), tolerance)) - truth
     if not np.isfinite(missed).all():
         raise NoSolution("readings that are no numbers")
     slopes, solve = frame.but_modulus
