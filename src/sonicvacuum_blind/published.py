@@ -66,14 +66,16 @@ def provenance(score: pd.DataFrame) -> str:
     kinds = ", ".join(f"{sum(score['kind'] == kind)} {words}" for kind, words in KINDS.items())
     hours, all_cases = score["seconds"].astype(float).sum() / 3600.0, len(cases("full"))
     part = "" if len(score) == all_cases else f"{len(score)} of {all_cases}, the first batches: "
+    asked = int((score["errors_before"] != "nan").sum())
+    ideal = "" if asked == len(score) else f" The ideal rule was asked about {asked} of them, evenly spread."
     return (
         f"Method: git tag `{TAG}`. The seed, {SEEDS['full']}, was drawn after that tag; nothing of what was "
         "made with it was read before all verdicts stood. Of the study before, of seed 20062, a part had "
-        f"been read while its method was mended. Records: {part}{kinds}. Verdicts took {hours:.1f} hours, "
-        "one thread each. Made with `snakemake --cores 2 publish_study`, in batches that can be resumed, on "
-        f"one machine or a cluster. Of each record [score.csv](../{TABLES}/score.csv) has what was found, of "
-        f"each stated interval [parameters.csv](../{TABLES}/parameters.csv); the tables follow from these: "
-        f"`sonicvacuum blind tables {TABLES} --out tables`."
+        f"been read while its method was mended. Records: {part}{kinds}.{ideal} Verdicts took "
+        f"{hours:.1f} hours, one thread each. Made with `snakemake --cores 2 publish_study`, in batches that "
+        f"can be resumed, on one machine or a cluster. Of each record [score.csv](../{TABLES}/score.csv) has "
+        f"what was found, of each stated interval [parameters.csv](../{TABLES}/parameters.csv); the tables "
+        f"follow from these: `sonicvacuum blind tables {TABLES} --out tables`."
     )
 
 

@@ -2,6 +2,7 @@
 
 import math
 
+import pandas as pd
 import pytest
 from click.testing import CliRunner
 
@@ -153,3 +154,12 @@ def test_the_committed_page_shows_the_committed_tables(pytestconfig):
     assert text.count(published.BEGIN) == text.count(published.END) == 1
     made = published.markdown(study.read(pytestconfig.rootpath / TABLES))
     assert published.with_study(text, made) == text
+
+
+@pytest.mark.parametrize("asked", [1, 3])
+def test_the_page_says_about_how_many_records_the_ideal_rule_was_asked(asked):
+    errors = ["0.5" if k < asked else "nan" for k in range(3)]
+    text = published.provenance(pd.DataFrame({"kind": "single", "seconds": 3600.0, "errors_before": errors}))
+    assert "3 with one effect" in text and "Verdicts took 3.0 hours" in text
+    assert ("The ideal rule was asked about 1 of them" in text) == (asked == 1)
+    assert ("ideal rule" in text) == (asked == 1)

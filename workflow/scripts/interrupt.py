@@ -59,6 +59,8 @@ OTHERS = {
     "blind draw": "blind draw results/blind/small --picture confusion --out made",
     "blind publish": "blind publish workflow/resources/reference/blind_full --page docs/study.md "
     "--keep made/kept",
+    "blind ideal": "blind ideal --study small --batch 0/4 --out made/ideal.csv",
+    "blind tables": "blind tables results/blind/small --out made/tables",
     "paper timings": "paper timings results/benchmarks --out results/benchmarks.csv",
     "paper publish": "paper publish --ledger results/ledger.csv --claims workflow/resources/claims.csv "
     "--readme README.md --guide figures/README.md --reference made/kept.csv "
