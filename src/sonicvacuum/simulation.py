@@ -23,8 +23,7 @@ from sonicvacuum.physics import validity
 from sonicvacuum.physics.assemble import assemble
 from sonicvacuum.physics.chain import Chain
 from sonicvacuum.physics.extent import Extent, TooLargeError, estimate
-from sonicvacuum.physics.run import History
-from sonicvacuum.physics.run import simulate as integrate
+from sonicvacuum.physics.history import History
 from sonicvacuum.physics.scales import STRIKER_POWER, impact_scales
 
 # An aimed striker's speed is settled when the gauge's peak is this close to its aim.
@@ -227,6 +226,8 @@ def _doubts(card, setup, history):
 
 
 def _simulate(card, speeds, contacts, catalogue=CATALOGUE, refine=1.0, audit=False) -> History:
+    from sonicvacuum.physics.run import simulate as integrate  # and with it Numba: not for what is read only
+
     chain = set_up(card, speeds, catalogue).chain
     _, bodies = needed(sensors(card), card.beads)
     history = integrate(

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from scipy import stats
+import scipy
 
 from sonicvacuum.files import InputError, read_text
 from sonicvacuum.tables import read_csv
@@ -72,7 +72,7 @@ def parameters(truth: dict, verdict: dict, folder: Path | None = None) -> list[P
             one = stated.get(name)
             if not isinstance(one, dict) or not one.get("sigma"):
                 continue
-            below = stats.norm.cdf((true - one["value"]) / one["sigma"])
+            below = scipy.special.ndtr((true - one["value"]) / one["sigma"])
             if (hidden["id"], name) in draws:
                 value, weight = draws[hidden["id"], name]
                 below = weight[value < true].sum() / weight.sum()

@@ -45,6 +45,17 @@ def test_importing_loads_nothing_and_every_public_name_is_there():
         _ = sv.nothing
 
 
+def test_what_only_reads_waits_neither_for_the_compiler_nor_for_statistics():
+    # Half a second and a second of each start: cards, histories, records and verdicts are read without them.
+    code = (
+        "import sys, sonicvacuum.simulation, sonicvacuum_paper.metrics, sonicvacuum.report.record, "
+        "sonicvacuum.records.review, sonicvacuum.discover.compare, sonicvacuum_blind.score, "
+        "sonicvacuum_blind.calibration; "
+        "print({'numba', 'scipy.stats', 'matplotlib', 'pandas'} & set(sys.modules))"
+    )
+    assert python(code) == "set()"
+
+
 def test_the_examples_of_every_module_are_tried(pytestconfig):
     source = pytestconfig.rootpath / "src"
     having = {p for p in source.rglob("*.py") if ">>> " in p.read_text(encoding="utf-8")}

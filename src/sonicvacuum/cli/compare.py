@@ -21,13 +21,14 @@ def compare(record, model, path, threads, own):
     from sonicvacuum.discover import compare as scoring
     from sonicvacuum.discover.verdict import write_json
     from sonicvacuum.outputs import check_apart, check_folder
-    from sonicvacuum.physics.run import available_threads
     from sonicvacuum.records import read
 
     check_apart([path], [record, model, *own])
     check_folder(Path(path).parent)
     known = catalogue(own)
-    found = scoring.read_model(model, known)
-    score = scoring.compare(found, read(record), threads or available_threads(), known)
+    found, measured = scoring.read_model(model, known), read(record)
+    from sonicvacuum.physics.run import available_threads  # long to load: what is wrong is said before
+
+    score = scoring.compare(found, measured, threads or available_threads(), known)
     write_json(score, Path(path))
     click.echo(f"{in_one_line(record)}: {score.gap.before:.3g} before, {score.gap.after:.3g} after, floor 1")

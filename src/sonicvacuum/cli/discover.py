@@ -45,7 +45,6 @@ def discover(records, out, together, figures, threads, own, quiet, no_limits):
     from sonicvacuum.cli.page import illustrate, page_files
     from sonicvacuum.discover.model import window
     from sonicvacuum.outputs import renewed
-    from sonicvacuum.physics.run import available_threads
     from sonicvacuum.records import read
     from sonicvacuum.records.extent import check_extent
     from sonicvacuum.records.guard import check_out
@@ -64,7 +63,9 @@ def discover(records, out, together, figures, threads, own, quiet, no_limits):
             kept[path] = record
         elif not no_limits:
             check_extent(window.fitted(record)[0])
-    from sonicvacuum.discover import session  # long to load: what is wrong with a record is said before
+    # Long to load: what is wrong with a record is said before.
+    from sonicvacuum.discover import session
+    from sonicvacuum.physics.run import available_threads
 
     for folder, paths in groups.items():
         with stages_shown(", ".join(paths), quiet):

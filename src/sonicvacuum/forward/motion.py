@@ -6,7 +6,7 @@ import numpy as np
 
 from sonicvacuum.effects import Setup
 from sonicvacuum.gauges import Gauge, Motion, needed, reading
-from sonicvacuum.physics.run import History, simulate
+from sonicvacuum.physics.history import History
 
 
 @dataclass(frozen=True)
@@ -49,6 +49,8 @@ def see(
     Raises:
         FloatingPointError: for such a lane, unless forgiving.
     """
+    from sonicvacuum.physics.run import simulate  # and with it Numba: not for records without a simulation
+
     beads = setup.chain.beads
     contacts, bodies = needed((*setup.sensors, *besides), beads)
     contacts = sorted({*contacts, *((0,) if striker else ())})

@@ -19,9 +19,9 @@ from llvmlite import ir
 from numba import types
 from numba.extending import NativeValue, intrinsic, models, register_model, unbox
 
-from sonicvacuum.physics import lanes
-from sonicvacuum.physics.lanes import FASTMATH, LANES, lane
+from sonicvacuum.physics.lanes import LANES
 from sonicvacuum.physics.laws import LawSet
+from sonicvacuum.physics.registers import FASTMATH, constant, lane
 
 # Options of all that is compiled, and of what is only ever called from compiled code.
 OPTIONS = {"fastmath": FASTMATH, "error_model": "numpy", "nogil": True, "_nrt": False}
@@ -207,7 +207,7 @@ def is_any_positive(typing, x):
     """Whether x > 0 in any lane."""
 
     def generate(context, builder, sig, args):
-        zero = lanes.number(args[0].type, 0.0)
+        zero = constant(args[0].type, 0.0)
         mask = builder.fcmp_ordered(">", args[0], zero)
         if sig.args[0] is not lane:
             return mask
@@ -222,7 +222,7 @@ def zero(typing, composition):
     """0 in all lanes."""
 
     def generate(context, builder, sig, args):
-        return lanes.number(context.get_value_type(sig.return_type), 0.0)
+        return constant(context.get_value_type(sig.return_type), 0.0)
 
     return _number_type(composition)(composition), generate
 

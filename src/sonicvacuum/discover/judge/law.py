@@ -12,7 +12,6 @@ from sonicvacuum.discover.search.free_law import FreeLaw
 from sonicvacuum.discover.search.singles import setup_of
 from sonicvacuum.effects.base import MICRO
 from sonicvacuum.effects.free_form import COEFFICIENTS, free_force
-from sonicvacuum.physics.run import simulate
 
 # Knots of the surface along compression and along rate; odd, so that rest is among the latter.
 DEPTHS, RATES = 21, 21
@@ -78,6 +77,8 @@ def _stiffness(forward):
 def _visited(forward: Forward, fit: Fit):
     """Compressions in m and rates in m/s of the first contacts while they touch, in all runs."""
     from scipy.integrate import cumulative_trapezoid
+
+    from sonicvacuum.physics.run import simulate
 
     depths, rates = [], []
     for batch in forward.experiment.batches:

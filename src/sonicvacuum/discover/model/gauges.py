@@ -1,33 +1,33 @@
 """Readings between the samples of a simulation, at the times of a recorder whose clock and channels err."""
 
+from functools import lru_cache
+
 import numpy as np
-
-from sonicvacuum.physics.resample import BEFORE, POINTS, resampled
-
-_OFFSETS = np.arange(POINTS) - BEFORE
 
 
 def lagrange(fraction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Weights of `POINTS` neighbours (L, POINTS) at `fraction` of the way to the next sample, and their
-    slopes.
+    """Weights of `resample.POINTS` neighbours (L, POINTS) at `fraction` of the way to the next sample, and
+    their slopes.
 
     Lagrange polynomials; exact for polynomials of degree 5.
     """
-    powers = np.vander(np.asarray(fraction, dtype=float), POINTS, increasing=True)
-    return powers @ _VALUE, powers @ _SLOPE
+    value, slope = _coefficients()
+    powers = np.vander(np.asarray(fraction, dtype=float), len(value), increasing=True)
+    return powers @ value, powers @ slope
 
 
+@lru_cache(maxsize=1)
 def _coefficients():
     """(POINTS, POINTS) coefficients, by ascending power, of each neighbour's polynomial and its slope."""
+    from sonicvacuum.physics.resample import BEFORE, POINTS
+
     value, slope = np.zeros((2, POINTS, POINTS))
-    for k, node in enumerate(_OFFSETS):
-        others = np.delete(_OFFSETS, k)
+    offsets = np.arange(POINTS) - BEFORE
+    for k, node in enumerate(offsets):
+        others = np.delete(offsets, k)
         one = np.polynomial.Polynomial.fromroots(others) / np.prod(node - others)
         value[:, k], slope[:-1, k] = one.coef, one.deriv().coef
     return value, slope
-
-
-_VALUE, _SLOPE = _coefficients()
 
 
 def shifted(simulated, interval: float, time, shift, rated=slice(None), chain=None, gain=None):
@@ -45,6 +45,8 @@ def shifted(simulated, interval: float, time, shift, rated=slice(None), chain=No
     Returns:
         Arrays (N, S, T) in the gauges' units and (·, S, T) in the same per second.
     """
+    from sonicvacuum.physics.resample import resampled  # compiled: not for a verdict that is only read
+
     stride = round((time[-1] - time[0]) / (len(time) - 1) / interval)
     place = (time[0] - shift) / interval
     whole = np.floor(place).astype(int)
