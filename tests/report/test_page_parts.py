@@ -230,3 +230,21 @@ def test_what_the_record_says_acts_is_part_of_the_nominal_model():
     told = rows.present(one, held, CATALOGUE)
     assert told == "bonded coating on its core (thickness of the layer on its core = 50 µm)"
     assert rows.present(SimpleNamespace(named=list(effects)), held, CATALOGUE) == ""
+
+
+def test_quantities_are_told_with_unit_and_level():
+    def told(label, unit, bound=""):
+        row = {"run": "a", "quantity": label, "unit": unit, "bound": bound, "measured": "130", "sigma": "14"}
+        (one,) = rows.quantities([row | dict.fromkeys(("nominal", "extended", "held_out"), "1")])
+        return one["quantity"], one["measured"]
+
+    assert told("duration g9 at 0.02", "us") == ("duration g9, above 0.02 of the peak", "130 ± 14 µs")
+    assert told("pulse count wall at 0.15", "1")[0] == "pulse count wall, above 0.15 of the first peak"
+    assert told("speed at amplitude g9 0.25 N", "m/s") == ("speed where g9 reads 0.25 N", "130 ± 14 m/s")
+    assert told("amplitude g9", "N", "at_most") == ("amplitude g9", "at most 130 ± 14 N")
+
+
+def test_data_that_test_nothing_leave_every_effect_open():
+    blank = verdict(named=[], upper_limits={}, not_testable=["gravity"])
+    assert blank.sees_nothing
+    assert "these data test none" in words.alternatives(blank)

@@ -97,7 +97,7 @@ SENTENCES = {
         "In 1 of 2 comparisons (run and measured quantity)",
         "run fast: the data show a smaller restitution than predicted",
         "restitution at most 0.85 ± 0.01 0.99 0.84 –",
-        "Only the last column predicts",
+        "Only what is fitted to all others predicts",
         "There is one run only",
         "this record has none",
     ),

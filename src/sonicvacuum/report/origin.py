@@ -44,5 +44,5 @@ def _gauges(record):
     said = []
     for g in record.gauges:
         place = "at the wall" if g.bead is None else f"{'in' if g.kind == 'embedded' else 'on'} bead {g.bead}"
-        said.append(f"{g.id} {place}")
+        said.append(place if g.id == "wall" else f"{g.id} {place}")
     return ", ".join(said)

@@ -105,6 +105,7 @@ def _told(folder, verdict, model, tables, catalogue):
         "quantities": rows.quantities(_quantities(folder)),
         "effects": rows.effects(verdict, catalogue, draws.read(folder)),
         "drawn": words.drawn(draws.read(folder)),
+        "tests_nothing": verdict.sees_nothing,
         "odds": rows.odds(verdict, catalogue, tables["candidates"]),
         "nuisances": bench.nuisances(model),
         "present": rows.present(verdict, model, catalogue),

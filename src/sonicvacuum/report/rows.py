@@ -1,6 +1,7 @@
 """The tables of a record's page, made from the verdict and the tables beside it: numbers with plain names."""
 
 import math
+import re
 
 from sonicvacuum.discover import policy
 from sonicvacuum.report.tables import number
@@ -58,13 +59,20 @@ def quantities(table: list[dict]) -> list[dict]:
     return [
         {
             "run": r["run"],
-            "quantity": r["quantity"],
-            "unit": _UNITS.get(r["unit"], r["unit"]),
-            "measured": f"{_BOUNDS[r['bound']]}{number(r['measured'], 4)} ± {number(r['sigma'], 2)}",
+            "quantity": _in_full(r["quantity"]),
+            "measured": f"{_BOUNDS[r['bound']]}{number(r['measured'], 4)} ± {number(r['sigma'], 2)}"
+            + unit_of(r["unit"]),
             **{name: number(r[name], 4) for name in ("nominal", "extended", "held_out")},
         }
         for r in table
     ]
+
+
+def _in_full(label):
+    """`duration g9 at 0.02` with what the level is a part of; `speed at amplitude g9 0.25 N` in words."""
+    peak = "first peak" if label.startswith("pulse count") else "peak"
+    label = re.sub(r"^speed at amplitude (\S+) ", r"speed where \1 reads ", label)
+    return re.sub(r" at ([0-9.e-]+)$", rf", above \1 of the {peak}", label)
 
 
 def odds(verdict, catalogue, singles=()) -> list[dict]:

@@ -225,7 +225,9 @@ def alternatives(verdict: Verdict, catalogue: Catalogue = CATALOGUE) -> str:
     if not parts and found:
         named = _names(found, catalogue, "and")
         parts = [f"No rival comes near: {named} can be told from every other effect that was fitted."]
-    if not found:
+    if not found and verdict.sees_nothing:
+        parts = ["Every effect of the catalogue may be there: these data test none."]
+    elif not found:
         rivals = [n for n in sorted(verdict.probabilities, key=verdict.probabilities.get, reverse=True)]
         rivals = [n for n in rivals if n not in ("none", "unknown") and " + " not in n]
         rivals = [n for n in rivals if verdict.probabilities[n] >= 0.01][:3]
