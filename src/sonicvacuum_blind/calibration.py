@@ -56,13 +56,10 @@ def resampled(statistic: Callable[[np.ndarray], float], count: int) -> tuple[flo
 
 def band(count: int, groups: int = 1) -> float:
     """Half width of the band that holds the ECDF of uniform numbers everywhere in 95 % of samples, in all of
-    so many groups at once, the level divided by Šidák's rule.
-
-    Smirnov's exact distribution of one side for `count` numbers, half the level for each: leaving the band on
-    both sides at once, which this counts twice, is so rare that scipy.stats.kstwo differs by 2e-6 at most.
+    so many groups at once: Kolmogorov's distribution for `count` numbers (scipy.stats.kstwo), the level
+    divided by Šidák's rule.
     """
-    level = 0.95 ** (1.0 / groups)
-    return float(scipy.special.smirnovi(count, 0.5 * (1.0 - level))) if count else math.nan
+    return float(scipy.stats.kstwo.ppf(0.95 ** (1.0 / groups), count)) if count else math.nan
 
 
 def distance(pit: Iterable[float]) -> float:

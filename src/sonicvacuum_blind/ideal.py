@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-from scipy import optimize, special
+import scipy
 
 from sonicvacuum.blas import one_thread
 from sonicvacuum_blind.catalogue import BY_ID, hidden
@@ -109,7 +109,9 @@ def shares(hypotheses: list[Hypothesis], random: np.random.Generator, draws: int
     names = sorted({h.name for h in hypotheses})
     total = np.stack(
         [
-            special.logsumexp([e for e, h in zip(evidence, hypotheses, strict=True) if h.name == n], axis=0)
+            scipy.special.logsumexp(
+                [e for e, h in zip(evidence, hypotheses, strict=True) if h.name == n], axis=0
+            )
             for n in names
         ]
     )
@@ -205,7 +207,7 @@ def _fitted(frame: Frame, truth, seen, parts: tuple[Rival, ...], mass: float) ->
         if np.linalg.norm(whole(start)) > ELSEWHERE * np.linalg.norm(seen):
             coarse = partial(_missed, frame, truth, shapes, tolerance=COARSE)
             start = _elsewhere(coarse, start, low, high)
-        fit = optimize.least_squares(
+        fit = scipy.optimize.least_squares(
             whole,
             np.clip(start, low + 1e-9, high - 1e-9),
             slopes,
