@@ -1,7 +1,6 @@
 """One look for all figures, and bytes that depend on the numbers only.
 
-Sizes in millimetres of the printed page. Colours are those of Okabe and Ito, told apart in every kind of
-colour vision; line styles and widths say the same, for print in grey.
+Sizes in millimetres of the printed page. Line styles and widths say the same as colours, for print in grey.
 """
 
 from dataclasses import dataclass
@@ -12,12 +11,17 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from sonicvacuum.figures.colours import BAND as BAND
+from sonicvacuum.figures.colours import BLUE as BLUE
+from sonicvacuum.figures.colours import GREEN as GREEN
+from sonicvacuum.figures.colours import GREY as GREY
+from sonicvacuum.figures.colours import ORANGE as ORANGE
+from sonicvacuum.figures.colours import PURPLE as PURPLE
+from sonicvacuum.figures.colours import SKY as SKY
 from sonicvacuum.files import replacing
 
 SINGLE, DOUBLE = 85.0, 175.0  # widths of a journal column and of a page, mm
 DOTS_PER_INCH = 300
-GREY, BAND = "#595959", "#d9d9d9"
-BLUE, ORANGE, GREEN, PURPLE, SKY = "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9"
 # Format of a picture → what is written into it about its making.
 METADATA = {
     "svg": {"Date": None, "Creator": None},

@@ -12,7 +12,7 @@ import numpy as np
 from markupsafe import Markup, escape
 from PIL import Image
 
-from sonicvacuum.figures.style import GREY
+from sonicvacuum.figures.colours import GREY
 from sonicvacuum.gauges import contacts_of
 from sonicvacuum.report.interactive import Line, Panel, scales
 from sonicvacuum.simulation import Simulation
