@@ -23,6 +23,7 @@ GAUGES = {
     "CH3": Gauge("wall", "wall"),
 }
 NEWTON_PER_VOLT = {"CH1": 25.0, "CH2": 25.0, "CH3": 50.0}
+OFFSET_V = {"CH1": 0.013, "CH2": -0.021, "CH3": 0.008}
 NOISE_V = {"CH1": 0.003, "CH2": 0.003, "CH3": 0.003}
 INTERVAL, SAMPLES, PRETRIGGER = 2e-6, 650, 100  # s; samples after and before the impact
 HIDDEN, RATE_PER_S = "viscous-drag", 300.0
@@ -30,7 +31,7 @@ SEED = 2006
 TOLERANCE = 1e-7
 
 
-def design() -> Design:
+def design(interval: float = INTERVAL, samples: int = SAMPLES) -> Design:
     """What the laboratory knows: sixteen balls, a steel ball that strikes them, a steel wall."""
 
     def solid(name):
@@ -44,12 +45,11 @@ def design() -> Design:
         )
         for speed in SPEEDS.values()
     ]  # fmt: skip
-    return Design("traces", tuple(plans), None, INTERVAL, SAMPLES, modulus_sigma=0.05, trigger_sigma=1e-6)
+    return Design("traces", tuple(plans), None, interval, samples, modulus_sigma=0.05, trigger_sigma=1e-6)
 
 
-def volts() -> np.ndarray:
-    """(runs, channels, samples) V as digitised, the stretch before the impact included."""
-    made = design()
+def volts(made: Design, pretrigger: int = PRETRIGGER) -> np.ndarray:
+    """(runs, channels, samples) V as digitised, so many samples before the impact included."""
     random = np.random.default_rng(np.random.SeedSequence(SEED))
     errors = Errors.of(made, np.clip(random.standard_normal(len(Errors.of(made).vector)), -2.0, 2.0))
 
@@ -57,9 +57,8 @@ def volts() -> np.ndarray:
         return catalogue.BY_ID[HIDDEN].put(plan, None, rate_per_s=RATE_PER_S)
 
     force = predict(made, change, errors, TOLERANCE).traces
-    whole = np.concatenate([np.zeros((*force.shape[:2], PRETRIGGER)), force], axis=-1)
-    scale, noise = (np.array(list(d.values()))[:, None] for d in (NEWTON_PER_VOLT, NOISE_V))
-    offset = np.array([0.013, -0.021, 0.008])[:, None]
+    whole = np.concatenate([np.zeros((*force.shape[:2], pretrigger)), force], axis=-1)
+    scale, noise, offset = (np.array(list(d.values()))[:, None] for d in (NEWTON_PER_VOLT, NOISE_V, OFFSET_V))
     return whole / scale + offset + noise * random.standard_normal(whole.shape)
 
 
@@ -78,7 +77,7 @@ def text(run: np.ndarray) -> str:
 
 def write(folder) -> None:
     """One file for each impact."""
-    for name, run in zip(SPEEDS, volts(), strict=True):
+    for name, run in zip(SPEEDS, volts(design()), strict=True):
         with replacing(Path(folder) / f"{name}.csv", "wb") as stream:
             stream.write(text(run).encode("ascii"))
 

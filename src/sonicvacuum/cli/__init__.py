@@ -12,7 +12,7 @@ from importlib import import_module
 import click
 
 from sonicvacuum.blas import THREADS
-from sonicvacuum.cli.helped import COMPLETION, EXIT_CODES, locked
+from sonicvacuum.cli.helped import BEGINNING, COMPLETION, EXIT_CODES, locked
 from sonicvacuum.files import MACHINE, InputError, check_file, in_one_line
 
 # Verb → where it stands; the order is the order of the work. The two groups at the end belong to packages
@@ -87,7 +87,7 @@ def _show_version(ctx, param, asked):
     cls=Verbs,
     verbs=VERBS,
     context_settings={"help_option_names": ["-h", "--help"]},
-    epilog=f"{EXIT_CODES}\n\n{COMPLETION}",
+    epilog=f"{BEGINNING}\n\n{EXIT_CODES}\n\n{COMPLETION}",
 )
 @click.option(
     "--version",
@@ -98,7 +98,9 @@ def _show_version(ctx, param, asked):
     help="Show the version and the lock of its requirements.",
 )
 def cli():
-    """Strongly nonlinear waves in chains of beads: simulate, compare with the paper, report."""
+    """Impacts in chains of beads: simulate them, find what is missing from the model of measured ones, hold
+    both against a paper.
+    """
 
 
 # Package that only a part of the command needs → extra that brings it.

@@ -11,7 +11,10 @@ from sonicvacuum.files import InputError, replacing
 from sonicvacuum.outputs import check_apart
 
 
-@verb("sonicvacuum card --case fig3a --variant matched --out card.json")
+@verb(
+    "sonicvacuum card --case fig3a --variant matched --out card.json",
+    short_help="Resolve a case of config.yaml into a card (JSON, SI units).",
+)
 @click.option("--config", "path", default="config.yaml", show_default=True, type=existing())
 @click.option("--case", help="Name of the case; without it, all cards are listed.")
 @click.option("--variant", default="nominal", show_default=True)
@@ -66,7 +69,12 @@ def materials():
         click.echo(row)
 
 
-@verb("sonicvacuum effects", "sonicvacuum effects kuwabara-kono", "sonicvacuum effects --effects my_law.py")
+@verb(
+    "sonicvacuum effects",
+    "sonicvacuum effects kuwabara-kono",
+    "sonicvacuum effects --effects my_law.py",
+    short_help="List the catalogue of effects, or tell all about one.",
+)
 @click.argument("name", required=False)
 @own_effects
 def effects(name, own):
@@ -98,7 +106,7 @@ def effects(name, own):
         click.echo(f"{e.places:12} where it sits")
 
 
-@verb("sonicvacuum schema --out config.schema.json")
+@verb("sonicvacuum schema --out config.schema.json", short_help="JSON schema of config.yaml, for editors.")
 @click.option("--out", type=WRITTEN, help="File to write; default: standard output.")
 def schema(out):
     """JSON schema of the configuration, for editors that complete and check while typing."""

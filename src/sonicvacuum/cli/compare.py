@@ -10,7 +10,10 @@ from sonicvacuum.cli.own_effects import catalogue, own_effects
 from sonicvacuum.files import in_one_line
 
 
-@verb("sonicvacuum compare other-record --model found/model.json --json score.json")
+@verb(
+    "sonicvacuum compare other-record --model found/model.json --json score.json",
+    short_help="Score a model on a record that it has not seen.",
+)
 @click.argument("record", type=click.Path())
 @click.option("--model", required=True, type=existing(), help="model.json of sonicvacuum discover.")
 @click.option("--json", "path", required=True, type=WRITTEN, help="Score (JSON) to write.")

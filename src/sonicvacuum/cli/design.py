@@ -10,7 +10,8 @@ from sonicvacuum.cli.predict import chain_options
 
 @verb(
     "sonicvacuum design --effects sensor-droop,kuwabara-kono --beads 12 --diameter 5mm "
-    "--material bearing-steel --speed 0.5"
+    "--material bearing-steel --speed 0.5",
+    short_help="Where to put gauges, and which runs tell effects apart.",
 )
 @click.option("--effects", required=True, metavar="A,B", help="To tell apart; ids: sonicvacuum effects.")
 @chain_options

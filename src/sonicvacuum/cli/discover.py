@@ -16,6 +16,7 @@ from sonicvacuum.files import in_one_line
     "sonicvacuum discover my-record --out found",
     "sonicvacuum discover monday tuesday --together --out found",
     "sonicvacuum discover records/* --out found --no-figures --quiet",
+    short_help="Find what is missing from the model of measured data.",
 )
 @click.argument("records", nargs=-1, required=True, type=click.Path())
 @click.option("--out", required=True, type=FOLDER, help="Folder to write.")

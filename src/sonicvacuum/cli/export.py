@@ -15,6 +15,7 @@ NAMES = ("lammps", "liggghts", "yade", "mujoco", "drake", "all")
     "sonicvacuum export found/model.json --record my-record",
     "sonicvacuum export --law tsuji --alpha 0.1 --mass_g 4 --diameter_mm 10 --material brass",
     context_settings={"ignore_unknown_options": True},
+    short_help="Write the contact law of one ball for other simulators.",
 )
 @click.argument("words", nargs=-1, type=click.UNPROCESSED, metavar="[MODEL]")
 @click.option("--record", type=click.Path(), help="Record of one ball (beads: 0) that the model is of.")

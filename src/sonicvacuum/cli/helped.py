@@ -7,6 +7,12 @@ import click
 
 from sonicvacuum.files import check_written
 
+BEGINNING = """\b
+With files of a recorder:
+  sonicvacuum record import *.csv --list       # what is in them
+  sonicvacuum record import --help             # make a record of them: my-record
+  sonicvacuum record check my-record           # what is seen beside what is expected
+  sonicvacuum discover my-record --out found   # then open found/index.html"""
 EXIT_CODES = """\b
 Exit codes:
   0    done, whatever a verdict says

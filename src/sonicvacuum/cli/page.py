@@ -8,7 +8,11 @@ from sonicvacuum.cli.helped import PRESENT, verb
 from sonicvacuum.cli.own_effects import catalogue, own_effects
 
 
-@verb("sonicvacuum page found", "sonicvacuum page --png found")
+@verb(
+    "sonicvacuum page found",
+    "sonicvacuum page --png found",
+    short_help="Draw the pictures and the page of a verdict anew.",
+)
 @click.argument("folders", nargs=-1, required=True, type=PRESENT)
 @click.option("--png", is_flag=True, help="Each picture as PNG too, for slides and word processors.")
 @own_effects

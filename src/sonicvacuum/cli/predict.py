@@ -40,6 +40,7 @@ def chain_options(command):
 @verb(
     "sonicvacuum predict --beads 10 --diameter 20mm --material bearing-steel --speed 0.5",
     "sonicvacuum predict --beads 10 --diameter 20mm --material bearing-steel --aim 5N --gauges 3,7,wall",
+    short_help="What a chain will show: speed, force, arrivals, sampling.",
 )
 @chain_options
 @click.option("--aim", metavar="[GAUGE=]FORCE", help="Find the speed for this peak at the first gauge.")

@@ -7,9 +7,20 @@ from sonicvacuum.cli.scope import import_
 from sonicvacuum.files import in_one_line
 
 
-@click.group(epilog=examples("sonicvacuum record check my-record"))
+class _InOrder(click.Group):
+    """A group that lists its commands in the order of the work."""
+
+    def list_commands(self, ctx):
+        return list(self.commands)
+
+
+@click.group(
+    cls=_InOrder,
+    epilog=examples("sonicvacuum record import *.csv --list", "sonicvacuum record check my-record"),
+    short_help="Make and check records of measured data.",
+)
 def record():
-    """Start and check records of measured data."""
+    """Make records of measured data, by hand or of a recorder's files, and check them."""
 
 
 @record.command(epilog=examples("sonicvacuum record new my-record"))
@@ -21,8 +32,12 @@ def new(folder):
     click.echo(in_one_line(str(commands.new(folder))))
 
 
+record.add_command(import_)
+
+
 @record.command(
-    epilog=examples("sonicvacuum record check my-record", "sonicvacuum record check records/* --json")
+    epilog=examples("sonicvacuum record check my-record", "sonicvacuum record check records/* --json"),
+    short_help="What records hold, what is expected, what is suspicious.",
 )
 @click.argument("folders", nargs=-1, required=True, type=click.Path())
 @click.option("--json", "as_json", is_flag=True, help="Print JSON, in SI units.")
@@ -36,6 +51,3 @@ def check(folders, as_json):
     from sonicvacuum.report import checked
 
     click.echo(checked.check(folders, as_json))
-
-
-record.add_command(import_)

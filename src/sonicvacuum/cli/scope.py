@@ -13,6 +13,7 @@ from sonicvacuum.files import in_one_line
     "sonicvacuum record import *.csv --list",
     "sonicvacuum record import *.csv --record chain.yaml --channel CH1=g5 --scale g5=25N/V --out rec",
     name="import",
+    short_help="Make a record of a recorder's files as they are.",
 )
 @click.argument("files", nargs=-1, type=click.Path())
 @click.option("--list", "listed", is_flag=True, help="Only say what is in FILES.")

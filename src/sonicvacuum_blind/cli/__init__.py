@@ -5,6 +5,7 @@ from sonicvacuum.cli import Verbs
 blind = Verbs(
     name="blind",
     help="The blind test of discover: data with hidden effects, their score, and simpler rules beside it.",
+    short_help="The blind test of discover, on data with hidden effects.",
     verbs={
         "hide": "sonicvacuum_blind.cli.hide:hide",
         "ideal": "sonicvacuum_blind.cli.ideal:ideal",

@@ -5,6 +5,7 @@ from sonicvacuum.cli import Verbs
 paper = Verbs(
     name="paper",
     help="The reproduction of the paper: metrics, ledger, figures and report.",
+    short_help="The reproduction of the paper, step by step.",
     verbs={
         "observe": "sonicvacuum_paper.cli.observe:observe",
         "metrics": "sonicvacuum_paper.cli.metrics:metrics",
