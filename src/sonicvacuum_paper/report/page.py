@@ -86,7 +86,6 @@ def build(given: Sources) -> str:
         figures=[_figure(Path(svg)) for svg in given.figures],
         cards=[_card_row(card, metrics) for card in given.cards],
         own=[runs.told(one, metrics) for one in given.own],
-        columns=list(runs.AT_GAUGES.values()),
         catalogue=len(IDS),
         discoveries=[record.section(folder) for folder in given.discoveries],
         full=given.blind_full and study.read(given.blind_full),

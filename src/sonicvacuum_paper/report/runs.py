@@ -40,7 +40,6 @@ def build(simulations: Iterable[Simulation], metrics_path) -> str:
     template = inline.environment("sonicvacuum_paper.report").get_template("runs.html.j2")
     return template.render(
         cards=[told(s, metrics) for s in simulations],
-        columns=list(AT_GAUGES.values()),
         script=interactive.script(),
     )
 
@@ -75,12 +74,15 @@ def told(simulation: Simulation, metrics: pd.DataFrame) -> dict:
 
 
 def _numbers(rows, gauges):
-    """`gauges`: (gauge, cells in the order of AT_GAUGES); `between`: sentences on pairs of gauges."""
+    """`columns`: what is known of any gauge; `gauges`: (gauge, its cells); `between`: words on pairs."""
     known = {(r["quantity"], r["sensor"]): r for r in rows.to_dict("records")}
-    cells = [(s, [_cell(known.get((q, s))) for q in AT_GAUGES]) for s in gauges]
+    every = {q: [_cell(known.get((q, s))) for s in gauges] for q in AT_GAUGES}
+    every = {q: cells for q, cells in every.items() if set(cells) != {"–"}}
+    cells = list(zip(gauges, zip(*every.values(), strict=True), strict=False))
     # The metrics read virtual gauges as well, where the paper has its own.
     pairs = [(q, s) for q, s in known if q in BETWEEN and set(s.split("-")) <= set(gauges)]
-    return {"gauges": cells, "between": [f"{BETWEEN[q]} {s}: {_cell(known[q, s])}" for q, s in sorted(pairs)]}
+    between = [f"{BETWEEN[q]} {s}: {_cell(known[q, s])}" for q, s in sorted(pairs)]
+    return {"columns": [AT_GAUGES[q] for q in every], "gauges": cells, "between": between}
 
 
 def _cell(row):
