@@ -17,6 +17,8 @@ def test_no_page_scrolls_sideways_nor_complains(open_page, pictures, name, width
     page = open_page(name, width, scheme)
     assert sideways(page) == 0
     page.screenshot(path=pictures / f"{name.removesuffix('.html')}-{width}-{scheme}.png", full_page=True)
+    unfold(page)
+    assert sideways(page) == 0
 
 
 def test_the_report_is_short_with_every_fold_open(open_page, pictures):
