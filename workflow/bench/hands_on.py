@@ -1,6 +1,6 @@
-"""The tables of docs/hands-on.md, made from what `starts.py` and `ten_minutes.py` measured.
+"""The tables of docs/hands-on.md, made from what `starts.py`, `ten_minutes.py` and `long_records.py` measured.
 
-`python workflow/bench/hands_on.py` renews the page from the two tables kept beside the ledger.
+`python workflow/bench/hands_on.py` renews the page from the tables kept beside the ledger.
 """
 
 import csv
@@ -27,6 +27,13 @@ HEADS = {
         "kernels_s": "kernels, s",
         "run_s": "run, s",
     },
+    "long_records": {
+        "samples": "samples of a run",
+        "reading_s": "reading, s",
+        "search_s": "search, s",
+        "memory_MB": "memory, MB",
+        "named": "named",
+    },
 }
 
 
@@ -45,7 +52,7 @@ def _cell(column, text):
 
 
 def renewed(text: str) -> str:
-    """The page with both tables as measured."""
+    """The page with its tables as measured."""
     for name in HEADS:
         first, last = f"<!-- {name}: made by workflow/bench/hands_on.py -->\n", f"\n<!-- end of {name} -->"
         start, end = text.index(first) + len(first), text.index(last)

@@ -55,7 +55,7 @@ def write(folder: Path, samples: int) -> None:
         run["signals"] = f"{run['id']}.csv"
         head = ",".join(["time_us", *(g.id for g in example.GAUGES.values())])
         table = np.column_stack([time, *((volts - rest) * newtons)])
-        np.savetxt(folder / run["signals"], table, delimiter=",", fmt="%.7g", header=head, comments="")
+        np.savetxt(folder / run["signals"], table, delimiter=",", fmt="%.9g", header=head, comments="")
     (folder / "record.yaml").write_text(yaml.safe_dump(known), encoding="utf-8")
 
 
