@@ -1,4 +1,4 @@
-"""The tables of docs/hands-on.md, made from what `starts.py`, `ten_minutes.py` and `long_records.py` measured.
+"""The tables of docs/hands-on.md, from what `starts.py`, `ten_minutes.py` and `long_records.py` measured.
 
 `python workflow/bench/hands_on.py` renews the page from the tables kept beside the ledger.
 """
