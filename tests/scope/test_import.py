@@ -7,7 +7,7 @@ import pytest
 import yaml
 from click.testing import CliRunner
 from made_files import PULSE, TIMES, table, tbs
-from recorded import GAINS, NOISE_V, TRUE, raw_files
+from recorded import GAINS, NOISE_V, STEP_V, TRUE, raw_files
 
 from sonicvacuum.cli import cli
 from sonicvacuum.files import InputError
@@ -53,11 +53,11 @@ def test_traces_come_back_in_newtons_from_the_impact(imported):
 
 def test_noise_is_that_of_the_thinned_samples(imported):
     record = read_record(imported[0])
+    raw = np.hypot(NOISE_V, STEP_V / 12.0**0.5)
     for gauge in record.gauges:
-        raw = NOISE_V / GAINS[gauge.id]
         factor = record.runs[0].signals.interval_s / TRUE.signals["slow"].interval_s
-        # White noise through a low-pass at 0.8 of the new Nyquist frequency; 20 %: few samples at rest.
-        assert gauge.sigma == pytest.approx(raw * (0.8 / factor) ** 0.5, rel=0.2)
+        # The low-pass takes all noise beyond the new Nyquist frequency; 20 %: two errors of 100 samples.
+        assert gauge.sigma == pytest.approx(raw / GAINS[gauge.id] / factor**0.5, rel=0.2)
 
 
 def test_discover_takes_it(imported, tmp_path):

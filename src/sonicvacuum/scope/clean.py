@@ -68,7 +68,7 @@ def clean(shot: Shot, options: Options) -> CleanRun:
     if factor > 1:
         notes.append(
             f"Thinned by {factor}, from {tidy(step):g} to {tidy(step * factor):g} s, behind a zero-phase "
-            f"low-pass at {thin.CUTOFF:g} of the new Nyquist frequency."
+            "low-pass that halves the power at the new Nyquist frequency and leaves white noise white."
         )
     written = {g: thin.thinned(v[begin:end], factor) for g, v in values.items()}
     sigma = {g: _sigma(written[g], seen[g], begin, factor) for g in written}
