@@ -70,7 +70,9 @@ def clean(shot: Shot, options: Options) -> CleanRun:
             f"Thinned by {factor}, from {tidy(step):g} to {tidy(step * factor):g} s, behind a zero-phase "
             "low-pass that halves the power at the new Nyquist frequency and leaves white noise white."
         )
-    written = {g: thin.thinned(v[begin:end], factor) for g, v in values.items()}
+    left = thin.kept(begin, end, len(next(iter(values.values()))), factor)
+    begin = left.start
+    written = {g: thin.thinned(v, factor, left) for g, v in values.items()}
     sigma = {g: _sigma(written[g], seen[g], begin, factor) for g in written}
     notes += [f"{g}: noise {s:.3g} {unit[g]} a written sample." for g, s in sigma.items()]
     first = min((t.arrival for t in seen.values() if t.arrival is not None), default=None)

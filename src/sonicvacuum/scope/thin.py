@@ -51,27 +51,39 @@ def factor_for(traces: list[np.ndarray], widths: list[int], arrivals: list[int])
 def _harmless(values, arrival, factor):
     """Whether the low-pass takes away nothing but noise, or less than a thousandth of the peak."""
     reach = HALF * factor
-    quiet, pulse = slice(reach, max(reach, arrival - reach)), slice(max(reach, arrival - reach), -reach)
-    taken = values - filtered(values, factor)
-    if taken[pulse].size == 0:
+    if len(values) <= 2 * reach:
         return False
-    loss = float(np.sqrt(np.mean(taken[pulse] ** 2)))
-    noise = float(np.sqrt(np.mean(taken[quiet] ** 2))) if taken[quiet].size > 20 else 0.0
+    taken = values[reach:-reach] - _behind(values, factor)
+    quiet, pulse = np.split(taken, [max(0, arrival - 2 * reach)])
+    if pulse.size == 0:
+        return False
+    loss = float(np.sqrt(np.mean(pulse**2)))
+    noise = float(np.sqrt(np.mean(quiet**2))) if quiet.size > 20 else 0.0
     return loss < max(LOSS * noise, 1e-3 * float(np.abs(values).max()))
 
 
-def filtered(values: np.ndarray, factor: int) -> np.ndarray:
-    """(S,) samples behind the low-pass, delayed by nothing; the ends are continued by their last values."""
+def _behind(values, factor):
+    """(S − 2 reaches,) samples behind the low-pass, delayed by nothing."""
     from scipy.signal import oaconvolve
 
+    return oaconvolve(values, low_pass(factor), mode="valid")
+
+
+def kept(begin: int, end: int, count: int, factor: int) -> slice:
+    """Samples that are left of those from `begin` to `end` of a trace of `count`.
+
+    Those within reach of its ends are not: what the low-pass would need there was not measured.
+    """
+    reach = HALF * factor if factor > 1 else 0
+    return slice(max(begin, reach), min(end, count - reach), factor)
+
+
+def thinned(values: np.ndarray, factor: int, left: slice) -> np.ndarray:
+    """The samples that are `left` of a trace, behind the low-pass where they are thinned."""
+    if factor == 1:
+        return values[left]
     reach = HALF * factor
-    padded = np.concatenate((np.full(reach, values[0]), values, np.full(reach, values[-1])))
-    return oaconvolve(padded, low_pass(factor), mode="valid")
-
-
-def thinned(values: np.ndarray, factor: int) -> np.ndarray:
-    """Every factor-th sample behind the low-pass, from the first."""
-    return values if factor == 1 else filtered(values, factor)[::factor]
+    return _behind(values[left.start - reach : left.stop + reach], factor)[::factor]
 
 
 def noise_left(factor: int) -> float:

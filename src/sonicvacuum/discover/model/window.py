@@ -44,7 +44,7 @@ def fitted(record: Record) -> tuple[Record, tuple[str, ...]]:
         step = long[0].signals.interval_s * 1e6
         notes.append(
             f"traces thinned by {factor}, from {step:.3g} to {step * factor:.3g} us between samples, behind "
-            "a low-pass that leaves the pulse as it is"
+            "a low-pass that leaves the pulse as it is and lasts too long for the first and last few"
         )
     block = _quieter(record.block, thin.noise_left(factor))
     return replace(record, block=block, signals=signals), tuple(notes)
@@ -76,11 +76,12 @@ def _factor(run, seen, begin, end):
 
 
 def _less(signals: Signals, seen, begin, end, factor) -> Signals:
+    left = thin.kept(begin, end, signals.samples, factor)
     readings = {
-        g: thin.thinned(_plain(v, seen[g])[begin:end] if factor > 1 else v[begin:end], factor)
+        g: thin.thinned(_plain(v, seen[g]) if factor > 1 else v, factor, left)
         for g, v in signals.readings.items()
     }
-    return Signals(signals.time_us[begin:end:factor], readings)
+    return Signals(signals.time_us[left], readings)
 
 
 def _plain(values, trace):
