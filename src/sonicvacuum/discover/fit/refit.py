@@ -140,11 +140,19 @@ def polish(forward: Forward, one: Fit, iterations: int = ITERATIONS) -> Fit:
 
 def _finished(forward, hypothesis, now):
     """The last steps with slopes to second order: those to first order point a little beside the minimum."""
-    if not np.isfinite(now.objective[0]) or now.free == 0:
+    if not (np.isfinite(now.objective[0]) and _has_slopes(now)[0]) or now.free == 0:
         return now
     steps = _differences(now)
     precise, columns = linearised(forward, hypothesis, now.u, now.nu, None, steps, True)
     return descend(forward, hypothesis, precise, None, LAST, columns, precise=True)[0]
+
+
+def _has_slopes(now: Normal) -> np.ndarray:
+    """(L,) whether slopes are known in all directions: beside a chain that can be followed may lie one that
+    cannot.
+    """
+    gradient, hessian = now.total()
+    return np.isfinite(gradient).all(axis=1) & np.isfinite(hessian).all(axis=(1, 2))
 
 
 def _promising(forward, hypothesis, u, nu, places, keep):
@@ -178,9 +186,9 @@ def descend(
         weight = np.maximum(1.0, part.chi2.sum(axis=0) / (2.0 * size))
         gradient, hessian = part.total(weight)
         step = _step(part, hypothesis, gradient, hessian, damping[~settled], longest)
-        # Where a step promises nothing it need not be tried.
+        # Where a step promises nothing, or slopes are missing, it need not be tried.
         promise = _promise(gradient, hessian, step)
-        goes_on = (promise >= enough) | (weight > 1.0)
+        goes_on = (promise >= enough) | ((weight > 1.0) & np.isfinite(promise))
         if turn >= TRIED and settled.any():
             least = now.objective[settled].min()
             goes_on &= (part.objective - BEHIND * promise <= least) | (weight > 1.0)

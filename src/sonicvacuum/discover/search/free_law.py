@@ -150,11 +150,12 @@ def _names(forward):
 def _at(experiment: Experiment, base: Fit, names, width, typical, threads, law):
     """Fit and forward model with a prior of one width, from coefficients `law` on.
 
-    None where the chain cannot be simulated.
+    None where the chain, or one beside it, cannot be simulated.
     """
     forward = Forward(with_law(experiment, names, width, typical), threads)
     found = fit(forward, base.hypothesis, base.u[None], np.concatenate([base.nu, law / width])[None])
-    return (found, forward) if math.isfinite(found.objective) else None
+    known = math.isfinite(found.objective) and np.isfinite(found.normal.total()[1]).all()
+    return (found, forward) if known else None
 
 
 def _evidence(one: Fit, fitted: float, width: float, count: int) -> float:

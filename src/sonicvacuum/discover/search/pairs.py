@@ -180,7 +180,7 @@ def beside(
     """Every effect beside those of a first fit; `scores` is its screen, where at hand."""
     scores = scores or screened(forward, first, setup)
     gained = null.objective - first.objective
-    own = [c.place or 0 for c in first.hypothesis.components]
+    own = np.array([c.place or 0 for c in first.hypothesis.components], dtype=int)
     result = []
     for second, k in scores.best().items():
         effect = setup.catalogue.effect(second)
