@@ -69,14 +69,14 @@ def test_white_noise_ignores_a_few_spikes():
 @pytest.mark.parametrize("factor", [2, 5, 16])
 def test_thinning_keeps_pulse_and_time(factor):
     trace, left = pulse(), thin.kept(0, COUNT, COUNT, factor)
-    thinned = thin.thinned(trace, factor, left)
+    thinned = thin.thinned(trace, left)
     # Half of the new Nyquist frequency is passed to 0.13 %, at these pulses' frequencies to far less.
     assert thinned == pytest.approx(trace[left], abs=2e-4)
 
 
 @pytest.mark.parametrize("factor", [2, 5, 16])
 def test_noise_of_thinned_samples_is_as_stated(factor):
-    thinned = thin.thinned(noise(1.0), factor, thin.kept(0, COUNT, COUNT, factor))
+    thinned = thin.thinned(noise(1.0), thin.kept(0, COUNT, COUNT, factor))
     # Four standard errors of a standard deviation.
     assert thinned.std() == pytest.approx(thin.noise_left(factor), rel=4.0 / (2.0 * len(thinned)) ** 0.5)
 
@@ -87,11 +87,11 @@ def test_all_that_thinning_keeps_was_measured(begin, end):
     trace[[0, -1]] = 1e6
     left = thin.kept(begin, end, 400, factor)
     assert begin <= left.start and left.stop <= end
-    thinned = thin.thinned(trace, factor, left)
+    thinned = thin.thinned(trace, left)
     assert len(thinned) == len(trace[left])
     # A sample at the very end shows in what is within reach of it, and nowhere as if it had lasted.
     assert np.abs(thinned).max() <= 1.000001e6 * np.abs(thin.low_pass(factor)[[0, -1]]).max()
-    assert np.array_equal(thin.thinned(trace, 1, thin.kept(begin, end, 400, 1)), trace[begin:end])
+    assert np.array_equal(thin.thinned(trace, thin.kept(begin, end, 400, 1)), trace[begin:end])
 
 
 @pytest.mark.parametrize("factor", [2, 3, 5, 16])

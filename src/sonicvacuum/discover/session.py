@@ -82,8 +82,7 @@ def discover(
         that tables and pictures need.
 
     Raises:
-        InputError: for records that cannot be simulated or do not belong together; with `limits`, for a
-            search that asks for more than a computer gives.
+        InputError: for records that cannot be simulated, do not belong together, or (`limits`) ask too much.
     """
     clock = Clock()
     ready, notes = zip(*map(window.fitted, records), strict=True)

@@ -72,7 +72,7 @@ def clean(shot: Shot, options: Options) -> CleanRun:
         )
     left = thin.kept(begin, end, len(next(iter(values.values()))), factor)
     begin = left.start
-    written = {g: thin.thinned(v, factor, left) for g, v in values.items()}
+    written = {g: thin.thinned(v, left) for g, v in values.items()}
     sigma = {g: _sigma(written[g], seen[g], begin, factor) for g in written}
     notes += [f"{g}: noise {s:.3g} {unit[g]} a written sample." for g, s in sigma.items()]
     first = min((t.arrival for t in seen.values() if t.arrival is not None), default=None)

@@ -78,12 +78,12 @@ def kept(begin: int, end: int, count: int, factor: int) -> slice:
     return slice(max(begin, reach), min(end, count - reach), factor)
 
 
-def thinned(values: np.ndarray, factor: int, left: slice) -> np.ndarray:
-    """The samples that are `left` of a trace, behind the low-pass where they are thinned."""
-    if factor == 1:
+def thinned(values: np.ndarray, left: slice) -> np.ndarray:
+    """The samples that are `left` of a trace, see `kept`, behind the low-pass where they are thinned."""
+    if left.step == 1:
         return values[left]
-    reach = HALF * factor
-    return _behind(values[left.start - reach : left.stop + reach], factor)[::factor]
+    reach = HALF * left.step
+    return _behind(values[left.start - reach : left.stop + reach], left.step)[:: left.step]
 
 
 def noise_left(factor: int) -> float:

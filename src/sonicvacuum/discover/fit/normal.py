@@ -40,6 +40,14 @@ class Normal:
         """(L,) χ² and the penalty of the nuisances."""
         return self.weighted(np.ones(len(self.u)))
 
+    @property
+    def has_slopes(self) -> np.ndarray:
+        """(L,) whether slopes are known in all directions: beside a chain that can be followed may lie one
+        that cannot.
+        """
+        gradient, hessian = self.total()
+        return np.isfinite(gradient).all(axis=1) & np.isfinite(hessian).all(axis=(1, 2))
+
     def weighted(self, weight: np.ndarray) -> np.ndarray:
         """(L,) the same with the penalty times (L,) weights."""
         return self.chi2.sum(axis=0) + weight * np.square(self.nu).sum(axis=1)

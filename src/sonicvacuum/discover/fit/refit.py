@@ -140,19 +140,11 @@ def polish(forward: Forward, one: Fit, iterations: int = ITERATIONS) -> Fit:
 
 def _finished(forward, hypothesis, now):
     """The last steps with slopes to second order: those to first order point a little beside the minimum."""
-    if not (np.isfinite(now.objective[0]) and _has_slopes(now)[0]) or now.free == 0:
+    if not (np.isfinite(now.objective[0]) and now.has_slopes[0]) or now.free == 0:
         return now
     steps = _differences(now)
     precise, columns = linearised(forward, hypothesis, now.u, now.nu, None, steps, True)
     return descend(forward, hypothesis, precise, None, LAST, columns, precise=True)[0]
-
-
-def _has_slopes(now: Normal) -> np.ndarray:
-    """(L,) whether slopes are known in all directions: beside a chain that can be followed may lie one that
-    cannot.
-    """
-    gradient, hessian = now.total()
-    return np.isfinite(gradient).all(axis=1) & np.isfinite(hessian).all(axis=(1, 2))
 
 
 def _promising(forward, hypothesis, u, nu, places, keep):

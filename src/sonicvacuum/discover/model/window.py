@@ -78,8 +78,7 @@ def _factor(run, seen, begin, end):
 def _less(signals: Signals, seen, begin, end, factor) -> Signals:
     left = thin.kept(begin, end, signals.samples, factor)
     readings = {
-        g: thin.thinned(_plain(v, seen[g]) if factor > 1 else v, factor, left)
-        for g, v in signals.readings.items()
+        g: thin.thinned(_plain(v, seen[g]) if factor > 1 else v, left) for g, v in signals.readings.items()
     }
     return Signals(signals.time_us[left], readings)
 

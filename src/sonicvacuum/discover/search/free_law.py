@@ -154,7 +154,7 @@ def _at(experiment: Experiment, base: Fit, names, width, typical, threads, law):
     """
     forward = Forward(with_law(experiment, names, width, typical), threads)
     found = fit(forward, base.hypothesis, base.u[None], np.concatenate([base.nu, law / width])[None])
-    known = math.isfinite(found.objective) and np.isfinite(found.normal.total()[1]).all()
+    known = math.isfinite(found.objective) and found.normal.has_slopes[0]
     return (found, forward) if known else None
 
 
