@@ -8,7 +8,7 @@ from sonicvacuum.files import InputError, read_text, replacing
 from sonicvacuum_blind.baselines.names import ALARM, EXACT, PANELS, WRONG
 from sonicvacuum_blind.kept import TABLES
 from sonicvacuum_blind.report import Study, followed, percent, read, results, rivals
-from sonicvacuum_blind.study import SEEDS, TAG, cases
+from sonicvacuum_blind.study import BROKEN, INTERRUPTED, MENDED, SEEDS, TAG, cases
 
 BEGIN = "<!-- study: made by `snakemake publish_study`, do not edit -->"
 END = "<!-- end of study -->"
@@ -71,11 +71,21 @@ def provenance(score: pd.DataFrame) -> str:
     return (
         f"Method: git tag `{TAG}`. The seed, {SEEDS['full']}, was drawn after that tag; nothing of what was "
         "made with it was read before all verdicts stood. Of the study before, of seed 20062, a part had "
-        f"been read while its method was mended. Records: {part}{kinds}.{ideal} Verdicts took "
+        f"been read while its method was mended. {mended()} Records: {part}{kinds}.{ideal} Verdicts took "
         f"{hours:.1f} hours, one thread each. Made with `snakemake --cores 2 publish_study`, in batches that "
         f"can be resumed, on one machine or a cluster. Of each record [score.csv](../{TABLES}/score.csv) has "
         f"what was found, of each stated interval [parameters.csv](../{TABLES}/parameters.csv); the tables "
         f"follow from these: `sonicvacuum blind tables {TABLES} --out tables`."
+    )
+
+
+def mended() -> str:
+    """What of the study a commit later than the tag searched, and why."""
+    records, batches = (" and ".join(map(str, part)) for part in (BROKEN, BROKEN.values()))
+    return (
+        f"The search broke on two records, {records}: their batches, {batches} of 0 to 47, are searched by "
+        f"commit {MENDED}, which mends that and nothing else of a verdict; so is batch {INTERRUPTED}, which "
+        "had been interrupted: the 32 records of it that both searched have the same verdicts."
     )
 
 
