@@ -7,8 +7,11 @@ import numpy as np
 import pytest
 from linear_models import drawn, of_drag
 
+from sonicvacuum.discover import posterior
 from sonicvacuum.discover.fit import refit
+from sonicvacuum.discover.model.forward import NO_CHAIN, Forward
 from sonicvacuum.discover.model.hypothesis import Hypothesis
+from sonicvacuum.discover.model.problem import experiment
 from sonicvacuum.discover.search import pairs
 from sonicvacuum.discover.search.directions import Direction
 
@@ -37,3 +40,30 @@ def test_places_of_an_effect_beside_none_are_indices(setup, monkeypatch):
     monkeypatch.setattr(pairs.singles, "starts", lambda *rest: starts)
     (start,) = pairs.beside(None, nothing, nothing, setup, scores)
     assert np.arange(3)[start.places].tolist() == [[1]]
+
+
+@pytest.mark.parametrize("far", [1.01 * NO_CHAIN, -1.01 * NO_CHAIN, np.nan, 1e4])
+def test_what_no_laboratory_has_is_not_simulated(hidden, far):
+    """A speed a thousand times what was stated: no numbers, instead of steps without end."""
+    forward = Forward(experiment(hidden))
+    nu = np.zeros((3, forward.layout.size))
+    nu[1, forward.layout.speed(0)] = far / forward.nuisance_sigma[forward.layout.speed(0)]
+    found = forward.sampled(Hypothesis(), np.zeros((3, 0)), nu)
+    for value, _ in found:
+        assert np.isnan(value[1]).all()
+        assert np.array_equal(value[0], value[2]) and np.isfinite(value[0]).all()
+
+
+def test_points_that_run_away_do_not_bend_a_posterior(monkeypatch):
+    """Of values held on a line, those whose nuisances find no minimum are left out; the others keep theirs."""
+    away = np.linspace(-2.0, 2.0, 41)[:, None]
+    point = np.concatenate([away, np.zeros_like(away)], axis=1)
+
+    def misfit(forward, fit, at):
+        """The nuisance's best value is 0.3 of the square of what is held; no numbers from 1.5 on."""
+        slope = 0.3 * np.square(at[:, 0]) - at[:, 1]
+        return None, np.stack([np.zeros_like(slope), np.where(at[:, 0] > 1.5, np.nan, slope)], axis=1)
+
+    monkeypatch.setattr(posterior, "_misfit", misfit)
+    bent = posterior._bent(None, None, point, away, np.array([1]), np.eye(1))
+    assert bent[:, 0] == pytest.approx(0.3 * np.square(away[:, 0]), abs=1e-6)  # a quadratic is what it fits

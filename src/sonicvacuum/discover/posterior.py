@@ -105,12 +105,13 @@ def _bent(forward, fit, point, away, free, inner):
     what is held, through a few points that are followed to their minima.
     """
     few = np.unique(np.linspace(0, len(point) - 1, FEW * away.shape[1]).astype(int))
-    best = point[few]
+    best, sound = point[few], np.ones(len(few), dtype=bool)
     for _ in range(STEPS):
-        best[:, free] += _misfit(forward, fit, best)[1][:, free] @ inner
+        step = _misfit(forward, fit, best)[1][:, free] @ inner
+        sound &= np.isfinite(step).all(axis=1)
+        best[np.ix_(sound, free)] += step[sound]
     away = away / np.abs(away).max(axis=0)
     basis = np.concatenate([np.ones((len(away), 1)), away, np.square(away)], axis=1)
-    sound = np.isfinite(best).all(axis=1)
     return basis @ np.linalg.lstsq(basis[few[sound]], (best - point[few])[sound][:, free], rcond=1e-9)[0]
 
 

@@ -21,6 +21,9 @@ from sonicvacuum.forward import Seen, see, virtual
 from sonicvacuum.physics.chain import Chain
 
 CHUNK = 512  # chains simulated in one call, to bound the memory
+# Natural logarithm of a ratio at which a chain is none that a laboratory has: a speed, a modulus or a mass a
+# thousand times what was stated. A step that runs away to there would ask for steps without end.
+NO_CHAIN = 7.0
 
 
 class Forward:
@@ -263,8 +266,10 @@ class Forward:
         return [(np.concatenate(v), np.concatenate(r)) for v, r in zip(values, rates, strict=True)]
 
     def _batch(self, batch, change, nu, part, rate_of):
-        """Run, predictions and rates of one batch for the lanes `part`."""
-        nu, e = nu[part], self.experiment
+        """Run, predictions and rates of one batch for the lanes `part`; no numbers where there is no chain."""
+        nu, e, own = nu[part], self.experiment, self.layout.of_chain
+        lost = ~(np.abs(nu[:, own] * self.nuisance_sigma[own]) < NO_CHAIN).all(axis=1)
+        nu = np.where(lost[:, None], 0.0, nu)
         setup = change(self.nominal(batch, nu), np.repeat(part, len(batch.runs)))
         seen, gain = self.simulate(batch, setup), self._gain(nu)
         traces = {}
@@ -284,6 +289,7 @@ class Forward:
             value, timing = traces[run]
             measured = scalars.of_run(e, self.layout, batch, k, seen, gain, nu)
             flat = e.whitened_on(run, value, measured)
+            flat[lost] = np.nan
             rated, times, *shape = timing.shape
             rates = timing.reshape(rated * times, *shape)
             rates = e.whitened_on(run, rates, np.zeros((len(rates), measured.shape[1])))

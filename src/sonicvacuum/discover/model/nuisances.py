@@ -152,6 +152,12 @@ class Layout:
         return [self.modulus, *own]
 
     @cached_property
+    def of_chain(self) -> list[int]:
+        """Places of the ratios of what the chain itself is, its striker's speeds among them."""
+        own = [k for k, one in enumerate(self.others) if one.kind in CHANGES and one.kind != "law"]
+        return [*range(self.runs), self.modulus, *(self.modulus + 1 + k for k in own)]
+
+    @cached_property
     def _by_kind(self) -> dict[str, list[int]]:
         """Kind → places of the other shared ones."""
         found: dict[str, list[int]] = {}
