@@ -8,7 +8,7 @@ from sonicvacuum.files import InputError, read_text, replacing
 from sonicvacuum_blind.baselines.names import ALARM, EXACT, PANELS, WRONG
 from sonicvacuum_blind.kept import TABLES
 from sonicvacuum_blind.report import Study, followed, percent, read, results, rivals
-from sonicvacuum_blind.study import BROKEN, INTERRUPTED, MENDED, SEEDS, TAG, cases
+from sonicvacuum_blind.study import BROKEN, MENDED, SEEDS, TAG, cases
 
 BEGIN = "<!-- study: made by `snakemake publish_study`, do not edit -->"
 END = "<!-- end of study -->"
@@ -80,12 +80,11 @@ def provenance(score: pd.DataFrame) -> str:
 
 
 def mended() -> str:
-    """What of the study a commit later than the tag searched, and why."""
-    records, batches = (" and ".join(map(str, part)) for part in (BROKEN, BROKEN.values()))
+    """What of the study commits later than the tag searched, and why."""
     return (
-        f"The search broke on two records, {records}: their batches, {batches} of 0 to 47, are searched by "
-        f"commit {MENDED}, which mends that and nothing else of a verdict; so is batch {INTERRUPTED}, which "
-        "had been interrupted: the 32 records of it that both searched have the same verdicts."
+        f"The search broke on three records, {', '.join(BROKEN)}: two ended it, one did not let it end. Their "
+        f"batches, {', '.join(map(str, BROKEN.values()))} of 0 to 47, are searched by commits "
+        f"{' and '.join(MENDED)}, which mend that (SAME)."
     )
 
 

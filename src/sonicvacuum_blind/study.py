@@ -17,11 +17,9 @@ from sonicvacuum_blind.hide import Spec
 # That of the full study was drawn after its method was fixed, git tag `TAG`; of the one before it, 20062,
 # a part had been read while the method was mended.
 TAG = "study-2"
-# Two records (in batches, of 48) broke that method's search; the commit that mends it searched these batches,
-# and one that had been interrupted.
-MENDED = "9b5bd88"
-BROKEN = {"full-0870": 6, "full-1242": 42}
-INTERRUPTED = 16
+# Records that this method's search broke on → their batches, of 48, which the commits that mend it searched.
+MENDED = ("9b5bd88", "912b466")
+BROKEN = {"full-0870": 6, "full-1242": 42, "full-1552": 16}
 SEEDS = {"small": 20061, "full": 88_822_325, "training": 20063}
 TRAINING = 300
 # Single effects in traces of several speeds: d′ → records of each effect.

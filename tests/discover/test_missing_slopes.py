@@ -55,7 +55,7 @@ def test_what_no_laboratory_has_is_not_simulated(hidden, far):
 
 
 def test_points_that_run_away_do_not_bend_a_posterior(monkeypatch):
-    """Of values held on a line, those whose nuisances find no minimum are left out; the others keep theirs."""
+    """Of values held on a line, those whose nuisances find no minimum are left out, alone."""
     away = np.linspace(-2.0, 2.0, 41)[:, None]
     point = np.concatenate([away, np.zeros_like(away)], axis=1)
 

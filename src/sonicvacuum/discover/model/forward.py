@@ -266,7 +266,7 @@ class Forward:
         return [(np.concatenate(v), np.concatenate(r)) for v, r in zip(values, rates, strict=True)]
 
     def _batch(self, batch, change, nu, part, rate_of):
-        """Run, predictions and rates of one batch for the lanes `part`; no numbers where there is no chain."""
+        """Run, predictions and rates of a batch for the lanes `part`; no numbers where there is no chain."""
         nu, e, own = nu[part], self.experiment, self.layout.of_chain
         lost = ~(np.abs(nu[:, own] * self.nuisance_sigma[own]) < NO_CHAIN).all(axis=1)
         nu = np.where(lost[:, None], 0.0, nu)
