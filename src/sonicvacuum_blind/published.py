@@ -82,8 +82,8 @@ def provenance(score: pd.DataFrame) -> str:
 def mended() -> str:
     """What of the study commits later than the tag searched, and why."""
     return (
-        f"The search broke on three records, {', '.join(BROKEN)}: two ended it, one did not let it end. Their "
-        f"batches, {', '.join(map(str, BROKEN.values()))} of 0 to 47, are searched by commits "
+        f"The search broke on three records, {', '.join(BROKEN)}: two ended it, one did not let it end. "
+        f"Their batches, {', '.join(map(str, BROKEN.values()))} of 0 to 47, are searched by commits "
         f"{' and '.join(MENDED)}, which mend that (SAME)."
     )
 
