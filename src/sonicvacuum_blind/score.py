@@ -10,6 +10,8 @@ from sonicvacuum_blind import TRUTH, stated
 from sonicvacuum_blind.stated import load
 
 CONFIDENT = 0.9
+# A slip counts as named from this probability on.
+LIKELY = 0.5
 IDEAL = ("id", "ideal", "before", "cells")
 NONE, UNKNOWN = "none", stated.UNKNOWN
 
@@ -36,6 +38,7 @@ class Row:
         says_unknown: the verdict holds unknown.
         wrong: such a name, and no word of unknown.
         confident_wrong: the same where it, or the set named, has probability 0.9 or more.
+        slip: a slip of the laboratory is named, with probability 0.5 or more; these records have none.
         closed: held-out gap closed.
         before, chi2: held-out mean squared residual over the floor, without and with what is named.
         held, limits: upper limits on hidden effects not named that hold the truth, of so many.
@@ -70,6 +73,7 @@ class Row:
     says_unknown: int
     wrong: int
     confident_wrong: int
+    slip: int
     closed: float
     before: float
     chi2: float
@@ -189,6 +193,7 @@ def _row(truth, verdict, folder, ideal):
             and UNKNOWN not in named
             and (confidently(probabilities, wrong) or probabilities.get(given, 0.0) >= CONFIDENT)
         ),
+        slip=int(any(fault["probability"] >= LIKELY for fault in verdict.get("faults") or [])),
         closed=_number(held_out.get("closed")),
         before=_over_floor(held_out, "before"),
         chi2=_over_floor(held_out, "after"),

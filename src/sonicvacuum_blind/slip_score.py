@@ -6,14 +6,12 @@ from dataclasses import dataclass
 
 from sonicvacuum.files import InputError
 from sonicvacuum_blind import TRUTH
-from sonicvacuum_blind.score import UNKNOWN, Line, confidently, found_in, load
+from sonicvacuum_blind.score import LIKELY, UNKNOWN, Line, confidently, found_in, load
 from sonicvacuum_blind.shares import counted, quantile
 from sonicvacuum_blind.slips import SLIPS
 
 # A slip that the record's own errors explain up to this d′ cannot be told from them.
 PLAIN = 10.0
-# A slip counts as named from this probability on.
-LIKELY = 0.5
 
 
 @dataclass(frozen=True)

@@ -81,6 +81,7 @@ def _nulls(rows):
     for noise in ("white", "ar1", "quantised"):
         chosen = [r for r in rows if r.noise == noise]
         yield _share("named on null", noise, chosen, "false_alarm", "<= 0.01")
+        yield _share("slip named on null", noise, chosen, "slip", "<= 0.01")
     yield _share("unknown on null", "all", rows, "says_unknown")
 
 
@@ -101,6 +102,7 @@ def _wrong(of):
         if kind != "foreign":
             yield _share("wrong name, unqualified", kind, of[kind], "wrong")
         yield _share("the same with probability 0.9", kind, of[kind], "confident_wrong")
+        yield _share("slip named where none is", kind, of[kind], "slip")
 
 
 def _probabilities(rows):

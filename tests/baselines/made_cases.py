@@ -26,7 +26,7 @@ def row(id="a", kind="single", effects="tsuji", **changes):
         "top": effects,
         **dict.fromkeys(("confidence", "stated"), 0.9),
         **dict.fromkeys(("exact", "class_level"), 1),
-        **dict.fromkeys(("false_alarm", "says_unknown", "wrong", "confident_wrong"), 0),
+        **dict.fromkeys(("false_alarm", "says_unknown", "wrong", "confident_wrong", "slip"), 0),
         **BLANK,
         **dict.fromkeys(("credible", "credible_size", "held", "limits", "simulations"), 0),
         **dict.fromkeys(("cells_right", "cells_wrong", "cells_seen", "cells_large"), 0),

@@ -110,6 +110,14 @@ def test_null():
     assert row(truth(kind="null", effects=()), verdict()).false_alarm == 1
 
 
+@pytest.mark.parametrize("probability, counts", [(0.999, 1), (0.5, 1), (0.4, 0)])
+def test_a_slip_named_where_none_is(probability, counts):
+    fault = {"fault": "drift", "run": None, "sensor": "g1", "probability": probability, "value": 0.3}
+    nothing = verdict([], {"none": 0.99, "unknown": 0.01})
+    assert row(truth(kind="null", effects=()), nothing | {"faults": [fault]}).slip == counts
+    assert row(truth(kind="null", effects=()), nothing).slip == 0
+
+
 def test_outside_the_catalogue():
     known = row(truth(kind="foreign", effects=("dimer",)), verdict(["unknown"]))
     assert (known.exact, known.says_unknown, known.reached) == (1, 1, 9.0)

@@ -110,6 +110,50 @@ def test_pure_noise_raises_no_alarm():
         assert not cut(noise, 1.0).any()
 
 
+def wandering(rng, rho, n):
+    """Noise of first order and unit variance, its neighbours correlated by rho."""
+    noise = rng.normal(size=n)
+    for k in range(1, n):
+        noise[k] = rho * noise[k - 1] + np.sqrt(1.0 - rho**2) * noise[k]
+    return noise
+
+
+@pytest.mark.parametrize("rho", [0.2, 0.5, 0.8, 0.9])
+@pytest.mark.parametrize("n", [60, 300])
+def test_noise_that_wanders_raises_no_alarm(rho, n):
+    # 100 stretches: as in pure noise, of which such noise is less.
+    rng = np.random.default_rng(np.random.SeedSequence([15, n, int(10 * rho)]))
+    for _ in range(100):
+        noise = wandering(rng, rho, n)
+        mean, error = traces.rest(noise, 1.0)
+        assert abs(mean) < traces.SURE * error
+        assert traces.drift(noise, 1.0) is None
+        assert traces.pickup(noise, 1.0) is None
+        assert traces.noise_ratio(noise, 1.0) is None
+
+
+def test_noise_below_the_step_of_a_digitiser_is_not_called_small():
+    """Most samples rest on one value: how few leave it says little of the noise's size."""
+    rng = np.random.default_rng(np.random.SeedSequence(16))
+    for _ in range(200):
+        noise = 2.0 * np.round(np.sqrt(2.0 / 3.0) * rng.normal(size=60) / 2.0)
+        assert traces.noise_ratio(noise, 1.0) is None
+
+
+@pytest.mark.parametrize("rho", [0.0, 0.5, 0.8])
+def test_slips_are_seen_in_noise_that_wanders(rho):
+    rng = np.random.default_rng(np.random.SeedSequence([17, int(10 * rho)]))
+    place = np.arange(120)
+    for _ in range(20):
+        noise = wandering(rng, rho, len(place))
+        assert traces.drift(noise + 0.25 * place, 1.0)[0] == pytest.approx(0.25, rel=0.2)  # three errors
+        frequency, _ = traces.pickup(noise + 6.0 * np.sin(0.7 * place), 1.0)
+        assert frequency == pytest.approx(
+            0.7 / (2.0 * np.pi), rel=0.01
+        )  # a hundredth of its thirteen periods
+        assert traces.noise_ratio(4.0 * noise, 1.0) == pytest.approx(4.0, rel=0.6)  # few free samples at 0.8
+
+
 @pytest.mark.parametrize("effect", ["viscous-drag", "sensor-droop", "sensor-gain", "sensor-offset"])
 def test_true_effects_are_no_slips_of_traces(model, effect):
     given = {

@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 
+from sonicvacuum.discover.faults import coloured
 from sonicvacuum.discover.model.problem import QUIET_PEAK, QUIET_SHARE, QUIET_SIGMAS, flicker
 
 # Samples of a quiet stretch that can be judged.
@@ -57,7 +58,9 @@ def noise_ratio(stretch: np.ndarray, sigma: float) -> float | None:
     if n < FEWEST or not sigma:
         return None
     whole, *halves = (_log_ratio(part, sigma) for part in (stretch, *np.array_split(stretch, 2)))
-    sure = abs(whole) > max(SURE / math.sqrt(2.0 * n), math.log(NOISE_FACTOR))
+    bare = stretch - line(stretch)
+    least = max(SURE * coloured.error_of_size(bare), math.log(NOISE_FACTOR))
+    sure = abs(whole + coloured.loss_of_size(bare)) > least
     return math.exp(whole) if sure and min(h / whole for h in halves) > 0.5 else None
 
 
@@ -87,10 +90,11 @@ def drift(stretch: np.ndarray, sigma: float) -> tuple[float, float] | None:
     if n < FEWEST:
         return None
     slope, _ = _straight(stretch)
-    left = float((stretch - line(stretch)).std(ddof=2))
+    bare = stretch - line(stretch)
+    left = float(bare.std(ddof=2))
     if left > NOISE_FACTOR * max(sigma, flicker(stretch)):
         return None
-    error = max(sigma, left) * math.sqrt(12.0 / n**3)
+    error = max(sigma, left) * math.sqrt(12.0 / n**3) * coloured.wider(bare)
     return (slope, error) if abs(slope) > SURE * error else None
 
 
@@ -98,7 +102,8 @@ def rest(stretch: np.ndarray, sigma: float) -> tuple[float, float]:
     """Mean of a quiet stretch and its standard error."""
     if len(stretch) < FEWEST:
         return 0.0, math.inf
-    return float(stretch.mean()), max(sigma, float(stretch.std())) / math.sqrt(len(stretch))
+    error = max(sigma, float(stretch.std())) / math.sqrt(len(stretch))
+    return float(stretch.mean()), error * coloured.wider(stretch - line(stretch))
 
 
 def pickup(stretch: np.ndarray, sigma: float = 0.0) -> tuple[float, np.ndarray] | None:
@@ -122,35 +127,50 @@ def pickup(stretch: np.ndarray, sigma: float = 0.0) -> tuple[float, np.ndarray] 
     around = power[max(0, best - 4) : best + 5]
     if best + 2 < _SEEN or power[best] < 0.5 * around.sum():
         return _slow_line(stretch, sigma)
-    f, (cosine, sine), _ = _tuned(stretch, (best + 2 + np.linspace(-0.6, 0.6, 121)) / n)
-    return f, np.array([cosine, sine])
+    f, found, _ = _tuned(stretch, (best + 2 + np.linspace(-0.6, 0.6, 121)) / n)
+    return (f, found) if _more_than_noise(stretch, f) else None
 
 
 def _slow_line(stretch, sigma):
     """A line of few periods that leaves nothing but noise, None where there is none."""
     f, found, left = _tuned(stretch, np.arange(_FEWEST_PERIODS, _SEEN + 2, 0.05) / len(stretch))
-    return (f, found) if _alone(stretch, left, sigma) else None
+    return (f, found) if _alone(stretch, f, left, sigma) else None
 
 
 def is_line(stretch: np.ndarray, cycles: float, sigma: float) -> bool:
     """Whether a sinusoid of so many cycles per sample, known from elsewhere, leaves nothing but noise."""
-    return len(stretch) >= FEWEST and _alone(stretch, wave(stretch, cycles)[1], sigma)
+    return len(stretch) >= FEWEST and _alone(stretch, cycles, wave(stretch, cycles)[1], sigma)
 
 
-def _alone(stretch, left, sigma):
+def _alone(stretch, cycles, left, sigma):
     noise, whole = math.sqrt(left / (len(stretch) - 5)), float((stretch - line(stretch)).std(ddof=2))
-    return noise < NOISE_FACTOR * max(sigma, flicker(stretch)) and whole > 2.0 * noise
+    quiet = noise < NOISE_FACTOR * max(sigma, flicker(stretch)) and whole > 2.0 * noise
+    return quiet and _more_than_noise(stretch, cycles)
+
+
+def _more_than_noise(stretch, cycles):
+    """Whether noise that wanders would hardly do as well as a sinusoid: as many frequencies as half of the
+    samples could have, each with two amplitudes (χ² of two degrees of freedom exceeds x at e^−x/2).
+    """
+    table = _sinusoid(len(stretch), cycles)
+    beside = stretch - table @ np.linalg.lstsq(table, stretch, rcond=None)[0]
+    gain = coloured.gain(stretch - line(stretch), beside)
+    return gain > 2.0 * math.log(0.5 * len(stretch) / LINE_P)
 
 
 def wave(stretch: np.ndarray, cycles: float) -> tuple[np.ndarray, float]:
     """Cosine and sine of a sinusoid of so many cycles per sample beside a straight line, and the sum of
     squares left.
     """
-    place = np.arange(len(stretch))
-    angle, share = 2.0 * np.pi * cycles * place, place / len(stretch) - 0.5
-    table = np.column_stack([np.cos(angle), np.sin(angle), np.ones_like(share), share])
-    found, left, *_ = np.linalg.lstsq(table, stretch, rcond=None)
+    found, left, *_ = np.linalg.lstsq(_sinusoid(len(stretch), cycles), stretch, rcond=None)
     return found[:2], float(left.sum())
+
+
+def _sinusoid(n, cycles):
+    """(n, 4): cosine, sine, a level and a slope."""
+    place = np.arange(n)
+    angle, share = 2.0 * np.pi * cycles * place, place / n - 0.5
+    return np.column_stack([np.cos(angle), np.sin(angle), np.ones_like(share), share])
 
 
 def _tuned(stretch, tried):
