@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from made_records import SIGMA
+from made_records import SIGMA, made
 from made_slips import altered
 
 from sonicvacuum.discover import session
@@ -60,3 +60,12 @@ def test_a_dead_gauge_is_no_effect_of_the_model(empty):
     v = session.discover(altered(empty, "g7", lambda _: SIGMA * noise)).verdict
     assert v.faults[0].fault == "gauge-dead"
     assert v.named == []
+
+
+def test_a_slip_that_an_effect_explains_away_is_not_put_right_first():
+    """Contacts three times as stiff hasten every pulse, as a bead too many on paper would, but altogether."""
+    record, _ = made([("dynamic-modulus", {"modulus_ratio": 3.0})], seed=3)
+    told = session.discover(record).verdict
+    assert told.named == ["dynamic-modulus"] and not told.faults
+    found = told.parameters["dynamic-modulus"]["modulus_ratio"]
+    assert found.value == pytest.approx(3.0, abs=3.0 * found.sigma)  # three standard errors

@@ -29,6 +29,7 @@ from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Hypothesis
 from sonicvacuum.discover.model.problem import together
 from sonicvacuum.discover.rounds import Investigation, investigate, nominal
+from sonicvacuum.discover.search import directions, screen, singles
 from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.records import Record
 
@@ -114,7 +115,7 @@ class Search:
             model = self.nominal()
             looked = suspicious(model)
             ranked = self.ranked(model) if looked else []
-            if not ranked or not obvious(ranked[0], model):
+            if not ranked or not obvious(ranked[0], model) or self._matched(ranked[0], model):
                 break
             self._accept(ranked, ranked[0])
         else:
@@ -174,6 +175,19 @@ class Search:
         self.simulations += judge.simulations
         kept = [j for j in followed if j.gain > policy.LEAST_GAIN and j.log_odds > 0.0]
         return sorted(kept, key=lambda j: -j.log_odds)
+
+    def _matched(self, judged: Judged, model: Model) -> bool:
+        """Whether an effect alone explains about as much as a slip that stretches times or forces as it may.
+
+        Of a large misfit, nine tenths are no proof against an effect that takes away all.
+        """
+        if not FAULTS[judged.slip.fault].stretches:
+            return False
+        forward, before = model.forward, model.forward.chains
+        known = directions.catalogue(singles.setup_of(forward), forward.experiment.excluded)
+        found = singles.fit_all(forward, model.fit, screen.screen(forward, model.fit, known))
+        self.simulations += forward.chains - before
+        return any(c.gain > judged.gain - ALIKE for c in found)
 
     def _accept(self, ranked: list[Judged], chosen: Judged, share: float = 1.0) -> None:
         """Put a slip right; its rivals are said as far as they are probable."""

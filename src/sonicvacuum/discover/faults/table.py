@@ -15,6 +15,7 @@ class Fault:
         corrected: whether the rest of the verdict is of the record put right.
         alias: nuisance such that an effect which acts like it (`Parameter.acts_like`) moves the same data in
             the same way, "" where there is none.
+        stretches: whether it moves all times or forces at once, as an effect in every contact may.
     """
 
     id: str
@@ -23,6 +24,7 @@ class Fault:
     unit: str = ""
     corrected: bool = True
     alias: str = ""
+    stretches: bool = False
 
 
 FAULTS: dict[str, Fault] = {
@@ -80,6 +82,7 @@ FAULTS: dict[str, Fault] = {
             "gain-common",
             "all gauges read {value} times the force",
             "check the calibration that all gauges share",
+            stretches=True,
         ),
         Fault(
             "runs-swapped",
@@ -92,9 +95,16 @@ FAULTS: dict[str, Fault] = {
             "run {run} shows no pulse in any gauge",
             "check whether the striker was let go and the recorder armed",
         ),
-        Fault("bead-count", "the chain seems to have {value} beads", "count the beads"),
-        Fault("bead-mass", "the beads weigh {value} times the stated mass", "weigh the beads"),
-        Fault("bead-size", "the beads measure {value} times the stated diameter", "measure the beads"),
+        Fault("bead-count", "the chain seems to have {value} beads", "count the beads", stretches=True),
+        Fault(
+            "bead-mass", "the beads weigh {value} times the stated mass", "weigh the beads", stretches=True
+        ),
+        Fault(
+            "bead-size",
+            "the beads measure {value} times the stated diameter",
+            "measure the beads",
+            stretches=True,
+        ),
         Fault(
             "striker-mass",
             "the striker weighs {value} times the stated mass",
@@ -111,12 +121,14 @@ FAULTS: dict[str, Fault] = {
             "clock",
             "the recorder's time runs {value} times as fast as stated",
             "check the sampling interval",
+            stretches=True,
         ),
         Fault(
             "time-zero",
             "the stated time zero is {value} us after the impact",
             "check what the recorder was triggered on: the impact, or the arrival at a gauge",
             "us",
+            stretches=True,
         ),
     )
 }
