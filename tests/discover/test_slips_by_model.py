@@ -2,6 +2,8 @@
 place and size; nulls are not suspicious, and what is put right is the sound record.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from made_records import made
@@ -127,3 +129,16 @@ def test_what_a_slip_has_to_gain_is_beyond_chance():
     # Fifty alternatives, each a χ² of one degree of freedom: exp(−x/2) bounds its tail (Chernoff's bound for
     # a standard normal variable squared).
     assert 50.0 * np.exp(-0.5 * policy.LEAST_GAIN) < 0.01
+
+
+def test_another_number_of_beads_is_tried_where_slopes_promise_nothing(empty, monkeypatch):
+    """In long chains a pulse that comes a bead earlier does not overlap the one that was measured."""
+    look = Judge.look
+
+    def blind(judge, slip):
+        found = look(judge, slip)
+        return replace(found, gain=-1.0, log_bayes=-10.0) if slip.fault == "bead-count" else found
+
+    monkeypatch.setattr(Judge, "look", blind)
+    _, _, ranked = search(changes.bead_count(empty, 1))
+    assert (ranked[0].slip.fault, ranked[0].slip.value(ranked[0].size)) == ("bead-count", 10.0)

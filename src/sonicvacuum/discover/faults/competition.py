@@ -18,7 +18,7 @@ from sonicvacuum.discover.faults import policy
 from sonicvacuum.discover.faults.examine import examine
 from sonicvacuum.discover.faults.found import Bench, Finding
 from sonicvacuum.discover.faults.judging import Judge, Judged, Model, noise_volume
-from sonicvacuum.discover.faults.slips import hypotheses
+from sonicvacuum.discover.faults.slips import Slip, hypotheses
 from sonicvacuum.discover.faults.table import FAULTS
 from sonicvacuum.discover.faults.timing import time_zero, with_starts
 from sonicvacuum.discover.fit import evidence, smooth, tails
@@ -170,6 +170,9 @@ class Search:
         stages.begin("slips of the laboratory")
         looked = sorted((judge.look(s) for s in slips), key=lambda j: -j.log_odds)
         worth = [j for j in looked if j.gain > policy.LEAST_GAIN][: policy.FOLLOWED]
+        if excess(model) > policy.SURE_GAIN:
+            # A pulse that comes a bead earlier overlaps none of what was measured: slopes know nothing of it.
+            worth += [j for j in looked if _of_the_chain(j.slip) and j not in worth]
         whole = [judge.look(s) for s in shifted]
         followed = [judge.follow(j) for j in [*worth, *whole]]
         self.simulations += judge.simulations
@@ -177,10 +180,7 @@ class Search:
         return sorted(kept, key=lambda j: -j.log_odds)
 
     def _matched(self, judged: Judged, model: Model) -> bool:
-        """Whether an effect alone explains about as much as a slip that stretches times or forces as it may.
-
-        Of a large misfit, nine tenths are no proof against an effect that takes away all.
-        """
+        """Whether an effect alone explains about as much as a slip that moves all pulses as it may."""
         if not FAULTS[judged.slip.fault].stretches:
             return False
         forward, before = model.forward, model.forward.chains
@@ -291,6 +291,17 @@ class Search:
         )
 
 
+def _of_the_chain(slip: Slip) -> bool:
+    """Whether a slip has no size and moves all pulses at once: another number of beads."""
+    return not slip.continuous and FAULTS[slip.fault].stretches
+
+
+def excess(model: Model) -> float:
+    """χ² of a nominal fit, its nuisances' included, above the number of data."""
+    e = model.forward.experiment
+    return model.fit.objective - sum(e.size(r) for r in range(len(e.runs)))
+
+
 def suspicious(model: Model) -> bool:
     """Whether a nominal fit leaves more than its noise, or strains its nuisances."""
     one, e = model.fit, model.forward.experiment
@@ -304,12 +315,9 @@ def suspicious(model: Model) -> bool:
 
 def obvious(judged: Judged, model: Model) -> bool:
     """Whether a slip takes away nearly all misfit by itself."""
-    e = model.forward.experiment
-    size = sum(e.size(r) for r in range(len(e.runs)))
-    excess = model.fit.objective - size
     return (
         judged.gain > policy.SURE_GAIN
-        and judged.gain > policy.SHARE * excess
+        and judged.gain > policy.SHARE * excess(model)
         and not FAULTS[judged.slip.fault].alias
     )
 
