@@ -25,26 +25,29 @@ def law(table: list[dict[str, str]]):
     left = panel(figure, (16.0, 12.0, 0.5 * DOUBLE - 24.0, 44.0))
     right = panel(figure, (0.5 * DOUBLE + 12.0, 12.0, 0.5 * DOUBLE - 18.0, 44.0))
     for k, at in enumerate(_spread(visited.any(axis=0))):
-        _line(
-            left,
-            k,
-            depth,
-            beside[:, at],
-            band[:, at],
-            visited[:, at],
-            f"{rate[at]:+.2g} m/s".replace("-", "−"),
-        )
+        label = f"{'' if k else 'rate '}{_signed(rate[at])} m/s"
+        _line(left, k, depth, beside[:, at], band[:, at], visited[:, at], label)
     for k, at in enumerate(_spread(visited.any(axis=1), first=1)):
-        _line(right, k, rate, beside[at], band[at], visited[at], f"{depth[at]:.2g} µm")
-    for axes, label, title in (
-        (left, "compression (µm)", "rate"),
-        (right, "rate of compression (m/s)", "compression"),
-    ):
+        label = f"{'' if k else 'compression '}{depth[at]:.2g} µm"
+        _line(right, k, rate, beside[at], band[at], visited[at], label)
+    for axes, label in ((left, "compression (µm)"), (right, "rate of compression (m/s)")):
         axes.axhline(0.0, color=GREY, lw=0.6)
         axes.set_xlabel(label)
-        axes.legend(title=title, fontsize=7, title_fontsize=7, borderaxespad=0.2)
+        # Above the panel: inside it, the bands leave no room.
+        axes.legend(
+            loc="lower center",
+            bbox_to_anchor=(0.5, 1.0),
+            ncol=3,
+            fontsize=7,
+            columnspacing=1.0,
+            borderaxespad=0.2,
+        )
     left.set_ylabel("force beside nominal (N)")
     return figure
+
+
+def _signed(rate):
+    return f"{rate:+.2g}".replace("-", "−") if abs(rate) > 1e-9 else "0"
 
 
 def _spread(there, first=0):

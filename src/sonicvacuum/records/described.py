@@ -4,9 +4,10 @@ from sonicvacuum.records.record import Record
 
 
 def chain_of(record: Record) -> str:
-    """`21 beads of parylene-c, 4.86 mm, 0.44 g, vertical`."""
-    kind = "one ball on a wall" if record.beads == 0 else f"{record.beads} beads"
-    return f"{kind} of {_beads(record.specimen)}, {record.block.chain.orientation}"
+    """`21 beads of parylene-c, 4.86 mm, 0.44 g, vertical`; for one ball also what it falls on."""
+    kind = "one ball" if record.beads == 0 else f"{record.beads} beads"
+    wall = "" if record.beads else f", on a wall of {record.specimen.wall.name}"
+    return f"{kind} of {_beads(record.specimen)}{wall}, {record.block.chain.orientation}"
 
 
 def _beads(specimen):

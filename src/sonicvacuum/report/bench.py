@@ -16,6 +16,16 @@ from sonicvacuum.report.words import in_words, joined
 
 # A modulus that moved by more than this, in its logarithm, is told first.
 FAR = 0.2
+# Kinds of what all runs share that add to a reading; all others are factors. How those are called.
+_SHIFTS = ("delay", "clock", "shared")
+_WHAT = {
+    "bead-mass": "mass of the beads",
+    "bead-diameter": "diameter of the beads",
+    "coating": "thickness of the coating",
+    "striker-mass": "mass of the striker",
+    "speed-common": "speed of the striker, common to all runs",
+    "gain-common": "calibration common to all gauges",
+}
 # What has moved by more of its stated standard errors than this has left them.
 STRAINED = 2.5
 
@@ -84,14 +94,14 @@ def moved_modulus(verdict: Verdict, model: Model) -> str:
 def strained(verdict: Verdict, model: Model, record: Record) -> list[str]:
     """What has to leave its stated error for the model to follow the data, one line each; largest first."""
     found = sorted(_moves(verdict, model, record), reverse=True)
-    return [f"{said}, {score:.2g} times the error that the record states." for score, said in found]
+    return [f"{said}, {score:.2g} of the stated standard errors away." for score, said in found]
 
 
 def _moves(verdict, model, record) -> Iterator[tuple[float, str]]:
     """(shift over its stated error, sentence without its end)."""
     for run in record.runs:
         ratio, shift = model.speed_ratio.get(run.id, 1.0), model.trigger_us.get(run.id, 0.0)
-        said = f"Check the striker's speed in run {run.id}: model and data agree best at {ratio:.3f} of it"
+        said = _asked(f"the striker's speed in run {run.id}", ratio)
         yield from _far(math.log(ratio), run.striker.speed_rel_sigma, said)
         said = f"Check the time zero of run {run.id}: the data ask for a shift of {shift:.3g} µs"
         yield from _far(shift / 1e6, record.trigger_sigma_s, said)
@@ -101,7 +111,7 @@ def _moves(verdict, model, record) -> Iterator[tuple[float, str]]:
         yield from _far(math.log(ratio), gauge.gain_rel_sigma, said)
     name = record.specimen.first.surface.name
     stated = record.modulus_rel_sigma(name)
-    said = f"Check the modulus of {name}: the data ask for {model.modulus_ratio:.3f} of it"
+    said = _asked(f"the modulus of {name}", model.modulus_ratio)
     error = MODULUS_REL_SIGMA if stated is None else stated
     yield from _far(math.log(model.modulus_ratio), error, said)
     yield from _others(verdict)
@@ -111,10 +121,25 @@ def _others(verdict):
     """What else the record leaves open."""
     for name, known in (verdict.nuisances or {}).items():
         if known.prior:
-            away = known.value if name.startswith(("delay", "clock", "shared")) else math.log(known.value)
-            yield from _far(
-                away, known.prior, f"Check {name.replace('_', ' ')}: the data ask for {known.value:.4g}"
-            )
+            kind, _, of = name.partition(" ")
+            away = known.value if kind in _SHIFTS else math.log(known.value)
+            yield from _far(away, known.prior, _told_of(kind, of, known.value))
+
+
+def _told_of(kind, of, value):
+    """What to check where all runs share it, and how far off it is."""
+    if kind == "shared":
+        return f"Check the error common to several quantities, {of}: the data ask for a shift"
+    if kind == "delay":
+        return f"Check the delay of gauge {of}: the data ask for {value:.3g} µs"
+    if kind == "clock":
+        return f"Check the recorder's clock: the data ask for one that is off by {100.0 * value:.2g} %"
+    what = _WHAT.get(kind, kind.replace("-", " "))
+    return _asked(f"the {what} of {of}" if of else f"the {what}", value)
+
+
+def _asked(what, ratio):
+    return f"Check {what}: the data ask for {ratio:.3g} times what is stated"
 
 
 def _far(away, error, said):

@@ -15,8 +15,8 @@ _COLUMN = 300.0
 
 
 def environment(*packages: str) -> jinja2.Environment:
-    """The templates of this package and of others; `number` shows a table's number legibly, `formula`
-    an equation."""
+    """The templates of this package and of others; `number` shows a table's number legibly, `unit`
+    its unit with a space before it, `formula` an equation, `typeset` a sentence."""
     found = jinja2.Environment(
         loader=jinja2.ChoiceLoader([jinja2.PackageLoader(p, ".") for p in ("sonicvacuum.report", *packages)]),
         autoescape=True,
@@ -25,7 +25,9 @@ def environment(*packages: str) -> jinja2.Environment:
         lstrip_blocks=True,
     )
     found.filters["number"] = tables.number
+    found.filters["unit"] = tables.unit_of
     found.filters["formula"] = formula
+    found.filters["typeset"] = typeset
     return found
 
 
@@ -63,13 +65,28 @@ def is_narrow(path) -> bool:
 # What effects write in plain letters in their equations.
 _GREEK = {"delta": "δ", "tau": "τ", "alpha": "α", "gamma": "γ", "epsilon": "ε"}
 
+# Typed → set; `>` is escaped by then.
+_SIGNS = {"-&gt;": "→", "sqrt(": "√(", " - ": " − ", "...": "…"}
+
+
+def typeset(text: str) -> str:
+    """A sentence of a table, typed in plain letters, with the signs of print: micro and minus."""
+    return re.sub(r"(?<![\w.^-])-(?=\d)", "−", _micro(text))
+
+
+def _micro(text):
+    return re.sub(r"(?<=\d) u(?=[sm]\b)", " µ", text)
+
 
 def formula(text: str) -> Markup:
-    """An equation as effects write it, with powers raised, indices lowered and Greek letters."""
+    """An equation as effects write it, with powers raised, indices lowered, Greek letters and signs."""
     plain = str(escape(text))
+    for typed, set_ in _SIGNS.items():
+        plain = plain.replace(typed, set_)
     plain = re.sub(
         "|".join(rf"(?<![A-Za-z]){name}(?![a-z])" for name in _GREEK), lambda m: _GREEK[m[0]], plain
     )
+    plain = _micro(plain)
     plain = re.sub(r"\^\{([^}]*)\}|\^(-?\w+(?:\.\d+)?)", lambda m: f"<sup>{m[1] or m[2]}</sup>", plain)
     return Markup(re.sub(r"_\{([^}]*)\}|(?<=\b\w)_(\w+)", lambda m: f"<sub>{m[1] or m[2]}</sub>", plain))
 

@@ -148,8 +148,8 @@
       told.textContent = panel.map ? overMap(panel, x, y) : overLines(panel, x, y);
       told.hidden = !told.textContent;
       const frame = figure.getBoundingClientRect();
-      const wanted = event.clientX - frame.left + 14;
-      told.style.left = `${Math.max(0, Math.min(wanted, frame.width - told.offsetWidth))}px`;
+      const wanted = Math.min(event.clientX - frame.left + 14, frame.width - told.offsetWidth);
+      told.style.left = `${figure.scrollLeft + Math.max(0, wanted)}px`;
       told.style.top = `${event.clientY - frame.top + 14}px`;
     };
     svg.addEventListener("pointermove", move);

@@ -77,7 +77,9 @@ def section(folder, catalogue: Catalogue = CATALOGUE) -> dict:
     tables = {name: _rows(folder / f"{name}.csv") for name in ("where", "candidates", "gap", "limits")}
     inputs, records = given.read(folder) or (None, [])
     with reading(folder, "run sonicvacuum discover again"):
-        return _told(folder, verdict, model, tables, catalogue) | _origin(inputs, records, verdict, model)
+        gauges = [g.id for g in records[0].gauges] if records else []
+        told = _told(folder, verdict, model, tables, catalogue, gauges)
+        return told | _origin(inputs, records, verdict, model)
 
 
 def _origin(inputs, records, verdict, model):
@@ -93,8 +95,8 @@ def _origin(inputs, records, verdict, model):
     }
 
 
-def _told(folder, verdict, model, tables, catalogue):
-    name = verdict.record
+def _told(folder, verdict, model, tables, catalogue, gauges):
+    name, quantities_of = verdict.record, rows.quantities(_quantities(folder))
     return {
         "name": name,
         "headline": words.headline(verdict, catalogue) + bench.moved_modulus(verdict, model),
@@ -102,8 +104,9 @@ def _told(folder, verdict, model, tables, catalogue):
         "corrected": bench.corrected(verdict),
         "where": words.where(verdict, tables["where"]),
         "grid": rows.grid(tables["where"]),
-        "quantities": rows.quantities(_quantities(folder)),
-        "effects": rows.effects(verdict, catalogue, draws.read(folder)),
+        "quantities": quantities_of,
+        "moved": any(r["nominal"] != r["extended"] for r in quantities_of),
+        "effects": rows.effects(verdict, catalogue, draws.read(folder), gauges),
         "drawn": words.drawn(draws.read(folder)),
         "tests_nothing": verdict.sees_nothing,
         "odds": rows.odds(verdict, catalogue, tables["candidates"]),

@@ -4,20 +4,13 @@ import math
 import re
 
 from sonicvacuum.discover import policy
-from sonicvacuum.report.tables import number
+from sonicvacuum.report.tables import number, unit_of
 from sonicvacuum.report.words import SIDES, plain, share
 
 # Scores from this on are written into their cell; those beyond the second have the full colour.
 TOLD, FULL = 3.0, 10.0
 # Explanations that are shown: the first ones, and all above this probability.
 FEWEST, LEAST, MOST = 3, 0.005, 8
-_UNITS = {"us": "µs", "um": "µm", "1": "", "m/s2": "m/s²"}
-
-
-def unit_of(unit: str) -> str:
-    """A unit as people write it, with a space before it."""
-    shown = _UNITS.get(unit, unit)
-    return f" {shown}" if shown else ""
 
 
 def grid(cells: list[dict]) -> dict | None:
@@ -60,12 +53,19 @@ def quantities(table: list[dict]) -> list[dict]:
         {
             "run": r["run"],
             "quantity": _in_full(r["quantity"]),
-            "measured": f"{_BOUNDS[r['bound']]}{number(r['measured'], 4)} ± {number(r['sigma'], 2)}"
-            + unit_of(r["unit"]),
+            "measured": f"{_BOUNDS[r['bound']]}{_as_stated(r['measured'], r['sigma'])}" + unit_of(r["unit"]),
             **{name: number(r[name], 4) for name in ("nominal", "extended", "held_out")},
         }
         for r in table
     ]
+
+
+def _as_stated(value, sigma):
+    """A measured value with as many decimals as its stated error, of which two digits count."""
+    error = number(sigma, 2)
+    if "e" in error:
+        return f"{number(value)} ± {error}"
+    return f"{float(value):.{len(error.partition('.')[2])}f} ± {error}"
 
 
 def _in_full(label):
@@ -102,7 +102,7 @@ def in_words(parameters, catalogue):
         effect, name, value = part.rsplit(" ", 2)
         if effect in catalogue and name in {p.name for p in catalogue.effect(effect).parameters}:
             p = catalogue.effect(effect).parameter(name)
-            told.append(f"{p.help} = {number(value, 2)}{unit_of(p.unit)}")
+            told.append(f"{p.help} = {_apart(value, off(p), 2)}{unit_of(p.unit)}")
     return ", ".join(told)
 
 
@@ -135,12 +135,24 @@ def _round(name, catalogue):
     return "nominal model" if name == "nominal" else f"with {plain(name, catalogue)}"
 
 
-def effects(verdict, catalogue, draws) -> list[dict]:
-    """What was named: title, equation, source, and its parameters with errors; `draws` as in `draws.read`."""
+def effects(verdict, catalogue, draws, gauges=()) -> list[dict]:
+    """What was named: title, equation, source, and its parameters with errors.
+
+    Args:
+        verdict: what was found.
+        catalogue: knows the effects of the verdict.
+        draws: as in `draws.read`.
+        gauges: names of the record's gauges in its order; () where they are not known.
+    """
     found = []
     for name, given in verdict.parameters.items():
         one = catalogue.effect(name)
-        parameters = [_parameter(one, key, value, draws.get((name, key))) for key, value in given.items()]
+        parameters = [
+            _place(key, value, gauges)
+            if key == one.places
+            else _parameter(one.parameter(key), value, draws.get((name, key)))
+            for key, value in given.items()
+        ]
         found.append(
             {
                 "id": name,
@@ -154,40 +166,43 @@ def effects(verdict, catalogue, draws) -> list[dict]:
     return found
 
 
-def _parameter(one, key, found, draws):
+def _place(key, found, gauges):
+    """Row of the place of an effect; a gauge, which verdicts count from 0, by its name."""
+    name = f"{found.value:g}"
+    if key == "sensor" and gauges:
+        key, name = "gauge", gauges[int(found.value)]
+    return {"name": f"sits at {key}", "value": name, "interval": "", "searched": "", "off": ""}
+
+
+def _parameter(p, found, draws):
     """Row of a parameter: what, value with its error, 90 % interval, range searched, value without effect."""
-    if key == one.places:
-        return {
-            "name": f"sits at {key}",
-            "value": f"{found.value:g}",
-            "interval": "",
-            "searched": "",
-            "off": "",
-        }
-    p = one.parameter(key)
     return {
         "name": p.help,
-        "value": _with_error(found.value, found.sigma) + unit_of(p.unit),
+        "value": with_error(found.value, found.sigma) + unit_of(p.unit),
         "interval": _interval(found.value, found.sigma, draws),
-        "searched": f"{p.low:g} to {p.high:g}",
+        "searched": f"{number(p.low)} to {number(p.high)}",
         "off": off(p),
     }
 
 
-def _with_error(value, sigma):
+def with_error(value, sigma):
     """Value ± standard error with two digits of the error."""
     if not sigma > 0.0:
         return f"{value:.4g} (error not determined)"
-    digits = max(0, 1 - math.floor(math.log10(sigma)))
-    return f"{value:.{digits}f} ± {sigma:.{digits}f}" if digits < 7 else f"{value:.4g} ± {sigma:.2g}"
+    # Rounding may carry: 0.0996 is 0.10.
+    places = 1 - math.floor(math.log10(float(f"{sigma:.1e}")))
+    if places >= 7 or abs(value) >= 1e6:
+        return f"{number(value)} ± {number(sigma, 2)}"
+    digits = max(0, places)
+    return f"{round(value, places):.{digits}f} ± {round(sigma, places):.{digits}f}"
 
 
 def _interval(value, sigma, draws):
     """The 90 % interval of the draws, where there are any, or else of the Gaussian."""
     if draws is not None:
-        return f"{draws.quantile(0.05):.4g} to {draws.quantile(0.95):.4g}"
+        return f"{_rounded(draws.quantile(0.05), 4)} to {_rounded(draws.quantile(0.95), 4)}"
     room = policy.NINETY * sigma
-    return f"{value - room:.4g} to {value + room:.4g}" if sigma > 0.0 else ""
+    return f"{_rounded(value - room, 4)} to {_rounded(value + room, 4)}" if sigma > 0.0 else ""
 
 
 def off(parameter) -> str:
@@ -199,10 +214,15 @@ def off(parameter) -> str:
     return "∞" if math.isinf(parameter.off) else f"{parameter.off:g}"
 
 
-def _apart(value, other: str) -> str:
-    """A number to three digits, or to as many as tell it from another one."""
-    told = (number(value, digits) for digits in range(3, 7))
-    return next((text for text in told if text != other), number(value, 7))
+def _rounded(value, digits) -> str:
+    """A number with so many significant digits, also where they end before the decimal point."""
+    return number(f"{float(value):.{digits - 1}e}", digits)
+
+
+def _apart(value, other: str, digits=3) -> str:
+    """A number to so many digits, or to as many as tell it from another one."""
+    told = (_rounded(value, more) for more in range(digits, 7))
+    return next((text for text in told if text != other), _rounded(value, 7))
 
 
 def limit(row: dict, catalogue) -> dict:

@@ -4,6 +4,14 @@ import math
 
 from sonicvacuum.files import InputError, check_file, reading
 
+_UNITS = {"us": "µs", "um": "µm", "1": "", "m/s2": "m/s²"}
+
+
+def unit_of(unit: str) -> str:
+    """A unit as people write it, with a space before it."""
+    shown = _UNITS.get(unit, unit)
+    return f" {shown}" if shown else ""
+
 
 def read(path, columns, numbers=()):
     """The pandas.DataFrame of a table with exactly these columns, text kept as text and missing cells empty.

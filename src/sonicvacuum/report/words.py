@@ -174,12 +174,14 @@ def where(verdict: Verdict, cells: list[dict]) -> str:
     traces = any(c["sensor"] for c in cells)
     failing = [c["feature"] for c in cells if float(c["q_before"] or 1.0) < DISCOVERY_RATE]
     kind = "run, gauge and feature of the trace" if traces else "run and measured quantity"
+    found = effects_of(verdict)
     if not cells:
         return "There was nothing to compare by feature."
     if not (failing and verdict.where):
         return (
             f"Nowhere: of {plural(len(cells), 'comparison')} ({kind}), none stands out beyond what so many "
             "comparisons give by chance."
+            + (" What is missing is spread over them, and shows where all are fitted at once." * bool(found))
         )
     first = verdict.where[0]
     groups = joined([f"{name.replace('_', ' ')} ({count})" for name, count in Counter(failing).most_common()])
