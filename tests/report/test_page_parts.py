@@ -133,8 +133,9 @@ def test_one_ball_falls_on_its_wall_and_is_not_made_of_it():
         {"quantity": "restitution", "value": 0.9, "sigma": 0.01, "unit": "1"}]}  # fmt: skip
     of = record(chain=ball, sensors=[], runs=[run])
     assert chain_of(of) == "one ball of bearing-steel, 10 mm, 4 g, on a wall of brass, vertical"
-    line, name = re.search(r'class="wall" x1="([\d.]+)".*?<text x="([\d.]+)"', sketch(of)).groups()
-    assert abs(float(name) - float(line)) < 50.0  # the label ends within half its own length of the wall
+    struck, wall = re.search(r'<text x="([\d.]+)" y="18.0">striker.*?<text x="([\d.]+)"', sketch(of)).groups()
+    # Letters are 6.2 wide: `wall: brass` begins behind `striker`, not at the other end of the drawing.
+    assert 7 * 6.2 <= float(wall) - 11 * 6.2 - float(struck) < 80.0
 
 
 @pytest.mark.parametrize(

@@ -69,9 +69,9 @@ _GREEK = {"delta": "δ", "tau": "τ", "alpha": "α", "gamma": "γ", "epsilon": "
 _SIGNS = {"-&gt;": "→", "sqrt(": "√(", " - ": " − ", "...": "…"}
 
 
-def typeset(text: str) -> str:
-    """A sentence of a table, typed in plain letters, with the signs of print: micro and minus."""
-    return re.sub(r"(?<![\w.^-])-(?=\d)", "−", _micro(text))
+def typeset(text) -> str:
+    """A sentence of a table, typed in plain letters, with the signs of print: micro, minus, chi square."""
+    return re.sub(r"(?<![\w.^-])-(?=\d)", "−", _micro(str(text))).replace("chi2", "χ²")
 
 
 def _micro(text):

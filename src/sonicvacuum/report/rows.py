@@ -61,10 +61,10 @@ def quantities(table: list[dict]) -> list[dict]:
 
 
 def _as_stated(value, sigma):
-    """A measured value with as many decimals as its stated error, of which two digits count."""
+    """A measured value with as many decimals as its stated error, two digits of which are shown at most."""
     error = number(sigma, 2)
-    if "e" in error:
-        return f"{number(value)} ± {error}"
+    if float(error) != float(sigma) or "e" in error:
+        return with_error(float(value), float(sigma))
     return f"{float(value):.{len(error.partition('.')[2])}f} ± {error}"
 
 

@@ -100,8 +100,9 @@ def _striker(record, edge):
 def _wall(x, material):
     marks = "".join(f"M{x + 1:.1f} {y} l7 -7 " for y in range(int(MIDDLE) - 13, int(MIDDLE) + 21, 7))
     name = f"wall: {material}"
-    # Above the wall, or where it ends at the drawing's edge.
-    end = min(x + 8.0 + max(0.5 * LETTER * len(name), 24.0), WIDTH - 2.0)
+    # Above the wall, beside the word `striker`, and within the drawing.
+    wide = LETTER * len(name)
+    end = min(max(x + 8.0 + 0.5 * wide, LEFT + 20.0 + wide), WIDTH - 2.0)
     return (
         f'<line class="wall" x1="{x:.1f}" x2="{x:.1f}" y1="{MIDDLE - 20}" y2="{MIDDLE + 20}"/>'
         f'<path class="hatch" d="{marks}"/>'
