@@ -1,7 +1,5 @@
 """`sonicvacuum discover`: what records of measured data say is missing from the model."""
 
-import sys
-from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -9,6 +7,7 @@ import click
 
 from sonicvacuum.cli.helped import FOLDER, verb
 from sonicvacuum.cli.own_effects import catalogue, own_effects
+from sonicvacuum.cli.stage_lines import stages_shown
 from sonicvacuum.files import in_one_line
 
 
@@ -85,40 +84,6 @@ def discover(records, out, together, figures, threads, own, quiet, no_limits):
             for note in result.notes:
                 click.echo(in_one_line(f"{', '.join(paths)}: {note}"))
         click.echo(in_one_line(f"{', '.join(paths)}: {_sentence(result.verdict)}"))
-
-
-@contextmanager
-def stages_shown(name: str, quiet: bool):
-    """On a terminal, a line with the stage of a search, steps done, time gone and left; nothing in a log."""
-    if quiet or not sys.stderr.isatty():
-        yield
-        return
-    from rich.console import Console
-    from rich.progress import MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
-
-    from sonicvacuum.stages import told_to
-
-    columns = (
-        TextColumn("{task.description}"),
-        MofNCompleteColumn(),
-        TimeElapsedColumn(),
-        TextColumn("left"),
-        TimeRemainingColumn(),
-    )
-    with Progress(*columns, console=Console(stderr=True)) as shown:
-        tasks: list = []
-
-        def tell(stage, done, total):
-            if not done:
-                if tasks:
-                    # What a stage did not need is not left undone.
-                    shown.update(tasks[-1], total=shown.tasks[-1].completed)
-                    shown.stop_task(tasks[-1])
-                tasks.append(shown.add_task(f"{name}: {stage}", total=total))
-            shown.update(tasks[-1], completed=done)
-
-        with told_to(tell):
-            yield
 
 
 def _folders(records, out):
