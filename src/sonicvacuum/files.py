@@ -9,6 +9,7 @@ import stat
 import textwrap
 import zipfile
 import zlib
+from collections.abc import Sequence
 from contextlib import contextmanager, suppress
 from difflib import get_close_matches
 from pathlib import Path
@@ -255,8 +256,8 @@ def explain(
     missing = re.search(r"missing required field `([^`]*)`", problem)
     place = ".".join(p for p in (prefix, inner, *(m.group(1) for m in (unknown, missing) if m)) if p)
     if unknown:
-        near = get_close_matches(unknown.group(1), keys_of(kind, inner), n=1) if kind else []
-        meant = f"did you mean {near[0]}? Otherwise " if near else ""
+        near = likely(unknown.group(1), keys_of(kind, inner) if kind else [])
+        meant = f"{near} Otherwise " if near else ""
         return f"{path}: {place}: unknown key; {meant}check its spelling and its place, or remove it"
     if missing:
         return f"{path}: {place}: missing; this key is required"
@@ -265,6 +266,12 @@ def explain(
     value = _value_at(content, inner)
     shown = "" if value is _ABSENT else f"is {textwrap.shorten(repr(value), 200)}: "
     return f"{path}: {place}: {shown}{problem[0].lower()}{problem[1:]}{number_cure(value)}"
+
+
+def likely(name: str, known: Sequence[str]) -> str:
+    """`did you mean X?` with the known name that is nearest to a mistyped one, "" where none is near."""
+    near = get_close_matches(name, known, n=1)
+    return f"did you mean {near[0]}?" if near else ""
 
 
 def keys_of(kind: Any, inner: str) -> list[str]:

@@ -71,7 +71,7 @@ def test_a_loss_shows_the_further_from_the_striker_the_better(droop_or_loss):
 @pytest.mark.parametrize(
     ("changes", "said"),
     [
-        ({"effects": "sensor-drop"}, "effects: 'sensor-drop' is not in the catalogue"),
+        ({"effects": "sensor-drop"}, "is not in the catalogue; did you mean sensor-droop?"),
         ({"effects": "coating-thickness"}, "effects: coating-thickness cannot be in this chain"),
         ({"most": 0}, "most: is 0; from 1 to 4"),
         ({"noise": -1.0}, "noise: is -1; it must be positive"),

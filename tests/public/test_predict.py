@@ -85,7 +85,7 @@ WRONG = [
     ({"diameter": "20m"}, "diameter: is 20000 mm, outside"),
     ({"mass": "33kg"}, "mass: is 33000 g, which at a diameter of 20 mm"),
     ({"mass": "-3g"}, "mass: is '-3g'; it must be a positive number"),
-    ({"material": "bearing-stel"}, "did you mean 'bearing-steel'?"),
+    ({"material": "bearing-stel"}, "did you mean bearing-steel?"),
     ({"wall": "cheese"}, "wall: 'cheese' is not in the table"),
     ({"coating": "50um"}, "core: missing beside coating"),
     ({"coating": "11mm", "core": "brass"}, "coating: is 0.011 m on a bead of 0.02 m"),

@@ -7,7 +7,7 @@ import click
 from sonicvacuum.cli import existing
 from sonicvacuum.cli.helped import WRITTEN, verb
 from sonicvacuum.cli.own_effects import catalogue, own_effects
-from sonicvacuum.files import InputError, replacing
+from sonicvacuum.files import InputError, likely, replacing
 from sonicvacuum.outputs import check_apart
 
 
@@ -86,7 +86,8 @@ def effects(name, own):
             click.echo(f"{e.id:18} {e.missing} ({taken})")
         return
     if name not in known:
-        raise InputError(f"effect {name!r} is not in the catalogue; known: {', '.join(known.ids)}")
+        meant = likely(name, known.ids) or f"known: {', '.join(known.ids)}"
+        raise InputError(f"effect {name!r} is not in the catalogue; {meant}")
     e = known.effect(name)
     for title in (
         "title",

@@ -20,7 +20,7 @@ from sonicvacuum.discover.model.hypothesis import Component, Hypothesis
 from sonicvacuum.discover.model.nuisances import MODULUS_REL_SIGMA
 from sonicvacuum.discover.model.parameters import coordinate
 from sonicvacuum.effects import CATALOGUE, Effect, Setup
-from sonicvacuum.files import InputError
+from sonicvacuum.files import InputError, likely
 from sonicvacuum.laboratory.next_run import FASTEST, SLOWEST
 from sonicvacuum.physics.scales import COUNTING, passage_of, sampling_of
 from sonicvacuum.prediction.setup import card_of
@@ -168,7 +168,8 @@ def _effects(given, setup: Setup) -> tuple[Effect, ...]:
     lacking = CATALOGUE.left_out(setup)
     for name in names:
         if name not in CATALOGUE:
-            raise InputError(f"effects: {name!r} is not in the catalogue; see sonicvacuum effects")
+            meant = likely(name, CATALOGUE.ids) or "see sonicvacuum effects"
+            raise InputError(f"effects: {name!r} is not in the catalogue; {meant}")
         if name in lacking:
             raise InputError(f"effects: {name} cannot be in this chain: {lacking[name]}; leave it out")
     return tuple(CATALOGUE.effect(name) for name in names)

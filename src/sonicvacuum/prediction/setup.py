@@ -4,12 +4,11 @@ Quantities are numbers in SI units or texts with their unit (`20mm`, `33 g`, `50
 """
 
 import math
-from difflib import get_close_matches
 from typing import Any
 
 from sonicvacuum.builders import ball_mass
 from sonicvacuum.card import Card, CaseBlock, resolve
-from sonicvacuum.files import InputError, convert
+from sonicvacuum.files import InputError, convert, likely
 from sonicvacuum.laboratory.next_run import gauge_beads
 from sonicvacuum.laboratory.ranges import LaboratoryError
 from sonicvacuum.materials import MATERIALS
@@ -111,8 +110,7 @@ def _known(name, material):
     """InputError for a material that the table does not have."""
     if material is None or material in MATERIALS:
         return
-    near = get_close_matches(material, MATERIALS, n=1)
-    hint = f"did you mean {near[0]!r}?" if near else f"known are {', '.join(sorted(MATERIALS))}"
+    hint = likely(material, list(MATERIALS)) or f"known are {', '.join(sorted(MATERIALS))}"
     raise InputError(f"{name}: {material!r} is not in the table of materials; {hint}")
 
 
