@@ -223,3 +223,9 @@ def test_the_record_s_beads_and_gauges_are_the_paper_s():
     assert positions == pytest.approx(
         [8.5, 4.5], rel=1e-12
     )  # centres of the 9th and 5th bead from the bottom
+
+
+def test_a_template_that_nobody_has_filled_in_is_told(tmp_path):
+    new(tmp_path / "fresh")
+    (told,) = review(read(tmp_path / "fresh")).warnings
+    assert told.startswith("title: is still that of the template")

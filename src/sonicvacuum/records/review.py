@@ -17,6 +17,8 @@ UNCERTAIN = 4.0
 _SHOWN = {"s": ("us", 1e6)}
 _TITLES = {"arrival": "peak at", "amplitude": "peak", "duration_half": "half width", "speed": "speed",
            "width_half": "width"}  # fmt: skip
+# Of template.yaml.
+TEMPLATE_TITLE = "One line that says what was measured"
 
 
 @dataclass(frozen=True)
@@ -56,11 +58,17 @@ def review(record: Record, searched: Record | None = None, treatment=(), slips=(
         record=record.name,
         title=record.title,
         expected=seen,
-        warnings=tuple(warnings(record)),
+        warnings=(*_untouched(record), *warnings(record)),
         suspects=(*suspects(record, seen), *slips),
         treatment=tuple(treatment),
         discover_s=max(LEAST_SECONDS, SECONDS_PER_VALUE * _values(searched or record)),
     )
+
+
+def _untouched(record):
+    """A line where the record is still the one that `record new` writes, whose numbers are of another chain."""
+    if record.title == TEMPLATE_TITLE:
+        yield "title: is still that of the template, whose numbers are the paper's: put your own in"
 
 
 def _values(record):
