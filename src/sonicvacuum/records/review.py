@@ -66,7 +66,7 @@ def review(record: Record, searched: Record | None = None, treatment=(), slips=(
 
 
 def _untouched(record):
-    """A line where the record is still the one that `record new` writes, whose numbers are of another chain."""
+    """A line where the record is still the one that `record new` writes."""
     if record.title == TEMPLATE_TITLE:
         yield "title: is still that of the template, whose numbers are the paper's: put your own in"
 
