@@ -240,6 +240,15 @@ def test_no_text_of_the_pictures_leaves_the_page(folders, kind):
             assert beyond_the_page(figure) == []
 
 
+def test_sets_that_come_near_are_told_where_no_single_effect_does():
+    odds = {"unknown": 0.7, "mass-defect + tsuji": 0.2, "gravity + unknown": 0.1}
+    told = words.alternatives(verdict(named=["unknown"], probabilities=odds, parameters={}))
+    assert told == (
+        "No single effect comes near. "
+        "The nearest sets: mass defect and damping with constant restitution (0.20)."
+    )
+
+
 def test_the_posterior_is_drawn_where_the_verdict_has_it(folders):
     (row,) = read_csv(folders["single"] / "parameters.csv")
     assert (float(row["value"]), float(row["sigma"])) == (1.98, 0.06)

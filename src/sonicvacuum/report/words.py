@@ -231,10 +231,16 @@ def alternatives(verdict: Verdict, catalogue: Catalogue = CATALOGUE) -> str:
         parts = ["Every effect of the catalogue may be there: these data test none."]
     elif not found:
         rivals = [n for n in sorted(verdict.probabilities, key=verdict.probabilities.get, reverse=True)]
-        rivals = [n for n in rivals if n not in ("none", "unknown") and " + " not in n]
-        rivals = [n for n in rivals if verdict.probabilities[n] >= 0.01][:3]
-        named = [f"{plain(n, catalogue)} ({share(verdict.probabilities[n])})" for n in rivals]
-        parts = [f"The nearest single effects: {joined(named)}." if named else "No single effect comes near."]
+        rivals = [
+            n for n in rivals if "unknown" not in n and n != "none" and verdict.probabilities[n] >= 0.01
+        ]
+        told = [f"{plain(n, catalogue)} ({share(verdict.probabilities[n])})" for n in rivals]
+        single = [text for name, text in zip(rivals, told, strict=True) if " + " not in name][:3]
+        sets = [text for name, text in zip(rivals, told, strict=True) if " + " in name][:2]
+        parts = [
+            f"The nearest single effects: {joined(single)}." if single else "No single effect comes near."
+        ]
+        parts += [f"The nearest sets: {'; '.join(sets)}."] if sets else []
     return " ".join(parts)
 
 
