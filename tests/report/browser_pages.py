@@ -6,11 +6,12 @@ Needs a Chromium (`apt-get install chromium`), found on the path or named by the
 import os
 import re
 import shutil
+from itertools import combinations
 
 import pytest
-from made_verdicts import write
+from made_verdicts import KINDS, WITHOUT_TRACES, write
 from playwright.sync_api import sync_playwright
-from test_page_parts import record
+from test_page_parts import STEEL, STRIKER, record
 
 from sonicvacuum.discover import given
 from sonicvacuum.discover.verdict import write_json
@@ -22,6 +23,14 @@ SCHEMES = ("light", "dark")
 NAMES = ("chromium", "chromium-browser", "google-chrome")
 # A page of two runs and two gauges; a long record folds, so that it adds little.
 MOST_SHEETS = 5
+# CSS px between the margins of an A4 sheet.
+SHEET = 703
+BALL = {"beads": 0, "orientation": "vertical", "bead": STEEL, "wall": {"material": "stainless-steel"}}
+DROPS = [
+    {"id": run, "striker": STRIKER, "observables": [
+        {"quantity": "restitution", "value": 0.9, "sigma": 0.01, "unit": "1"}]}
+    for run in ("slow", "fast")
+]  # fmt: skip
 
 
 @pytest.fixture(scope="session")
@@ -147,3 +156,32 @@ def test_without_scripts_it_can_still_be_read(opened):
     page = opened(900, java_script_enabled=False)
     assert "traces.svg" in page.inner_text("body")
     assert "What is missing is one of" in page.inner_text("body")
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_kind_of_verdict_fits_a_phone_and_a_sheet(browser, tmp_path, kind):
+    """Named, unknown, a set, numbers only, one ball: nothing is wider than its window, on paper neither."""
+    folder = write(tmp_path / "made", kind)
+    of = record(beads=0, sensors=[], chain=BALL, runs=DROPS) if kind in WITHOUT_TRACES else record()
+    write_json(given.inputs((of,)), folder / given.FILE)
+    discovery.draw(folder)
+    address = write_page(folder).as_uri()
+    for width, options in ((390, {"color_scheme": "dark"}), (SHEET, {})):
+        page = browser.new_page(viewport={"width": width, "height": 900}, **options)
+        page.goto(address)
+        if width == SHEET:
+            page.emulate_media(media="print")
+        page.evaluate("document.querySelectorAll('details').forEach((d) => { d.open = true; })")
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
+        shown = page.locator("svg.sketch text").evaluate_all(
+            "(all) => all.map((e) => e.getBoundingClientRect()).map((r) => [r.left, r.right, r.y, r.bottom])"
+        )
+        assert not [(a, b) for a, b in combinations(shown, 2) if meet(a, b)]
+        page.close()
+
+
+def meet(one, other) -> bool:
+    """Whether two boxes (left, right, top, bottom) in px cover each other by more than a pixel."""
+    beside = min(one[1], other[1]) - max(one[0], other[0])
+    above = min(one[3], other[3]) - max(one[2], other[2])
+    return beside > 1.0 and above > 1.0
