@@ -8,7 +8,7 @@ from sonicvacuum.files import InputError, read_text, replacing
 from sonicvacuum_blind.baselines.names import ALARM, EXACT, PANELS, WRONG
 from sonicvacuum_blind.kept import TABLES
 from sonicvacuum_blind.report import Study, followed, percent, read, results, rivals
-from sonicvacuum_blind.study import BROKEN, MENDED, SEEDS, TAG, cases
+from sonicvacuum_blind.study import BOTH, BROKEN, MENDED, SEEDS, TAG, cases
 
 BEGIN = "<!-- study: made by `snakemake publish_study`, do not edit -->"
 END = "<!-- end of study -->"
@@ -84,7 +84,8 @@ def mended() -> str:
     return (
         f"The search broke on three records, {', '.join(BROKEN)}: two ended it, one did not let it end. "
         f"Their batches, {', '.join(map(str, BROKEN.values()))} of 0 to 47, are searched by commits "
-        f"{' and '.join(MENDED)}, which mend that (SAME)."
+        f"{' and '.join(MENDED)}, which mend that; {BOTH} records searched by the tagged method and by the "
+        "last of these have the same verdicts."
     )
 
 

@@ -17,8 +17,10 @@ from sonicvacuum_blind.hide import Spec
 # That of the full study was drawn after its method was fixed, git tag `TAG`; of the one before it, 20062,
 # a part had been read while the method was mended.
 TAG = "study-2"
-# Records that this method's search broke on → their batches, of 48, which the commits that mend it searched.
+# Commits that mend what this method's search broke on; records searched before and after them, to see that
+# nothing else moves; the records it broke on → their batches, of 48, which those commits searched.
 MENDED = ("9b5bd88", "912b466")
+BOTH = 75
 BROKEN = {"full-0870": 6, "full-1242": 42, "full-1552": 16}
 SEEDS = {"small": 20061, "full": 88_822_325, "training": 20063}
 TRAINING = 300
