@@ -16,7 +16,7 @@ from sonicvacuum.discover.rounds import nominal
 from sonicvacuum.discover.search.free_law import free_law
 from sonicvacuum.effects import CATALOGUE, Setup
 from sonicvacuum.figures import force_law
-from sonicvacuum.figures.style import context
+from sonicvacuum.figures.drawing import Curve, Text
 from sonicvacuum.tables import read_csv
 
 DAMPING = 2e5  # kg/(s m): the law outside the catalogue is F = K δ^1.5 + b δ v
@@ -110,11 +110,14 @@ def test_what_is_told_of_it(found):
 
 def test_it_is_drawn_where_contacts_have_been(found, tmp_path):
     verdict.write_table(tmp_path / "law.csv", *telling.rows(surface(found)))
-    with context():
-        left, right = force_law.law(read_csv(tmp_path / "law.csv")).axes
+    page = force_law.law(read_csv(tmp_path / "law.csv"))
+    colours = {stroke.color for stroke in force_law.STROKES}
+    lines = [
+        m for m in page.marks if isinstance(m, Curve) and m.clip and m.stroke and m.stroke.color in colours
+    ]
     seen = surface(found)
-    for line in left.get_lines()[:3]:
-        shown = np.isfinite(line.get_ydata())
+    for line in lines[:3]:
+        shown = np.isfinite(line.points[:, 1])
         assert any(np.array_equal(shown, column) for column in seen.visited.T)
-    assert "m/s" in right.get_xlabel()
+    assert any("m/s" in m.words for m in page.marks if isinstance(m, Text))
     assert force_law.law([]) is None

@@ -34,18 +34,15 @@ def bare(folder, *arguments):
     return subprocess.run(command, cwd=folder, capture_output=True, text=True)
 
 
-def test_discover_needs_neither_pictures_nor_workflow(folder):
-    done = bare(folder, "discover", "ball", "--out", "found", "--no-figures")
-    assert done.returncode == 0, done.stderr
-    assert (folder / "found/verdict.json").exists()
-
-
-def test_pictures_are_refused_before_the_search_with_the_cure(folder):
+def test_discover_and_its_page_need_neither_matplotlib_nor_workflow(folder):
     done = bare(folder, "discover", "ball", "--out", "found")
-    assert done.returncode == 2
-    assert "matplotlib is not installed" in done.stderr
-    assert "sonicvacuum[figures]" in done.stderr
-    assert not (folder / "found").exists()
+    assert done.returncode == 0, done.stderr
+    assert {"verdict.json", "index.html", "candidates.svg"} <= {p.name for p in (folder / "found").iterdir()}
+    refused = bare(folder, "page", "--png", "found")
+    assert refused.returncode == 2
+    assert "matplotlib is not installed" in refused.stderr
+    assert "sonicvacuum[figures]" in refused.stderr
+    assert not list((folder / "found").glob("*.png"))
 
 
 def test_tables_of_the_reproduction_name_their_extra(folder):

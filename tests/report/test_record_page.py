@@ -15,7 +15,8 @@ from msgspec.structs import replace
 from sonicvacuum.discover import draws
 from sonicvacuum.discover.verdict import write_json
 from sonicvacuum.effects import CATALOGUE, Catalogue, Effect, Source
-from sonicvacuum.figures import disagreement, discovery, posterior, style
+from sonicvacuum.figures import disagreement, discovery, posterior, raster
+from sonicvacuum.figures.drawing import Curve
 from sonicvacuum.files import InputError
 from sonicvacuum.report import bench, plots, record, rows, words
 from sonicvacuum.report.record import write_page
@@ -210,34 +211,27 @@ def test_none_that_is_less_probable_than_an_effect_says_so():
     assert "damping with constant restitution (0.60 against 0.30 for none)" in text
 
 
-def beyond_the_page(figure):
-    """Texts with ink that leave the page; tick labels beyond the limits are kept by matplotlib, not drawn."""
-    renderer = figure.canvas.get_renderer()
-    figure.draw(renderer)
-    page, found = figure.bbox, []
-    for axes in figure.axes:
-        texts = [axes.xaxis.label, axes.yaxis.label, *axes.texts]
-        for axis in (axes.xaxis, axes.yaxis):
-            low, high = sorted(axis.get_view_interval())
-            texts += [t.label1 for t in axis.get_major_ticks() if low <= t.get_loc() <= high]
-        found += [t for t in texts if t.get_visible() and t.get_text().strip()]
-    boxes = [(t.get_text(), t.get_window_extent(renderer)) for t in found]
+def beyond_the_page(drawing):
+    """Texts with ink that leave the page, set in the font that is named first."""
+    figure = raster.figure_of(drawing)
+    renderer, page = figure.canvas.get_renderer(), figure.bbox
+    boxes = [(t.get_text(), t.get_window_extent(renderer)) for t in figure.texts if t.get_text().strip()]
+    assert boxes
     return [n for n, b in boxes if b.x0 < page.x0 or b.x1 > page.x1 or b.y0 < page.y0 or b.y1 > page.y1]
 
 
 @pytest.mark.parametrize("kind", ["pair", "ball"])
 def test_no_text_of_the_pictures_leaves_the_page(folders, kind):
     tables = {name: read_csv(folders[kind] / f"{name}.csv") for name in ("where", "parameters", "gap")}
-    with style.context():
-        figures = [
-            posterior.parameters(tables["parameters"]),
-            disagreement.where(tables["where"]),
-            disagreement.scalars(tables["where"]),
-            discovery.gap(tables["gap"]),
-            discovery.candidates(KINDS[kind].probabilities),
-        ]
-        for figure in filter(None, figures):
-            assert beyond_the_page(figure) == []
+    drawings = [
+        posterior.parameters(tables["parameters"]),
+        disagreement.where(tables["where"]),
+        disagreement.scalars(tables["where"]),
+        discovery.gap(tables["gap"]),
+        discovery.candidates(KINDS[kind].probabilities),
+    ]
+    for drawing in filter(None, drawings):
+        assert beyond_the_page(drawing) == []
 
 
 def test_sets_that_come_near_are_told_where_no_single_effect_does():
@@ -252,13 +246,15 @@ def test_sets_that_come_near_are_told_where_no_single_effect_does():
 def test_the_posterior_is_drawn_where_the_verdict_has_it(folders):
     (row,) = read_csv(folders["single"] / "parameters.csv")
     assert (float(row["value"]), float(row["sigma"])) == (1.98, 0.06)
-    density, searched = posterior.parameters([row]).axes
-    x, y = density.lines[0].get_data()
+    x, y = posterior.density(row)
     assert x[y.argmax()] == pytest.approx(1.98)
     half = x[y >= 0.5]
     # Full width at half height of a Gaussian, on a grid of 8 sigma in 400 steps.
     assert half[-1] - half[0] == pytest.approx(2.3548 * 0.06, abs=2 * 8 * 0.06 / 400)
-    assert list(searched.lines[0].get_xdata()) == [float(row["low"]), float(row["high"])]
+    marks = posterior.parameters([row]).marks
+    (curve,) = [m.points for m in marks if isinstance(m, Curve) and len(m.points) == 401]
+    top = (curve[curve[:, 1].argmax(), 0] - 8.0) / 70.0
+    assert top == pytest.approx((1.98 - x[0]) / (x[-1] - x[0]), abs=1 / 400)  # a step of the grid
 
 
 @pytest.mark.parametrize("how", [draws.SAMPLED, draws.PROFILE])

@@ -1,6 +1,5 @@
 """`sonicvacuum discover`: what records of measured data say is missing from the model."""
 
-from importlib.util import find_spec
 from pathlib import Path
 
 import click
@@ -49,9 +48,6 @@ def discover(records, out, together, figures, threads, own, quiet, no_limits):
     from sonicvacuum.records.extent import check_extent
     from sonicvacuum.records.guard import check_out
 
-    if figures and find_spec("matplotlib") is None:
-        # Said before the search and not after it.
-        raise ModuleNotFoundError("No module named 'matplotlib'", name="matplotlib")
     known = catalogue(own)
     groups = {Path(out): records} if together else {f: (p,) for p, f in _folders(records, Path(out)).items()}
     for folder in groups:

@@ -15,29 +15,32 @@ import numpy as np
 from sonicvacuum.discover import draws
 from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.figures import disagreement, force_law, posterior
-from sonicvacuum.figures.style import (
-    BAND,
-    BLUE,
+from sonicvacuum.figures.colours import BAND, BLUE, GREEN, GREY, ORANGE
+from sonicvacuum.figures.drawing import (
     DOUBLE,
-    GREEN,
-    GREY,
-    ORANGE,
+    POINT,
     SINGLE,
-    canvas,
-    context,
-    panel,
-    save,
+    Curve,
+    Dots,
+    Drawing,
+    Stroke,
+    Text,
+    rectangle,
+    width_of,
 )
+from sonicvacuum.figures.frame import TICK_LABEL, Frame, Scale, legend
 from sonicvacuum.tables import read_csv
 
+NOMINAL, EXTENDED = Stroke(ORANGE, 0.9, (3.5, 1.2)), Stroke(BLUE, 0.9)
 _MOST = 8
+_GRAIN = 1.6  # dot of a measured sample, points
 
 
 def draw(folder: Path, catalogue: Catalogue = CATALOGUE, png: bool = False) -> list[Path]:
     """Draw all pictures that the tables in the folder give; the SVG files written.
 
-    The catalogue knows the effects that are named. With `png` each is kept as PNG as well, which takes as
-    long again. Those of an earlier verdict that this one does not have are removed.
+    The catalogue knows the effects that are named. With `png` each is kept as PNG as well, which takes
+    matplotlib and seconds. Those of an earlier verdict that this one does not have are removed.
     """
     folder = Path(folder)
     posterior.write_table(folder, catalogue)
@@ -52,20 +55,23 @@ def draw(folder: Path, catalogue: Catalogue = CATALOGUE, png: bool = False) -> l
         "law": lambda: force_law.law(read_csv(folder / "law.csv") if (folder / "law.csv").exists() else []),
     }
     written = []
-    with context():
-        for name, make in pictures.items():
-            paths = [folder / f"{name}.{kind}" for kind in ("svg", "png")]
-            figure = make()
-            wanted = paths[: 0 if figure is None else 1 + png]
-            if wanted:
-                save(figure, *wanted)
-                written.append(wanted[0])
-            for path in paths[len(wanted) :]:
-                path.unlink(missing_ok=True)
+    for name, make in pictures.items():
+        paths = [folder / f"{name}.{kind}" for kind in ("svg", "png")]
+        drawing = make()
+        wanted = paths[: 0 if drawing is None else 1 + png]
+        if wanted:
+            drawing.write(wanted[0])
+            written.append(wanted[0])
+        if len(wanted) > 1:
+            from sonicvacuum.figures import raster
+
+            raster.write(drawing, wanted[1])
+        for path in paths[len(wanted) :]:
+            path.unlink(missing_ok=True)
     return written
 
 
-def traces(table: list[dict[str, str]], named: list[str]):
+def traces(table: list[dict[str, str]], named: list[str]) -> Drawing | None:
     """Measured and predicted traces with residuals below, for the first and the last run; None without
     traces.
     """
@@ -75,19 +81,19 @@ def traces(table: list[dict[str, str]], named: list[str]):
     chosen = list(dict.fromkeys((runs[0], runs[-1])))
     sensors = list(dict.fromkeys(r["sensor"] for r in table))[:4]
     high = 34.0
-    figure = canvas(DOUBLE, 16.0 + high * len(sensors))
+    page = Drawing(DOUBLE, 16.0 + high * len(sensors))
     wide = (DOUBLE - 18.0 - 14.0 * (len(chosen) - 1) - 4.0) / len(chosen)
     for j, run in enumerate(chosen):
         for i, sensor in enumerate(sensors):
             part = [r for r in table if r["run"] == run and r["sensor"] == sensor]
             left, bottom = 16.0 + j * (wide + 14.0), 11.0 + high * (len(sensors) - 1 - i)
-            _signal(panel(figure, (left, bottom + 12.0, wide, high - 16.0)), part, f"{run}, {sensor}")
-            _residual(panel(figure, (left, bottom, wide, 10.5)), part, i == len(sensors) - 1)
-    handles, labels = figure.axes[0].get_legend_handles_labels()
-    extended = "nearest model" if named == ["unknown"] else " + ".join(named) or "nominal"
-    labels = [label.replace("extended", extended) for label in labels]
-    figure.legend(handles, labels, loc="upper right", ncols=3, fontsize=7, borderaxespad=0.1)
-    return figure
+            _signal(page, (left, bottom + 12.0, wide, high - 16.0), part, f"{run}, {sensor}")
+            _residual(page, (left, bottom, wide, 10.5), part, i == len(sensors) - 1)
+    told = [(Dots(np.empty((0, 2)), _GRAIN * POINT, GREY), "measured"), (NOMINAL, "nominal")]
+    if named:
+        told.append((EXTENDED, "nearest model" if named == ["unknown"] else " + ".join(named)))
+    legend(page, DOUBLE - 4.0, page.height - 2.5, told)
+    return page
 
 
 def _columns(part):
@@ -102,30 +108,38 @@ def label_of(unit: str) -> str:
     return f"{name} ({unit.replace('s2', 's²')})"
 
 
-def _signal(axes, part, text):
+def _apart(nominal, extended):
+    """The models that differ, each with its look."""
+    return [(nominal, NOMINAL), (extended, EXTENDED)][: 1 if np.array_equal(nominal, extended) else 2]
+
+
+def _signal(page, box, part, text):
     time, measured, nominal, extended, _ = _columns(part)
-    axes.plot(time, measured, ".", color=GREY, ms=1.0, label="measured", rasterized=True)
-    axes.plot(time, nominal, color=ORANGE, lw=0.9, ls=(0, (3.5, 1.2)), label="nominal")
-    axes.plot(time, extended, color=BLUE, lw=0.9, label="extended")
-    axes.set_ylabel(label_of(part[0].get("unit", "N")))
-    axes.set_xlim(time[0], time[-1])
-    axes.set_xticklabels([])
-    axes.text(0.02, 0.9, text, transform=axes.transAxes, ha="left", va="top", fontsize=7)
+    scale = Scale.over(np.concatenate([measured, nominal, extended]))
+    frame = Frame(page, box, Scale(time[0], time[-1]), scale)
+    frame.dots(time, measured, _GRAIN, GREY)
+    for values, stroke in _apart(nominal, extended):
+        frame.curve(time, values, stroke)
+    frame.bottom(numbers=False)
+    frame.left(label_of(part[0].get("unit", "N")))
+    frame.note(0.02, 0.9, text, size=7.0, level="top")
 
 
-def _residual(axes, part, last):
+def _residual(page, box, part, last):
     time, measured, nominal, extended, sigma = _columns(part)
     count = max(1, len(time) // 60)
-    axes.axhspan(-2.0, 2.0, color=BAND, lw=0)
-    for model, color, style in ((nominal, ORANGE, (0, (3.5, 1.2))), (extended, BLUE, "-")):
-        mean, middle = running((measured - model) / sigma, count), running(time, count)
-        axes.plot(middle, mean * np.sqrt(count), color=color, lw=0.9, ls=style)
-    axes.set_ylabel("resid./σ", fontsize=6.5)
-    axes.set_xlim(time[0], time[-1])
-    if last:
-        axes.set_xlabel("time (µs)")
-    else:
-        axes.set_xticklabels([])
+    middle = running(time, count)
+    left = [
+        (running((measured - model) / sigma, count) * np.sqrt(count), stroke)
+        for model, stroke in _apart(nominal, extended)
+    ]
+    scale = Scale.over(np.concatenate([values for values, _ in left] + [np.array([-2.0, 2.0])]))
+    frame = Frame(page, box, Scale(time[0], time[-1]), scale)
+    frame.band(-2.0, 2.0, BAND)
+    for values, stroke in left:
+        frame.curve(middle, values, stroke)
+    frame.left("resid./σ", label_size=6.5)
+    frame.bottom("time (µs)" if last else "", numbers=last)
 
 
 def running(values: np.ndarray, count: int) -> np.ndarray:
@@ -133,21 +147,26 @@ def running(values: np.ndarray, count: int) -> np.ndarray:
     return np.convolve(values, np.full(count, 1.0 / count), mode="valid")
 
 
-def candidates(probabilities: dict[str, float]):
+def candidates(probabilities: dict[str, float]) -> Drawing:
     """Bars of the most probable explanations."""
     best = sorted(probabilities.items(), key=lambda item: -item[1])[:_MOST]
-    best = [one for k, one in enumerate(best) if k < 3 or one[1] >= 0.005][::-1]
-    figure = canvas(SINGLE, 13.0 + 5.0 * len(best))
-    axes = panel(figure, (30.0, 10.0, SINGLE - 40.0, 5.0 * len(best)))
-    names, values = zip(*best, strict=True)
-    axes.barh(names, values, color=[GREY if n in ("none", "unknown") else BLUE for n in names], height=0.65)
-    for k, value in enumerate(values):
+    best = [one for k, one in enumerate(best) if k < 3 or one[1] >= 0.005]
+    names = [" +\n".join(part.strip() for part in name.split("+")) for name, _ in best]
+    heights = [1.8 + 3.2 * (1 + name.count("\n")) for name in names]
+    left = 6.0 + max(width_of(name, TICK_LABEL) for name in names)
+    page = Drawing(SINGLE, 13.0 + sum(heights))
+    box = (left, 10.0, SINGLE - left - 10.0, sum(heights))
+    frame = Frame(page, box, Scale(0.0, 1.0), Scale(0.0, 1.0))
+    for k, (name, value) in enumerate(best):
+        middle = 10.0 + sum(heights[k:]) - 0.5 * heights[k]
+        bar = rectangle(left, middle - 1.6, box[2] * value, 3.2)
+        page.add(Curve(bar, fill=GREY if name in ("none", "unknown") else BLUE))
         told = f"{value:.2f}" if value >= 0.005 else "< 0.01"
-        axes.text(value + 0.015, k, told, va="center", fontsize=7)
-    axes.set_xlim(0.0, 1.0)
-    axes.set_xlabel("probability")
-    axes.tick_params(axis="y", length=0)
-    return figure
+        page.add(Text(left + box[2] * value + 0.7, middle, told, 7.0, level="middle"))
+        page.add(Text(left - 1.5, middle, names[k], TICK_LABEL, anchor="right", level="middle"))
+    frame.left(ticks=[])
+    frame.bottom("probability")
+    return page
 
 
 def _broken(name):
@@ -155,22 +174,24 @@ def _broken(name):
     return name.replace("+", " +\n") if "+" in name else name.replace("-", "-\n")
 
 
-def gap(table: list[dict[str, str]]):
+def gap(table: list[dict[str, str]]) -> Drawing | None:
     """Excess misfit after each round, per datum."""
     steps = [r for r in table if r["run"].startswith("round ")]
     if not steps:
         return None
     values = [float(r["after"]) for r in steps]
-    figure = canvas(SINGLE, 54.0)
-    axes = panel(figure, (17.0, 15.0, SINGLE - 22.0, 36.0))
-    axes.axhline(1.0, color=GREEN, lw=0.9, ls=(0, (5, 1.2, 1, 1.2)))
-    axes.text(len(values) - 0.55, 1.0, "noise", color=GREEN, fontsize=7, ha="right", va="bottom")
-    axes.plot(range(len(values)), values, "o-", color=BLUE, lw=1.0, ms=4)
-    axes.margins(y=0.12)
-    if max(values) > 5.0:
-        axes.set_yscale("log")
-    axes.set_xticks(range(len(values)), [_broken(r["run"].split(": ")[1]) for r in steps], fontsize=7)
-    axes.set_xlim(-0.5, len(values) - 0.5)
-    axes.set_ylabel("$\\chi^2$ per datum")
-    axes.set_xlabel("best model of each round")
-    return figure
+    page = Drawing(SINGLE, 54.0)
+    scale = Scale.over([*values, 1.0], 0.12, log=max(values) > 5.0 and min(values) > 0.0)
+    frame = Frame(page, (17.0, 15.0, SINGLE - 22.0, 36.0), Scale(-0.5, len(values) - 0.5), scale)
+    frame.level(1.0, Stroke(GREEN, 0.9, (5.0, 1.2, 1.0, 1.2)))
+    above = float(scale.at(1.0)) + 0.02
+    frame.note(1.0, above, "noise", color=GREEN, size=7.0, anchor="right", level="bottom")
+    frame.curve(range(len(values)), values, Stroke(BLUE, 1.0))
+    frame.dots(range(len(values)), values, 4.0, BLUE, Stroke(BLUE, 0.6))
+    frame.left("χ² per datum")
+    frame.bottom(
+        "best model of each round",
+        [(k, _broken(r["run"].split(": ")[1])) for k, r in enumerate(steps)],
+        size=7.0,
+    )
+    return page

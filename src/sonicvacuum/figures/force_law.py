@@ -6,44 +6,45 @@ compression, and for three compressions over the rate.
 
 import numpy as np
 
-from sonicvacuum.figures.style import BLUE, DOUBLE, GREEN, GREY, ORANGE, canvas, panel
+from sonicvacuum.figures.colours import BLUE, GREEN, GREY, ORANGE
+from sonicvacuum.figures.drawing import DOUBLE, Drawing, Stroke
+from sonicvacuum.figures.frame import Frame, Scale, legend
 
-COLOURS = (BLUE, ORANGE, GREEN)
-STYLES = ("-", (0, (3.5, 1.2)), (0, (1.0, 1.0)))
+STROKES = (Stroke(BLUE, 1.0), Stroke(ORANGE, 1.0, (3.5, 1.2)), Stroke(GREEN, 1.0, (1.0, 1.0)))
 
 
-def law(table: list[dict[str, str]]):
+def law(table: list[dict[str, str]]) -> Drawing | None:
     """Two panels; None without a table."""
     if not table:
         return None
     columns = {name: np.array([float(r[name]) for r in table]) for name in table[0]}
     depth, rate = (np.unique(columns[name]) for name in ("depth_um", "speed_m_s"))
     shape = (len(depth), len(rate))
-    beside = (columns["force_N"] - columns["hertz_N"]).reshape(shape)
-    band, visited = columns["band_N"].reshape(shape), columns["visited"].reshape(shape) > 0
-    figure = canvas(DOUBLE, 62.0)
-    left = panel(figure, (16.0, 12.0, 0.5 * DOUBLE - 24.0, 44.0))
-    right = panel(figure, (0.5 * DOUBLE + 12.0, 12.0, 0.5 * DOUBLE - 18.0, 44.0))
-    for k, at in enumerate(_spread(visited.any(axis=0))):
-        label = f"{'' if k else 'rate '}{_signed(rate[at])} m/s"
-        _line(left, k, depth, beside[:, at], band[:, at], visited[:, at], label)
-    for k, at in enumerate(_spread(visited.any(axis=1), first=1)):
-        label = f"{'' if k else 'compression '}{depth[at]:.2g} µm"
-        _line(right, k, rate, beside[at], band[at], visited[at], label)
-    for axes, label in ((left, "compression (µm)"), (right, "rate of compression (m/s)")):
-        axes.axhline(0.0, color=GREY, lw=0.6)
-        axes.set_xlabel(label)
-        # Above the panel: inside it, the bands leave no room.
-        axes.legend(
-            loc="lower center",
-            bbox_to_anchor=(0.5, 1.0),
-            ncol=3,
-            fontsize=7,
-            columnspacing=1.0,
-            borderaxespad=0.2,
-        )
-    left.set_ylabel("force beside nominal (N)")
-    return figure
+    visited = columns["visited"].reshape(shape) > 0
+    beside = np.where(visited, (columns["force_N"] - columns["hertz_N"]).reshape(shape), np.nan)
+    band = columns["band_N"].reshape(shape)
+    rates, depths = _spread(visited.any(axis=0)), _spread(visited.any(axis=1), first=1)
+    page, half = Drawing(DOUBLE, 64.0), 0.5 * DOUBLE
+    left, right = (18.0, 12.0, half - 26.0, 44.0), (half + 14.0, 12.0, half - 20.0, 44.0)
+    told = [f"{'' if k else 'rate '}{_signed(rate[at])} m/s" for k, at in enumerate(rates)]
+    _panel(page, left, "compression (µm)", told, depth, beside[:, rates].T, band[:, rates].T)
+    told = [f"{'' if k else 'compression '}{depth[at]:.2g} µm" for k, at in enumerate(depths)]
+    _panel(page, right, "rate of compression (m/s)", told, rate, beside[depths], band[depths])
+    return page
+
+
+def _panel(page, box, label, told, x, values, errors):
+    """Lines (n, m) over x (m,) with their errors, and what each of them is of."""
+    reach = [*(values + errors).flat, *(values - errors).flat, 0.0]
+    frame = Frame(page, box, Scale.over(x), Scale.over(reach))
+    for value, error, stroke in zip(values, errors, STROKES, strict=False):
+        frame.fill(x, value - error, value + error, stroke.color, opacity=0.25)
+    frame.level(0.0, Stroke(GREY, 0.6))
+    for value, stroke in zip(values, STROKES, strict=False):
+        frame.curve(x, value, stroke)
+    frame.bottom(label)
+    frame.left("force beside nominal (N)")
+    legend(page, box[0] + box[2], box[1] + box[3] + 4.0, list(zip(STROKES, told, strict=False)))
 
 
 def _signed(rate):
@@ -54,9 +55,3 @@ def _spread(there, first=0):
     """Three of the places where something is: near both ends and in the middle."""
     places = np.flatnonzero(there)[first:]
     return [places[round(share * (len(places) - 1))] for share in (0.2, 0.5, 0.8)] if len(places) else []
-
-
-def _line(axes, k, x, value, error, visited, label):
-    shown, low, high = (np.where(visited, v, np.nan) for v in (value, value - error, value + error))
-    axes.fill_between(x, low, high, color=COLOURS[k], alpha=0.25, lw=0)
-    axes.plot(x, shown, color=COLOURS[k], ls=STYLES[k], lw=1.0, label=label)

@@ -13,7 +13,9 @@ import numpy as np
 from sonicvacuum.discover import policy
 from sonicvacuum.discover.draws import PROFILE, Draws, pareto_k, read
 from sonicvacuum.effects import CATALOGUE, Catalogue
-from sonicvacuum.figures.style import BAND, BLUE, DOUBLE, GREY, ORANGE, canvas, panel
+from sonicvacuum.figures.colours import BAND, BLUE, GREY, ORANGE
+from sonicvacuum.figures.drawing import DOUBLE, Drawing, Stroke
+from sonicvacuum.figures.frame import Frame, Scale
 from sonicvacuum.tables import write_csv
 
 COLUMNS = ("effect", "parameter", "unit", "value", "sigma", "low", "high", "off")
@@ -56,47 +58,53 @@ def _interval(found, draws: Draws | None):
     return [*ends, draws.how, f"{draws.effective:.0f}", f"{pareto_k(draws.weight):.2g}"]
 
 
-def parameters(table: list[dict[str, str]], draws: dict[tuple[str, str], Draws] | None = None):
+def parameters(
+    table: list[dict[str, str]], draws: dict[tuple[str, str], Draws] | None = None
+) -> Drawing | None:
     """For each parameter its density on the left and the range searched on the right; None without any."""
     if not table:
         return None
-    figure = canvas(DOUBLE, _HIGH * len(table) + 3.0)
+    page = Drawing(DOUBLE, _HIGH * len(table) + 3.0)
     for k, row in enumerate(table):
         bottom = _HIGH * (len(table) - 1 - k) + 11.0
         own = (draws or {}).get((row["effect"], row["parameter"]))
-        _density(panel(figure, (8.0, bottom, 70.0, 12.0)), row, own)
-        _range(panel(figure, (95.0, bottom, 74.0, 12.0)), row)
-    return figure
+        _density(page, (8.0, bottom, 70.0, 12.0), row, own)
+        _range(page, (95.0, bottom, 74.0, 12.0), row)
+    return page
 
 
-def _density(axes, row, draws: Draws | None):
+def _density(page, box, row, draws: Draws | None):
     """The draws, or the profile, with the 90 % interval shaded; the Gaussian of value and error beside it."""
+    value, sigma, low, high = (float(row[c]) for c in ("value", "sigma", "from_90", "to_90"))
+    x, gaussian = density(row)
+    edges, heights = _heights(draws, x) if draws is not None else (None, np.zeros(1))
+    top = 1.05 * max(float(heights.max()), float(gaussian.max()) if sigma > 0.0 else 0.0, 1e-300)
+    frame = Frame(page, box, Scale(x[0], x[-1]), Scale(0.0, top))
+    if edges is not None:
+        inside = (edges[1:] > low) & (edges[:-1] < high)
+        shaded = np.where(inside, heights, 0.0)
+        steps = np.repeat(edges, 2)[1:-1]
+        frame.fill(steps, 0.0, np.repeat(shaded, 2), BAND)
+        frame.curve(
+            np.repeat(edges, 2), np.concatenate([[0.0], np.repeat(heights, 2), [0.0]]), Stroke(BLUE, 1.0)
+        )
+    if sigma > 0.0:
+        if edges is None:
+            inside = np.abs(x - value) <= policy.NINETY * sigma
+            frame.fill(x[inside], 0.0, gaussian[inside], BAND)
+        look = Stroke(BLUE, 1.0) if edges is None else Stroke(ORANGE, 1.0, (3.5, 1.2))
+        frame.curve(x, gaussian, look)
+    frame.curve([value, value], [0.0, top], Stroke(BLUE, 0.8))
+    unit = "" if row["unit"] == "1" else f" ({row['unit'].replace('um', 'µm').replace('us', 'µs')})"
+    frame.bottom(f"{row['effect']}: {row['parameter']}{unit}")
+
+
+def density(row: dict[str, str]) -> tuple[np.ndarray, np.ndarray]:
+    """Values around a parameter's interval, and the Gaussian of its value and error there, 1 at its top."""
     value, sigma, low, high = (float(row[c]) for c in ("value", "sigma", "from_90", "to_90"))
     width = max(sigma, 0.5 * (high - low)) or max(abs(value), 1.0)
     x = np.linspace(min(low, value) - 2.0 * width, max(high, value) + 2.0 * width, 401)
-    if draws is not None:
-        edges, heights = _heights(draws, x)
-        inside = (edges[1:] > low) & (edges[:-1] < high)
-        axes.stairs(np.where(inside, heights, 0.0), edges, fill=True, color=BAND, lw=0)
-        axes.stairs(heights, edges, color=BLUE, lw=1.0)
-    if sigma > 0.0:
-        y = np.exp(-0.5 * ((x - value) / sigma) ** 2)
-        if draws is None:
-            inside = np.abs(x - value) <= policy.NINETY * sigma
-            axes.fill_between(x[inside], y[inside], color=BAND, lw=0)
-        axes.plot(
-            x,
-            y,
-            color=BLUE if draws is None else ORANGE,
-            lw=1.0,
-            ls="-" if draws is None else (0, (3.5, 1.2)),
-        )
-    axes.axvline(value, color=BLUE, lw=0.8)
-    _bare(axes)
-    axes.set_xlim(x[0], x[-1])
-    axes.set_ylim(0.0, None)
-    unit = "" if row["unit"] == "1" else f" ({row['unit'].replace('um', 'µm').replace('us', 'µs')})"
-    axes.set_xlabel(f"{row['effect']}: {row['parameter']}{unit}")
+    return x, np.exp(-0.5 * ((x - value) / sigma) ** 2) if sigma > 0.0 else np.zeros_like(x)
 
 
 def _heights(draws, x):
@@ -113,24 +121,19 @@ def _heights(draws, x):
     return edges, heights * math.sqrt(2.0 * math.pi) * spread
 
 
-def _range(axes, row):
+def _range(page, box, row):
     """The range searched, logarithmic where it spans decades; value with its 90 % interval; cross: off."""
     value, low, high = (float(row[c]) for c in ("value", "low", "high"))
-    axes.plot([low, high], [0.0, 0.0], color=BAND, lw=5.0, solid_capstyle="butt")
-    if low > 0.0 and high / low > 30.0:
-        axes.set_xscale("log")
-    least = low if axes.get_xscale() == "log" else -math.inf
-    axes.plot([max(float(row["from_90"]), least), float(row["to_90"])], [0.0, 0.0], color=BLUE, lw=1.4)
-    axes.plot([value], [0.0], "o", color=BLUE, ms=4)
+    log = low > 0.0 and high / low > 30.0
+    begin, end = max(float(row["from_90"]), low if log else -math.inf), float(row["to_90"])
+    marks = [x for x in (low, high, begin, end, value) if x > 0.0 or not log]
     off = row["off"]
-    if off and math.isfinite(float(off)) and (axes.get_xscale() == "linear" or float(off) > 0.0):
-        axes.plot([float(off)], [0.0], "x", color=ORANGE, ms=5, mew=1.2)
-    _bare(axes)
-    axes.set_ylim(-1.0, 1.0)
-    axes.set_xlabel("range searched", color=GREY)
-
-
-def _bare(axes):
-    """No axis of heights: they are only shapes."""
-    axes.set_yticks([])
-    axes.spines["left"].set_visible(False)
+    crossed = bool(off) and math.isfinite(float(off)) and (not log or float(off) > 0.0)
+    scale = Scale.over([*marks, *([float(off)] if crossed else [])], log=log)
+    frame = Frame(page, box, scale, Scale(-1.0, 1.0))
+    frame.curve([low, high], [0.0, 0.0], Stroke(BAND, 5.0))
+    frame.curve([begin, end], [0.0, 0.0], Stroke(BLUE, 1.4))
+    frame.dots([value], [0.0], 4.0, BLUE, Stroke(BLUE, 0.6))
+    if crossed:
+        frame.cross(float(off), 0.0, 5.0, Stroke(ORANGE, 1.2))
+    frame.bottom("range searched", color=GREY)

@@ -18,9 +18,10 @@ from sonicvacuum.figures.colours import GREY as GREY
 from sonicvacuum.figures.colours import ORANGE as ORANGE
 from sonicvacuum.figures.colours import PURPLE as PURPLE
 from sonicvacuum.figures.colours import SKY as SKY
+from sonicvacuum.figures.drawing import DOUBLE as DOUBLE
+from sonicvacuum.figures.drawing import SINGLE as SINGLE
 from sonicvacuum.files import replacing
 
-SINGLE, DOUBLE = 85.0, 175.0  # widths of a journal column and of a page, mm
 DOTS_PER_INCH = 300
 # Format of a picture → what is written into it about its making.
 METADATA = {
