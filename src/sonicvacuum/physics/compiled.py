@@ -109,10 +109,11 @@ class _SignatureCache(_Cache):
     def load_overload(self, sig, target_context):
         if cache_folder() is None:
             return None
-        # Whatever is wrong with the file, compiling afresh is the cure.
+        # Whatever is wrong with the file, compiling afresh is the cure. Numba's own cache makes its contexts
+        # ready to compile first, a third of a second of every process. What is loaded needs nothing of that,
+        # and the compiler makes them ready itself.
         with contextlib.suppress(Exception):
             payload = pickle.loads(_own(self.path(sig, target_context)))
-            target_context.refresh()
             return CompileResultCacheImpl.rebuild(None, target_context, payload)
         return None
 
@@ -182,12 +183,12 @@ def _import_array_functions():
 
 
 def _load_or_compile(dispatcher, signature):
-    _import_array_functions()
     folder = cache_folder()
     path = dispatcher._cache.path(signature, dispatcher.targetctx) if folder else None
     if path and path.exists():
         dispatcher.compile(signature)
         return
+    _import_array_functions()
     if path is None:
         watch.aside(dispatcher.compile, signature)
         return
