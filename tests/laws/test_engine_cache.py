@@ -40,12 +40,24 @@ def copy(tmp_path_factory):
     return root
 
 
-def start(copy, cache):
+def start(copy, cache, more=""):
     environment = os.environ | {"PYTHONPATH": str(copy), "SONICVACUUM_CACHE_DIR": str(cache)}
     # A folder of its own, so that the package found is the copy and not the one beside the tests.
     return subprocess.Popen(
-        [sys.executable, "-c", SCRIPT], cwd=copy, env=environment, stdout=subprocess.PIPE, text=True
+        [sys.executable, "-c", SCRIPT + more], cwd=copy, env=environment, stdout=subprocess.PIPE, text=True
     )
+
+
+# What is loaded leaves Numba as it is; in the same process it still compiles.
+AND_ANOTHER = """
+import numpy as np
+from sonicvacuum.physics import resample
+rows = np.arange(20.0).reshape(1, 1, 20)
+weights = np.array([[0.0, 0.0, 0.5, 0.5, 0.0, 0.0]])
+place, gain = np.zeros(1, dtype=int), np.ones((1, 1))
+assert resample.resampled(rows, place, place + 5, weights, gain, 1, 3).tolist() == [[[5.5, 6.5, 7.5]]]
+assert sum(resample._compiled.stats.cache_misses.values()) == 1
+"""
 
 
 def finish(process):
@@ -67,6 +79,13 @@ def test_of_many_processes_one_compiles_and_the_others_load(crowd):
     assert len({force for force, _ in results}) == 1
     assert sorted(counts for _, counts in results) == ["0 1"] * 7 + ["1 0"]
     assert len(list(cache.glob("*/*.bin"))) == 1
+
+
+def test_after_loading_one_function_another_still_compiles(crowd, copy, tmp_path):
+    cache, results = crowd
+    own = shutil.copytree(cache, tmp_path / "cache")
+    assert finish(start(copy, own, AND_ANOTHER)) == (results[0][0], "0 1")
+    assert len(list(own.glob("*/*.bin"))) == 2
 
 
 def test_an_edited_callee_takes_effect_at_once_and_back(crowd, copy):

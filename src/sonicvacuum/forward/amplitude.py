@@ -10,10 +10,11 @@ import numpy as np
 
 from sonicvacuum.effects import Setup
 from sonicvacuum.forward.motion import see
+from sonicvacuum.forward.together import runs_of
 from sonicvacuum.gauges import Gauge, position
 from sonicvacuum.laboratory.bodies import Bodies
 from sonicvacuum.observe.quantities import measure_run
-from sonicvacuum.observe.run import Geometry, Run
+from sonicvacuum.observe.run import Geometry
 from sonicvacuum.observe.trace import Measured, missing
 from sonicvacuum.physics.chain import Chain
 from sonicvacuum.physics.scales import (
@@ -126,14 +127,13 @@ def _struck(chain, diameters, sensor, pair, speeds, refine):
     seen = see(
         Setup(lanes, gauges), passage_of(lanes, CROSSED), sampling_of(lanes), refine=refine, forgiving=True
     )
-    geometry = Geometry(chain.beads, diameters, gauges)
-    return np.array([_one(lane, gauges, seen.history.time, geometry) for lane in seen.readings]).T
+    runs = runs_of(seen.readings, seen.history.time, Geometry(chain.beads, diameters, gauges))
+    return np.array([_one(run) for run in runs]).T
 
 
-def _one(signals, gauges, time, geometry):
+def _one(run):
     """Amplitude and speed of one chain; NaN where it shows none, or numbers that are not finite."""
-    if not np.isfinite(signals).all():
+    if not all(np.isfinite(reading).all() for reading in run.readings.values()):
         return math.nan, math.nan
-    run = Run({g.id: one for g, one in zip(gauges, signals, strict=True)}, time, geometry)
     height = measure_run("amplitude", run, sensor="(gauge)").value
     return height, measure_run("speed", run, from_="(before)", to="(behind)").value

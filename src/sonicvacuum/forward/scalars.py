@@ -4,6 +4,7 @@ import numpy as np
 
 from sonicvacuum.forward.amplitude import speed_at_amplitude
 from sonicvacuum.forward.motion import Seen, readings
+from sonicvacuum.forward.together import runs_of
 from sonicvacuum.gauges import Gauge
 from sonicvacuum.laboratory.bodies import Bodies
 from sonicvacuum.observe.contacts import contact_duration, restitution
@@ -37,10 +38,9 @@ def passages(
     beads, history = seen.setup.chain.beads, seen.history
     extra = virtual(gauges, beads)
     geometry = Geometry(beads, diameters, (*gauges, *extra))
-    ids = [g.id for g in geometry.sensors]
     if extra:
         signals = np.concatenate([signals, readings(extra, history.take(lanes), beads)], axis=1)
-    return [Run(dict(zip(ids, lane, strict=True)), history.time, geometry) for lane in signals]
+    return runs_of(signals, history.time, geometry)
 
 
 def measured(

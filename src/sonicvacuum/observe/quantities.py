@@ -9,7 +9,7 @@ bead's centre, the wall gauge at the wall, speeds are distance over peak-to-peak
 import inspect
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 
 import numpy as np
 
@@ -80,12 +80,21 @@ def measure(
 
 def measure_run(quantity: str, run: Run, **options) -> Measured:
     """As `measure`, on a `Run`: several quantities of one run then share the pulses found."""
+    entry = _entry(quantity, tuple(options))
+    return entry.function(
+        run, **{"from_" if name == "from" else name: value for name, value in options.items()}
+    )
+
+
+@lru_cache(maxsize=256)
+def _entry(quantity, options):
+    """The quantity that takes options of these names; ValueError where there is none."""
     entry = QUANTITIES.get(quantity)
     if entry is None:
         raise ValueError(f"quantity {quantity!r} is not one of {', '.join(QUANTITIES)}")
     if entry.over != "run":
         raise ValueError(f"quantity {quantity!r} is found over a {entry.over}: call its function")
-    given = {"from" if name == "from_" else name: value for name, value in options.items()}
+    given = ["from" if name == "from_" else name for name in options]
     for name in entry.needs:
         if name not in given:
             raise ValueError(f"quantity {quantity!r} needs {name!r}")
@@ -93,9 +102,7 @@ def measure_run(quantity: str, run: Run, **options) -> Measured:
         if name not in entry.needs and name not in entry.options:
             allowed = ", ".join((*entry.needs, *entry.options))
             raise ValueError(f"quantity {quantity!r} takes no {name!r}, only {allowed}")
-    return entry.function(
-        run, **{"from_" if name == "from" else name: value for name, value in given.items()}
-    )
+    return entry
 
 
 def speed(run: Run, from_: str, to: str) -> Measured:
@@ -126,12 +133,18 @@ def arrival(run: Run, sensor: str) -> Measured:
 
 def onset(run: Run, sensor: str, level: float = 0.01) -> Measured:
     """Time at which the main pulse rises through level × peak, in s."""
-    return shape.onset(run.trace(sensor), run.main(sensor), level)
+    main = run.main(sensor)
+    if not main.found:
+        return shape.onset(run.trace(sensor), main, level)
+    return run.edge(sensor, level, rising=True)
 
 
 def duration(run: Run, sensor: str, level: float = 0.01) -> Measured:
     """Time for which the main pulse exceeds level × peak, in s."""
-    return shape.duration(run.trace(sensor), run.main(sensor), level)
+    main = run.main(sensor)
+    if not main.found:
+        return shape.duration(run.trace(sensor), main, level)
+    return shape.lasting(run.edge(sensor, level, rising=True), run.edge(sensor, level, rising=False))
 
 
 def duration_half(run: Run, sensor: str) -> Measured:

@@ -13,13 +13,14 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 
 from sonicvacuum.gauges import Gauge, position
 from sonicvacuum.laboratory.bodies import Bodies
 from sonicvacuum.observe.pulse import Pulse, highest, main_pulse
-from sonicvacuum.observe.shape import onset
+from sonicvacuum.observe.shape import ending, onset
 from sonicvacuum.observe.trace import Measured, Trace, grid, missing
 
 # The reflection's front comes before its peak; 8.5 diameters from the wall, 0.9 leaves it 1.7 diameters.
@@ -98,6 +99,18 @@ class Geometry:
         return next((s.id for s in self.sensors if s.kind == "wall"), None)
 
 
+class Together(Protocol):
+    """Pulses of many runs, found side by side; None where one has to look closer, see `forward.together`."""
+
+    grid: tuple[float, float]
+
+    def pulses(self, sensor: str) -> list[Pulse | None]:
+        """Main pulse of each run at a gauge."""
+
+    def edges(self, sensor: str, level: float, rising: bool) -> list[Measured | None]:
+        """Time in s at which the main pulse of each run passes `level` × its peak."""
+
+
 @dataclass(frozen=True, eq=False)
 class Run:
     """One run.
@@ -110,6 +123,8 @@ class Run:
         floor: force in N that a main pulse must exceed.
         accept_overlap: take the first peak of an overlapped gauge as it is.
         safety: fraction of the way to the wall and back after which pulses no longer count.
+        together: the same readings with those of further runs, for a run without noise and floor.
+        lane: place of this run there.
 
     Raises:
         ValueError: for times that are not equidistant; for a malformed reading, when it is used.
@@ -122,6 +137,8 @@ class Run:
     floor: float = 0.0
     accept_overlap: bool = False
     safety: float = SAFETY
+    together: Together | None = None
+    lane: int = 0
     _grid: tuple[float, float] = field(init=False, repr=False)
     _known: dict = field(init=False, repr=False, default_factory=dict)
 
@@ -130,7 +147,7 @@ class Run:
         if time.ndim != 1:
             raise ValueError(f"time has shape {time.shape}; it must be (S,)")
         object.__setattr__(self, "time", time)
-        object.__setattr__(self, "_grid", grid(time))
+        object.__setattr__(self, "_grid", self.together.grid if self.together else grid(time))
 
     def trace(self, sensor: str) -> Trace:
         """The checked signal of a gauge."""
@@ -138,11 +155,18 @@ class Run:
 
     def first(self, sensor: str) -> Pulse:
         """The main pulse of a gauge, whether or not the reflection overlaps it."""
-        return self._once("first", sensor, lambda s: main_pulse(self.trace(s), self.floor))
+        return self._once("first", sensor, self._first)
 
     def main(self, sensor: str) -> Pulse:
         """The main pulse of a gauge; none where the reflection overlaps it (unless that is accepted)."""
         return self._once("main", sensor, self._main)
+
+    def edge(self, sensor: str, level: float, rising: bool) -> Measured:
+        """Time in s at which the pulse of `first` rises or falls through `level` × its peak."""
+        found = self._seen(sensor) and self.together.edges(sensor, level, rising)[self.lane]
+        if found:
+            return found
+        return (onset if rising else ending)(self.trace(sensor), self.first(sensor), level)
 
     def reflection_time(self, sensor: str) -> Measured:
         """Time in s at which the reflection of the main pulse peaks at a gauge.
@@ -203,6 +227,14 @@ class Run:
         except ValueError as error:
             raise ValueError(f"sensor {sensor}: {error}") from None
 
+    def _first(self, sensor):
+        found = self._seen(sensor) and self.together.pulses(sensor)[self.lane]
+        return found or main_pulse(self.trace(sensor), self.floor)
+
+    def _seen(self, sensor):
+        """Whether pulses of this gauge are found together with those of other runs."""
+        return self.together is not None and sensor in self.readings
+
     def _main(self, sensor):
         first = self.first(sensor)
         if self.accept_overlap or not first.found or self.geometry.position(sensor) == 0.0:
@@ -215,7 +247,7 @@ class Run:
         wall = self._wall_arrival()
         if wall is None:
             return self.geometry.at_last_bead(sensor)
-        rise = onset(self.trace(sensor), first, 0.5)
+        rise = self.edge(sensor, 0.5, rising=True)
         return rise.known and wall - first.time <= first.time - rise.value
 
     def _wall_arrival(self):

@@ -29,7 +29,11 @@ def ending(trace: Trace, pulse: Pulse, level: float) -> Measured:
 
 def duration(trace: Trace, pulse: Pulse, level: float = 0.01) -> Measured:
     """Time in s for which a pulse exceeds `level` × its peak."""
-    rise, fall = onset(trace, pulse, level), ending(trace, pulse, level)
+    return lasting(onset(trace, pulse, level), ending(trace, pulse, level))
+
+
+def lasting(rise: Measured, fall: Measured) -> Measured:
+    """Time in s from a rise to a fall, or why one of them is not known."""
     if not (rise.known and fall.known):
         return fall if rise.known else rise
     return Measured(fall.value - rise.value)

@@ -19,7 +19,7 @@ TOP = 0.2
 NOISY_TOP = 0.5
 _NOISY_DIP = 6.0
 # Cubic through samples 0, 1, 2, 3: its coefficients, lowest power first.
-_CUBIC = ((6, 0, 0, 0), (-11, 18, -9, 2), (6, -15, 12, -3), (-1, 3, -3, 1))
+CUBIC = ((6, 0, 0, 0), (-11, 18, -9, 2), (6, -15, 12, -3), (-1, 3, -3, 1))
 
 
 @dataclass(frozen=True)
@@ -124,24 +124,27 @@ def top_of(trace: Trace, peak: int, height: float) -> tuple[int, int]:
     return max(0, peak - max(before, 3)), min(len(force) - 1, peak + max(after, 3))
 
 
-def maximum(force: np.ndarray, first: int, last: int) -> tuple[float, float]:
-    """Place (in samples) and value of the maximum of the polynomial fitted to samples `first` to `last`."""
+def maximum(force: np.ndarray, first: int, last: int, climb=None) -> tuple[float, float]:
+    """Place (in samples) and value of the maximum of the polynomial fitted to samples `first` to `last`.
+
+    `climb` may stand for `newton`, compiled.
+    """
     x, powers, fit = _polynomial(last - first + 1)
     coefficients = fit @ force[first : last + 1]
     best = int((powers @ coefficients).argmax())
     lower, upper = x[max(best - 1, 0)], x[min(best + 1, len(x) - 1)]
     c = coefficients.tolist()
-    place = _newton(c, x[best], lower, upper)
-    return first + 0.5 * (place + 1.0) * (last - first), _value(c, place)
+    place = (climb or newton)(c, x[best], lower, upper)
+    return first + 0.5 * (place + 1.0) * (last - first), value_at(c, place)
 
 
 def crossing(force: np.ndarray, before: int, level: float) -> float:
     """Place (in samples) between samples `before` and `before` + 1 where the force passes `level`."""
     first = min(max(before - 1, 0), len(force) - 4)
     f0, f1, f2, f3 = (force[first : first + 4] - level).tolist()
-    c = [(a * f0 + b * f1 + d * f2 + e * f3) / 6.0 for a, b, d, e in _CUBIC]
+    c = [(a * f0 + b * f1 + d * f2 + e * f3) / 6.0 for a, b, d, e in CUBIC]
     lower = float(before - first)
-    return first + _root(c, lower, lower + 1.0)
+    return first + root(c, lower, lower + 1.0)
 
 
 @lru_cache(maxsize=256)
@@ -152,26 +155,31 @@ def _polynomial(count):
     return x.tolist(), powers, np.linalg.pinv(powers)
 
 
-def _value(c, x):
+# What follows is plain enough to be compiled as it stands: `forward.together` does.
+
+
+def value_at(c, x):
+    """Value of a polynomial, coefficients lowest power first."""
     value = 0.0
-    for a in reversed(c):
-        value = value * x + a
+    for k in range(len(c) - 1, -1, -1):
+        value = value * x + c[k]
     return value
 
 
-def _slope_and_curvature(c, x):
+def slope_and_curvature(c, x):
+    """First and second derivative of a polynomial."""
     value = slope = curvature = 0.0
-    for a in reversed(c):
+    for k in range(len(c) - 1, -1, -1):
         curvature = curvature * x + slope
         slope = slope * x + value
-        value = value * x + a
+        value = value * x + c[k]
     return slope, 2.0 * curvature
 
 
-def _newton(c, x, lower, upper):
+def newton(c, x, lower, upper):
     """Maximum of a polynomial next to x, kept between two bounds."""
     for _ in range(8):
-        slope, curvature = _slope_and_curvature(c, x)
+        slope, curvature = slope_and_curvature(c, x)
         if curvature >= 0.0:
             break
         new = min(max(x - slope / curvature, lower), upper)
@@ -181,15 +189,15 @@ def _newton(c, x, lower, upper):
     return x
 
 
-def _root(c, lower, upper):
+def root(c, lower, upper):
     """Zero of a polynomial between two bounds, by Newton steps that bisection keeps inside."""
-    rising = _value(c, upper) >= _value(c, lower)
+    rising = value_at(c, upper) >= value_at(c, lower)
     x = 0.5 * (lower + upper)
     for _ in range(60):
         value = slope = 0.0
-        for a in reversed(c):
+        for k in range(len(c) - 1, -1, -1):
             slope = slope * x + value
-            value = value * x + a
+            value = value * x + c[k]
         lower, upper = (lower, x) if (value > 0.0) == rising else (x, upper)
         new = x - value / slope if slope != 0.0 else lower
         new = new if lower < new < upper else 0.5 * (lower + upper)

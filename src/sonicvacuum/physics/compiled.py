@@ -83,10 +83,16 @@ def _prune(folder):
 
 
 class _SignatureCache(_Cache):
-    """Numba's interface to a cache: one file per signature."""
+    """Numba's interface to a cache: one file per signature.
 
-    def __init__(self, function, sources):
-        self._function, self._sources = function, sources
+    Numba's own makes its contexts ready to compile before it loads, a third of a second of every process.
+    What counts no references to arrays (option `_nrt`) needs nothing of that, and the compiler makes them
+    ready itself.
+    """
+
+    def __init__(self, dispatcher, sources):
+        self._function, self._sources = dispatcher.py_func, sources
+        self._counts_references = dispatcher.targetoptions.get("_nrt", True)
 
     @property
     def cache_path(self):
@@ -109,11 +115,11 @@ class _SignatureCache(_Cache):
     def load_overload(self, sig, target_context):
         if cache_folder() is None:
             return None
-        # Whatever is wrong with the file, compiling afresh is the cure. Numba's own cache makes its contexts
-        # ready to compile first, a third of a second of every process. What is loaded needs nothing of that,
-        # and the compiler makes them ready itself.
+        # Whatever is wrong with the file, compiling afresh is the cure.
         with contextlib.suppress(Exception):
             payload = pickle.loads(_own(self.path(sig, target_context)))
+            if self._counts_references:
+                target_context.refresh()
             return CompileResultCacheImpl.rebuild(None, target_context, payload)
         return None
 
@@ -149,7 +155,7 @@ def cached(dispatcher, sources: tuple[Path, ...] = ()):
         dispatcher: what `numba.njit` returned.
         sources: files outside `sonicvacuum.physics` with whose code it is compiled.
     """
-    dispatcher._cache = _SignatureCache(dispatcher.py_func, sources)
+    dispatcher._cache = _SignatureCache(dispatcher, sources)
     return dispatcher
 
 

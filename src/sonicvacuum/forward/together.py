@@ -1,0 +1,174 @@
+"""Pulses of many simulated signals on one time axis, found side by side in compiled code.
+
+What `observe` finds in one signal after the other, to the bit, wherever a signal looks as most simulated ones
+do: one main pulse that rises and falls without a break. All others are left to `observe`. Between the chains
+of a search, measuring quantities took more time than the chains.
+"""
+
+from pathlib import Path
+from types import FunctionType
+
+import numpy as np
+from numba import njit
+
+from sonicvacuum.observe import pulse, trace
+from sonicvacuum.observe.pulse import MAIN, PROMINENCE, Pulse
+from sonicvacuum.observe.run import Geometry, Run
+from sonicvacuum.observe.trace import DEGREE, TOP, Measured, grid, maximum
+from sonicvacuum.physics.compiled import cached, prepare
+
+# Neither reordered nor fused: the same roundings as in Python.
+_compiled = njit(error_model="numpy", nogil=True, _nrt=False)
+_CUBIC = tuple(tuple(float(a) for a in row) for row in trace.CUBIC)
+# Columns of what is known of each pulse: whether it looks as most do, its highest sample, the one by which it
+# has fallen, first and last sample of its top.
+_USUAL, _PEAK, _SEEN, _LEFT, _RIGHT = range(5)
+
+
+def runs_of(signals: np.ndarray, time: np.ndarray, geometry: Geometry) -> list[Run]:
+    """Simulated runs from their readings (L, S, T), gauges as in the geometry, and times (T,) in s."""
+    ids = [sensor.id for sensor in geometry.sensors]
+    together = Together(np.asarray(time, dtype=float), signals, ids)
+    return [
+        Run(dict(zip(ids, one, strict=True)), time, geometry, together=together, lane=lane)
+        for lane, one in enumerate(signals)
+    ]
+
+
+class Together:
+    """Signals (L, S, T) of L lanes at S gauges and equidistant times (T,) in s; ValueError for other times.
+
+    Attributes:
+        grid: first time and interval in s.
+    """
+
+    def __init__(self, time: np.ndarray, signals: np.ndarray, sensors: list[str]):
+        self.grid = grid(time)
+        self._signals = np.ascontiguousarray(signals, dtype=float)
+        self._place = {sensor: s for s, sensor in enumerate(sensors)}
+        self._pulses: dict[str, list[Pulse | None]] = {}
+        self._edges: dict[tuple[str, float, bool], list[Measured | None]] = {}
+
+    def pulses(self, sensor: str) -> list[Pulse | None]:
+        """Main pulse of each lane at a gauge; None where one has to look closer."""
+        if sensor not in self._pulses:
+            self._pulses[sensor] = self._tops(self._place[sensor])
+        return self._pulses[sensor]
+
+    def edges(self, sensor: str, level: float, rising: bool) -> list[Measured | None]:
+        """Time in s at which each lane's main pulse passes `level` × its peak; None where one has to look
+        closer.
+        """
+        key = sensor, level, rising
+        if key not in self._edges:
+            self._edges[key] = self._crossings(*key)
+        return self._edges[key]
+
+    def _tops(self, s):
+        found = np.zeros((len(self._signals), 5), dtype=np.int64)
+        arguments = (self._signals, s, found)
+        prepare(_find_tops, "tops", arguments)
+        _find_tops(*arguments)
+        start, interval = self.grid
+        pulses: list[Pulse | None] = [None] * len(found)
+        for lane, (usual, peak, seen, left, right) in enumerate(found.tolist()):
+            if usual:
+                place, top = maximum(self._signals[lane, s], left, right, _newton_compiled)
+                pulses[lane] = Pulse(start + interval * place, top, peak, seen, right - left + 1)
+        return pulses
+
+    def _crossings(self, sensor, level, rising):
+        known = [(-1, 0.0) if p is None else (p.peak, level * p.force) for p in self.pulses(sensor)]
+        peak, target = (np.array(column) for column in zip(*known, strict=True))
+        places = np.full(len(known), np.nan)
+        arguments = (self._signals, self._place[sensor], peak, target, rising, places)
+        if 0.0 < level < 1.0:
+            prepare(_find_crossings, "crossings", arguments)
+            _find_crossings(*arguments)
+        start, interval = self.grid
+        return [Measured(start + interval * x) if x == x else None for x in places.tolist()]
+
+
+def _with(function, **callees):
+    """A function of `observe` compiled, with what it calls: one formula, one place."""
+    names = {**function.__globals__, **callees}
+    return _compiled(FunctionType(function.__code__, names, function.__name__))
+
+
+_root = _with(trace.root, value_at=_compiled(trace.value_at))
+_newton = _with(trace.newton, slope_and_curvature=_compiled(trace.slope_and_curvature))
+
+
+@_compiled
+def _tops(signals, s, found):
+    """As `pulse.main_pulse` of each lane, up to the fit of the top."""
+    samples = signals.shape[2]
+    for lane in range(len(signals)):
+        force = signals[lane, s]
+        largest, finite = force[0], True
+        for t in range(samples):
+            finite = finite and np.isfinite(force[t])
+            largest = max(largest, force[t])
+        if not (finite and largest > 0.0):
+            continue
+        seen = 0
+        while not force[seen] >= MAIN * largest:
+            seen += 1
+        peak, highest = seen, force[seen]
+        while seen < samples and not force[seen] < highest - PROMINENCE * highest:
+            if force[seen] > highest:
+                peak, highest = seen, force[seen]
+            seen += 1
+        if seen == samples or peak == 0:
+            continue
+        low = highest - TOP * highest
+        before, after = peak, peak
+        while before >= 0 and not force[before] < low:
+            before -= 1
+        while after < samples and not force[after] < low:
+            after += 1
+        found[lane, _PEAK], found[lane, _SEEN] = peak, seen
+        found[lane, _LEFT] = max(0, peak - max(peak - before - 1, 3))
+        found[lane, _RIGHT] = min(samples - 1, peak + max(after - peak - 1, 3))
+        found[lane, _USUAL] = 1
+
+
+@_compiled
+def _crossings(signals, s, peak, target, rising, places):
+    """As `shape.onset` or `shape.ending` of each lane with a peak (−1: none), where the signal only falls."""
+    samples, way = signals.shape[2], -1 if rising else 1
+    for lane in range(len(signals)):
+        force, level, t = signals[lane, s], target[lane], peak[lane]
+        if t < 0 or force[t] < level:
+            continue
+        while 0 <= t + way < samples and force[t] >= level and force[t + way] <= force[t]:
+            t += way
+        if not force[t] < level:
+            continue
+        before = t if rising else t - 1
+        first = min(max(before - 1, 0), samples - 4)
+        f0, f1, f2, f3 = (
+            force[first] - level,
+            force[first + 1] - level,
+            force[first + 2] - level,
+            force[first + 3] - level,
+        )
+        c0 = (_CUBIC[0][0] * f0 + _CUBIC[0][1] * f1 + _CUBIC[0][2] * f2 + _CUBIC[0][3] * f3) / 6.0
+        c1 = (_CUBIC[1][0] * f0 + _CUBIC[1][1] * f1 + _CUBIC[1][2] * f2 + _CUBIC[1][3] * f3) / 6.0
+        c2 = (_CUBIC[2][0] * f0 + _CUBIC[2][1] * f1 + _CUBIC[2][2] * f2 + _CUBIC[2][3] * f3) / 6.0
+        c3 = (_CUBIC[3][0] * f0 + _CUBIC[3][1] * f1 + _CUBIC[3][2] * f2 + _CUBIC[3][3] * f3) / 6.0
+        lower = float(before - first)
+        places[lane] = first + _root((c0, c1, c2, c3), lower, lower + 1.0)
+
+
+_SOURCES = (Path(__file__), Path(trace.__file__), Path(pulse.__file__))
+_find_tops, _find_crossings, _find_newton = (cached(f, _SOURCES) for f in (_tops, _crossings, _newton))
+
+
+def _newton_compiled(c, x, lower, upper):
+    """`trace.newton` in compiled code, for the coefficients of most pulses."""
+    if len(c) != DEGREE + 1:
+        return trace.newton(c, x, lower, upper)
+    arguments = (tuple(c), x, lower, upper)
+    prepare(_find_newton, "newton", arguments)
+    return _find_newton(*arguments)
