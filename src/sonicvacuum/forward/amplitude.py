@@ -10,7 +10,6 @@ import numpy as np
 
 from sonicvacuum.effects import Setup
 from sonicvacuum.forward.motion import see
-from sonicvacuum.forward.together import runs_of
 from sonicvacuum.gauges import Gauge, position
 from sonicvacuum.laboratory.bodies import Bodies
 from sonicvacuum.observe.quantities import measure_run
@@ -127,6 +126,8 @@ def _struck(chain, diameters, sensor, pair, speeds, refine):
     seen = see(
         Setup(lanes, gauges), passage_of(lanes, CROSSED), sampling_of(lanes), refine=refine, forgiving=True
     )
+    from sonicvacuum.forward.together import runs_of  # and with it Numba, as in `motion.see`
+
     runs = runs_of(seen.readings, seen.history.time, Geometry(chain.beads, diameters, gauges))
     return np.array([_one(run) for run in runs]).T
 

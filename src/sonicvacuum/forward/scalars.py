@@ -4,7 +4,6 @@ import numpy as np
 
 from sonicvacuum.forward.amplitude import speed_at_amplitude
 from sonicvacuum.forward.motion import Seen, readings
-from sonicvacuum.forward.together import runs_of
 from sonicvacuum.gauges import Gauge
 from sonicvacuum.laboratory.bodies import Bodies
 from sonicvacuum.observe.contacts import contact_duration, restitution
@@ -35,6 +34,8 @@ def passages(
         gauges: where the S gauges sit.
         diameters: of the beads in m.
     """
+    from sonicvacuum.forward.together import runs_of  # and with it Numba, as in `motion.see`
+
     beads, history = seen.setup.chain.beads, seen.history
     extra = virtual(gauges, beads)
     geometry = Geometry(beads, diameters, (*gauges, *extra))
