@@ -1,1 +1,1 @@
-"""Pictures of a verdict, drawn from the tables that `discover` writes; they need matplotlib."""
+"""Pictures of a verdict, drawn from the tables that `discover` writes, and those that matplotlib draws."""
