@@ -2,6 +2,7 @@
 fits.
 """
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -12,6 +13,7 @@ from hypothesis import strategies as st
 from sonicvacuum.discover.fit import evidence, heldout
 from sonicvacuum.discover.fit.normal import Normal
 from sonicvacuum.discover.fit.refit import Fit
+from sonicvacuum.discover.judge import locate
 from sonicvacuum.discover.model import gauges
 from sonicvacuum.discover.model.experiment import lag_one
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, variants
@@ -101,3 +103,13 @@ def test_coordinates_and_values_are_each_others_inverse(effect, setup):
             # Bounds towards off are wider than the catalogue's.
             assert parameter.low / 101.0 - 1e-9 <= c.value(u) + 1e-9 or parameter.low < 0.0
             assert c.value(u) <= parameter.high * 101.0
+
+
+def test_scalars_of_one_name_keep_what_is_left_of_each():
+    def place(feature, z):
+        return locate.Place("r1", "", feature, z, 1.0, 1.0, 0.0)
+
+    before = [place("speed", 9.0), place("amplitude", 5.0), place("speed", 8.0), place("decay", 1.0)]
+    after = [place("amplitude", 0.5), place("speed", 0.9), place("speed", 0.8)]
+    assert locate.again(before, after)[:3] == [0.9, 0.5, 0.8]
+    assert math.isnan(locate.again(before, after)[3])

@@ -214,22 +214,13 @@ class Clock:
 def write(result: Result, folder: Path) -> None:
     """Write verdict, model and tables; the verdict last, so that a folder that holds one is complete."""
     header = ["run", "sensor", "feature", "z_before", "p_before", "q_before", "size", "z_after"]
-    left = {(p.run, p.sensor, p.feature): p.z for p in result.after}
+    left = locate.again(result.places, result.after)
     verdict.write_table(
         folder / "where.csv",
         header,
         (
-            (
-                p.run,
-                p.sensor,
-                p.feature,
-                p.z,
-                p.p,
-                p.q,
-                p.size,
-                left.get((p.run, p.sensor, p.feature), math.nan),
-            )
-            for p in result.places
+            (p.run, p.sensor, p.feature, p.z, p.p, p.q, p.size, after)
+            for p, after in zip(result.places, left, strict=True)
         ),
     )
     if any(run.scalars for run in result.found.forward.experiment.runs):

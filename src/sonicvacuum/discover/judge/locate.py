@@ -5,6 +5,9 @@ signal would look like; whatever the nuisances can do is projected out. False di
 the whole table (Benjamini & Hochberg, J. R. Stat. Soc. B 57, 289, 1995).
 """
 
+import math
+from collections import defaultdict, deque
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -74,6 +77,18 @@ def locate(forward: Forward, fit: Fit) -> list[Place]:
         Place(*_name(forward, d), float(z), float(a), float(b), float(s))
         for d, z, a, b, s in zip(directions, seen.z, p, q, sizes, strict=True)
     ]
+
+
+def again(places: Sequence[Place], after: Sequence[Place]) -> list[float]:
+    """z of the same cells in another map of the same record; NaN where it lacks them.
+
+    A run may have several scalars of one name: they stand in the same order in both.
+    """
+    seen: dict[tuple[str, str, str], deque[float]] = defaultdict(deque)
+    for p in after:
+        seen[p.run, p.sensor, p.feature].append(p.z)
+    left = (seen[p.run, p.sensor, p.feature] for p in places)
+    return [own.popleft() if own else math.nan for own in left]
 
 
 def _name(forward, direction):
