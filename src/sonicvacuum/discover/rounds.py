@@ -1,5 +1,6 @@
 """The order of the steps: nominal model, screen, singles, what is left, pairs, more effects, decision."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
@@ -78,14 +79,15 @@ def nominal(forward: Forward) -> Fit:
     start = np.zeros((1, forward.layout.size))
     direct = fit(forward, Hypothesis(), np.zeros((1, 0)), start)
     size = sum(forward.experiment.size(r) for r in range(len(forward.experiment.runs)))
-    if direct.objective < 2.0 * size:
+    if direct.objective - size < policy.MINIMA * math.sqrt(2.0 * size):
         return direct
     tried = [direct, fit(forward, Hypothesis(), np.zeros((1, 0)), start, coarse=COARSE)]
-    if wide.wide(forward):
+    if direct.objective > 2.0 * size and wide.wide(forward):
         starts = wide.starts(forward)
         nothing = np.zeros((len(starts), 0))
         tried.append(fit(forward, Hypothesis(), nothing, starts, keep=wide.FOLLOWED, halved=wide.FIRST))
     best = min(tried, key=lambda f: f.objective)
+    best = best if best.objective < direct.objective - policy.SAME_MINIMUM else direct
     return replace(best, elsewhere=tried[-1].elsewhere)
 
 
