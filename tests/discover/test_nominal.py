@@ -1,4 +1,4 @@
-"""The nominal fit: once more from running integrals where much is left, another one only where it is lower."""
+"""The nominal fit: once more from running integrals where much is left, another only where it is less."""
 
 from dataclasses import dataclass
 from types import SimpleNamespace
