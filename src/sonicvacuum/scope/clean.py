@@ -74,7 +74,8 @@ def clean(shot: Shot, options: Options) -> CleanRun:
     begin = left.start
     written = {g: thin.thinned(v, left) for g, v in values.items()}
     sigma = {g: _sigma(written[g], seen[g], begin, factor) for g in written}
-    notes += [f"{g}: noise {s:.3g} {unit[g]} a written sample." for g, s in sigma.items()]
+    other = {g: s for g, s in sigma.items() if f"{s:.3g}" != f"{seen[g].sigma:.3g}"}
+    notes += [f"{g}: noise {s:.3g} {unit[g]} a written sample." for g, s in other.items()]
     first = min((t.arrival for t in seen.values() if t.arrival is not None), default=None)
     zero, zero_sigma = _zero(impact, start, step, begin, first, seen, notes)
     count = len(next(iter(written.values())))
