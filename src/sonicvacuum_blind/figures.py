@@ -27,8 +27,8 @@ CAPTIONS = {
         signal-to-noise ratio d′: (a) traces of three gauges at several speeds, (b) other records, with their
         median d′; other set-ups: one or two gauges, 8 to 40 beads, 2 to 5 runs, half of them under a preload.
         Bars: 95 % intervals (Wilson). Class level: that name, or one that the verdict calls confusable with
-        it. Dashed: what an ideal rule with full knowledge of all signatures reaches on the same records,
-        alarmed by 1 % of empty ones.
+        it. Dashed: what an ideal rule with full knowledge of all signatures reaches on those of the records
+        that it was asked about.
     """),
     "reliability": style.paragraph("""
         Stated probability against the share of cases in which what is named with it is right, with 95 %
@@ -236,7 +236,9 @@ def pit(table: pandas.DataFrame) -> Figure:
                 axes.plot(x, y, ls="-" if far or k == 0 else (0, (4, 1.5)), **look)
                 if far and k:
                     at = int(np.argmax(np.abs(y)))
-                    axes.text(x[at], y[at], row.effect, fontsize=6.5, ha="center", va="bottom")
+                    side = "bottom" if y[at] > 0.0 else "top"
+                    axes.text(x[at], 1.03 * y[at], row.effect, fontsize=6.5, ha="center", va=side)
+                    axes.margins(y=0.12)
             axes.axhline(0.0, color=style.GREY, lw=0.6)
             axes.set_xlim(0.0, 1.0)
             axes.set_xlabel("posterior probability below the truth")

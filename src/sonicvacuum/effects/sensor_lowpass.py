@@ -26,7 +26,17 @@ EFFECT = Effect(
     reference="first-order RC circuit; no particular source",
     parameters=(
         Parameter(
-            "tau_us", "us", 0.0, 0.05, 300.0, "log-uniform", 2.0, "time constant", 0.0, electronic=True
+            "tau_us",
+            "us",
+            0.0,
+            0.05,
+            300.0,
+            "log-uniform",
+            2.0,
+            "time constant",
+            0.0,
+            electronic=True,
+            tried_at_once=True,
         ),
     ),
     signature="readings later by tau, lower and longer, narrow pulses most; area and decay along the "
