@@ -6,7 +6,6 @@ Places are (x, y) from the lower left corner of the page.
 """
 
 from dataclasses import dataclass, field
-from itertools import pairwise
 
 import numpy as np
 from markupsafe import escape
@@ -152,11 +151,13 @@ def _path(points):
 
 def _unbroken(points):
     """The stretches of places that are numbers."""
-    known = np.isfinite(points).all(axis=1)
-    if known.all():
-        return [points]
+    return [points[one] for one in stretches(np.isfinite(points).all(axis=1))]
+
+
+def stretches(known: np.ndarray) -> list[slice]:
+    """Where (n,) truths are true without a break."""
     ends = np.flatnonzero(np.diff(np.concatenate([[False], known, [False]]).astype(int)))
-    return [points[begin:end] for begin, end in pairwise(ends) if known[begin]]
+    return [slice(begin, end) for begin, end in ends.reshape(-1, 2).tolist()]
 
 
 def _dots(page, mark, clips):

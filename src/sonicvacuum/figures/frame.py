@@ -19,6 +19,7 @@ from sonicvacuum.figures.drawing import (
     Stroke,
     Text,
     rectangle,
+    stretches,
     width_of,
 )
 
@@ -128,10 +129,7 @@ class Frame:
     def fill(self, x, low, high, color: str, opacity: float = 1.0) -> None:
         """The area between two lines over x, interrupted where one is not a number."""
         x, low, high = (np.asarray(a, dtype=float) for a in np.broadcast_arrays(x, low, high))
-        known = np.isfinite(low) & np.isfinite(high)
-        ends = np.flatnonzero(np.diff(np.concatenate([[False], known, [False]]).astype(int)))
-        for begin, end in ends.reshape(-1, 2):
-            part = slice(begin, end)
+        for part in stretches(np.isfinite(low) & np.isfinite(high)):
             there, back = self.place(x[part], high[part]), self.place(x[part], low[part])[::-1]
             self.drawing.add(Curve(np.concatenate([there, back]), fill=color, opacity=opacity, clip=self.box))
 

@@ -19,7 +19,6 @@ from sonicvacuum.physics.compiled import cached, prepare
 
 # Neither reordered nor fused: the same roundings as in Python.
 _compiled = njit(error_model="numpy", nogil=True, _nrt=False)
-_CUBIC = tuple(tuple(float(a) for a in row) for row in trace.CUBIC)
 # Columns of what is known of each pulse: whether it looks as most do, its highest sample, the one by which it
 # has fallen, first and last sample of its top.
 _USUAL, _PEAK, _SEEN, _LEFT, _RIGHT = range(5)
@@ -95,6 +94,7 @@ def _with(function, **callees):
     return _compiled(FunctionType(function.__code__, names, function.__name__))
 
 
+_cubic = _compiled(trace.cubic)
 _root = _with(trace.root, value_at=_compiled(trace.value_at))
 _newton = _with(trace.newton, slope_and_curvature=_compiled(trace.slope_and_curvature))
 
@@ -147,18 +147,11 @@ def _crossings(signals, s, peak, target, rising, places):
             continue
         before = t if rising else t - 1
         first = min(max(before - 1, 0), samples - 4)
-        f0, f1, f2, f3 = (
-            force[first] - level,
-            force[first + 1] - level,
-            force[first + 2] - level,
-            force[first + 3] - level,
+        c = _cubic(
+            force[first] - level, force[first + 1] - level, force[first + 2] - level, force[first + 3] - level
         )
-        c0 = (_CUBIC[0][0] * f0 + _CUBIC[0][1] * f1 + _CUBIC[0][2] * f2 + _CUBIC[0][3] * f3) / 6.0
-        c1 = (_CUBIC[1][0] * f0 + _CUBIC[1][1] * f1 + _CUBIC[1][2] * f2 + _CUBIC[1][3] * f3) / 6.0
-        c2 = (_CUBIC[2][0] * f0 + _CUBIC[2][1] * f1 + _CUBIC[2][2] * f2 + _CUBIC[2][3] * f3) / 6.0
-        c3 = (_CUBIC[3][0] * f0 + _CUBIC[3][1] * f1 + _CUBIC[3][2] * f2 + _CUBIC[3][3] * f3) / 6.0
         lower = float(before - first)
-        places[lane] = first + _root((c0, c1, c2, c3), lower, lower + 1.0)
+        places[lane] = first + _root(c, lower, lower + 1.0)
 
 
 _SOURCES = (Path(__file__), Path(trace.__file__), Path(pulse.__file__))

@@ -18,8 +18,6 @@ DEGREE = 6
 TOP = 0.2
 NOISY_TOP = 0.5
 _NOISY_DIP = 6.0
-# Cubic through samples 0, 1, 2, 3: its coefficients, lowest power first.
-CUBIC = ((6, 0, 0, 0), (-11, 18, -9, 2), (6, -15, 12, -3), (-1, 3, -3, 1))
 
 
 @dataclass(frozen=True)
@@ -141,10 +139,8 @@ def maximum(force: np.ndarray, first: int, last: int, climb=None) -> tuple[float
 def crossing(force: np.ndarray, before: int, level: float) -> float:
     """Place (in samples) between samples `before` and `before` + 1 where the force passes `level`."""
     first = min(max(before - 1, 0), len(force) - 4)
-    f0, f1, f2, f3 = (force[first : first + 4] - level).tolist()
-    c = [(a * f0 + b * f1 + d * f2 + e * f3) / 6.0 for a, b, d, e in CUBIC]
     lower = float(before - first)
-    return first + root(c, lower, lower + 1.0)
+    return first + root(cubic(*(force[first : first + 4] - level).tolist()), lower, lower + 1.0)
 
 
 @lru_cache(maxsize=256)
@@ -156,6 +152,16 @@ def _polynomial(count):
 
 
 # What follows is plain enough to be compiled as it stands: `forward.together` does.
+
+
+def cubic(f0, f1, f2, f3):
+    """Coefficients, lowest power first, of the cubic through four values at 0, 1, 2 and 3."""
+    return (
+        6.0 * f0 / 6.0,
+        (-11.0 * f0 + 18.0 * f1 - 9.0 * f2 + 2.0 * f3) / 6.0,
+        (6.0 * f0 - 15.0 * f1 + 12.0 * f2 - 3.0 * f3) / 6.0,
+        (-f0 + 3.0 * f1 - 3.0 * f2 + f3) / 6.0,
+    )
 
 
 def value_at(c, x):

@@ -97,6 +97,7 @@ def _origin(inputs, records, verdict, model):
 
 def _told(folder, verdict, model, tables, catalogue, gauges):
     name, quantities_of = verdict.record, rows.quantities(_quantities(folder))
+    drawn = draws.read(folder)
     return {
         "name": name,
         "headline": words.headline(verdict, catalogue) + bench.moved_modulus(verdict, model),
@@ -106,8 +107,8 @@ def _told(folder, verdict, model, tables, catalogue, gauges):
         "grid": rows.grid(tables["where"]),
         "quantities": quantities_of,
         "moved": any(r["nominal"] != r["extended"] for r in quantities_of),
-        "effects": rows.effects(verdict, catalogue, draws.read(folder), gauges),
-        "drawn": words.drawn(draws.read(folder)),
+        "effects": rows.effects(verdict, catalogue, drawn, gauges),
+        "drawn": words.drawn(drawn),
         "tests_nothing": verdict.sees_nothing,
         "odds": rows.odds(verdict, catalogue, tables["candidates"]),
         "nuisances": bench.nuisances(model),
