@@ -55,6 +55,17 @@ def test_a_slip_in_a_trace_is_found_with_its_place(empty, model, fault):
     assert value is None or one.value == pytest.approx(value, rel=0.2)
 
 
+@pytest.mark.parametrize("ratio", [0.3, 0.08])
+def test_a_gauge_is_not_dead_where_the_pulse_is_still_to_come(ratio):
+    """Contacts so soft that the pulse reaches the last gauges after the record's end."""
+    record, _ = made([("dynamic-modulus", {"modulus_ratio": ratio})], seed=3)
+    seen = predicted(together((record,)))
+    assert np.abs(record.signals["v0"].readings["wall"]).max() < 5.0 * 2.0 * SIGMA  # nothing but noise there
+    assert examine(record, seen)[1] == []
+    _, (one,) = examine(altered(record, "g4", lambda _: SIGMA * NOISE, "v1"), seen)
+    assert (one.fault, one.run, one.sensor) == ("gauge-dead", "v1", "g4")
+
+
 def test_a_run_without_impact_is_left_out(empty, model):
     record = empty
     for gauge in ("g4", "g7", "wall"):

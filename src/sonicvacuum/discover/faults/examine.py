@@ -119,6 +119,7 @@ class _Look:
             id: expected.verdict(self.readings[run][id], self.predicted[run][id], g.sigma)
             for id, g in own.items()
         }
+        self._await(run, judged)
         silent = [id for id, word in judged.items() if word == "silent"]
         if own and len(silent) == len(own):
             self.blank.append(run)
@@ -129,6 +130,18 @@ class _Look:
             if word == "inverted":
                 self.seen["gauge-inverted", id][run] = None
                 self.readings[run][id] = -self.readings[run][id]
+
+    def _await(self, run, judged):
+        """Nothing is said of gauges whose pulse comes after the record's end if it is as late as others."""
+        time, model = self.record.signals[run].time_us, self.predicted.get(run, {})
+        delays = [
+            expected.delay(self.readings[run][id], model[id], time)
+            for id, word in judged.items()
+            if word != "silent" and np.abs(model[id]).max() > 0.0
+        ]
+        for id, word in judged.items():
+            if word == "silent" and expected.still_to_come(model[id], time, delays):
+                judged[id] = ""
 
     def _quiet_slips(self, run, gauge):
         """What the stretch before the pulse shows: a slope, a level, the size of the noise."""

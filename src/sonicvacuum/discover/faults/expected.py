@@ -9,6 +9,9 @@ EXPECTED = 20.0
 # ... and missing where the matched filter finds less than this, in standard deviations of its noise (the
 # largest of a thousand shifts of pure noise is about 4) and in shares of what the model has.
 SILENT, SHARE = 7.0, 0.05
+# Of a gauge without a pulse nothing can be said where the model's own pulse, as late as the pulses of the
+# other gauges are, would end after this share of the record.
+WITHIN = 0.95
 # Upside down: the matched filter finds more below than above, by this factor.
 INVERTED = 1.5
 
@@ -32,3 +35,27 @@ def verdict(trace: np.ndarray, model: np.ndarray, sigma: float) -> str:
     own = correlated(model, model) / power
     swing = max(1.0, INVERTED * max(float(-own.min()), 0.0))
     return "inverted" if down > INVERTED * up and down * swing > SHARE and down > up else ""
+
+
+def delay(trace: np.ndarray, model: np.ndarray, time: np.ndarray) -> float:
+    """How many times as late after the impact as in the model a pulse comes, for (T,) readings and instants.
+
+    The shift is that at which the model's reading, either way up, fits the measured one best.
+    """
+    found = np.abs(correlated(trace - np.median(trace), model))
+    shift, interval = int(found.argmax()) - (len(model) - 1), float(time[1] - time[0])
+    return 1.0 + shift * interval / max(float(time[int(np.abs(model).argmax())]), interval)
+
+
+def still_to_come(model: np.ndarray, time: np.ndarray, delays: list[float]) -> bool:
+    """Whether a pulse lies behind the record's end if it is as late as the other gauges' pulses are.
+
+    Args:
+        model: (T,) predicted readings.
+        time: (T,) their instants after the impact.
+        delays: of the gauges that have a pulse, as `delay` has them.
+    """
+    if not delays:
+        return False
+    rises = float(time[int((np.abs(model) > 0.5 * np.abs(model).max()).argmax())])
+    return max(delays) * rises > time[-1] - (1.0 - WITHIN) * (time[-1] - time[0])
