@@ -21,7 +21,7 @@ COMPILE := pip compile --quiet --universal --generate-hashes --no-emit-index-url
 	--custom-compile-command "make lock"
 
 .DELETE_ON_ERROR:
-.PHONY: always all env test browser bare fuzz crash interrupt slurm crate generic reproduce bench nested study slips extras docs lock clean help
+.PHONY: always all env test browser bare fuzz crash interrupt slurm crate generic reproduce bench nested study slips extras laws docs lock clean help
 
 all: env  ## build the environment, then run the whole pipeline
 	$(START) --cores $(CORES)
@@ -117,6 +117,9 @@ slips: env  ## slips of the laboratory in 270 records, searched and counted; tak
 
 extras: env  ## smooth systematic errors, three and four effects: 139 records, searched and counted; takes hours
 	$(START) --cores $(CORES) results/blind_extras/summary.csv
+
+laws: env  ## contact laws from outside the catalogue: 36 records, their free-form laws tried on fresh runs; half an hour
+	$(START) --cores $(CORES) blind_laws
 
 docs: .venv/documented  ## build the documentation into results/docs
 	$(BIN)/mkdocs build --quiet --config-file workflow/mkdocs.yml

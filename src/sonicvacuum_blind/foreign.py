@@ -51,6 +51,21 @@ def _log_rate(plan, place, slope):
     return plan.with_law(log_rate=slope, log_speed=1e-2)
 
 
+def _hardening(plan, place, per_depth):
+    """The contact stiffens with depth: F (1 + h δ), `per_depth` in units of the impact's own depth."""
+    return plan.with_law(hardening=per_depth / (plan.contact_time * plan.speed))
+
+
+def _damped(depth, rate):
+    """Damping β δ^depth |v|^rate sign v, its `share` of the elastic force at the impact's depth and speed."""
+
+    def put(plan, place, share):
+        size = (plan.contact_time * plan.speed) ** depth * plan.speed**rate
+        return plan.with_law(mixed=share * plan.force_scale / size, mixed_depth=depth, mixed_rate=rate)
+
+    return put
+
+
 def _saturating(plan, place, inverse_limit):
     return plan.with_electronics(inverse_limit=inverse_limit)
 
@@ -106,6 +121,10 @@ ENTRIES = (
         0.01,
         0.5,
     ),
+    _entry("hardening", _strength("per_depth"), _hardening, 0.01, 2.0),
+    _entry("depth-damping", _strength("share"), _damped(1.0, 1.0), 0.01, 2.0),
+    _entry("root-rate-damping", _strength("share"), _damped(0.5, 0.5), 0.01, 2.0),
+    _entry("square-rate-damping", _strength("share"), _damped(1.5, 2.0), 0.01, 2.0),
     _entry(
         "baseline-drift",
         _strength("N_per_s", lambda p: p.force_scale / p.contact_time),
@@ -130,4 +149,13 @@ STUDIED = (
     "double-hit",
     "sensor-crosstalk",
     "baseline-drift",
+)
+# Contact laws among them, which a law of no particular form may stand for.
+LAWS = (
+    "adhesion",
+    "log-rate-stiffening",
+    "hardening",
+    "depth-damping",
+    "root-rate-damping",
+    "square-rate-damping",
 )

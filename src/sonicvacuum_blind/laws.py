@@ -4,8 +4,8 @@ All laws stand side by side and a number of zero leaves one out: one row of numb
 (`CONTACT` names the columns) and one for each bead (`BODY`), gathered by `numbers` into one table with a row
 for each name, so that loops over a chain run along memory. Composition, as for the catalogue: loading curve
 (Hertz or a power) × layer correction, replaced by the unloading branch below the largest compression so far,
-plus dissipative and relaxing parts; zero out of contact and never pulling, but for adhesion, which is not in
-the catalogue.
+plus dissipative and relaxing parts; zero out of contact and never pulling, but for adhesion. Not in the
+catalogue are adhesion, stiffening with rate or depth, and damping as any powers of depth and rate.
 """
 
 import math
@@ -41,6 +41,10 @@ CONTACT = (
     "adhesion",  # k in −k δ^{3/4}
     "log_rate",  # b in F (1 + b ln(1 + |v|/v_log))
     "log_speed",  # v_log in m/s
+    "hardening",  # h in F (1 + h δ), 1/m
+    "mixed",  # β in β δ^p |v|^q sign v, SI
+    "mixed_depth",  # p
+    "mixed_rate",  # q
 )
 BODY = ("drag", "friction", "quadratic_drag")  # 1/s, m/s², 1/m
 C = {name: k for k, name in enumerate(CONTACT)}
@@ -59,9 +63,12 @@ _DASHPOT, _VISCO, _TSUJI, _HUNT = C["dashpot"], C["viscoelastic"], C["tsuji"], C
 _GAMMA, _ALPHA = C["power_damping"], C["power_of_rate"]
 _RELAXING, _RELAXATION = C["relaxing"], C["relaxation_rate"]
 _ADHESION, _LOG, _LOG_SPEED = C["adhesion"], C["log_rate"], C["log_speed"]
+_HARDENING, _MIXED, _MIXED_DEPTH, _MIXED_RATE = (
+    C[name] for name in ("hardening", "mixed", "mixed_depth", "mixed_rate")
+)
 
 # Which laws act anywhere in a chain; `plain`: Hertz alone.
-Acting = namedtuple("Acting", "plain power layer residual viscous rate relaxing adhesion drag")
+Acting = namedtuple("Acting", "plain power layer hardening residual viscous rate relaxing adhesion drag")
 
 
 def hertz_rows(stiffness: np.ndarray) -> np.ndarray:
@@ -94,8 +101,8 @@ def acting(table: np.ndarray) -> Acting:
     """Which laws act in a chain with these `numbers`."""
     some = (table != 0.0).any(axis=1)
     power, viscous = bool((table[_EXPONENT] != 1.5).any()), bool(some[_DASHPOT : _HUNT + 1].any())
-    rate = bool(some[_GAMMA] or some[_LOG])
-    others = [power, bool(some[_WIDTH]), bool(some[_RESIDUAL]), viscous, rate]
+    rate = bool(some[_GAMMA] or some[_LOG] or some[_MIXED])
+    others = [power, bool(some[_WIDTH]), bool(some[_HARDENING]), bool(some[_RESIDUAL]), viscous, rate]
     others += [bool(some[_RELAXING]), bool(some[_ADHESION])]
     return Acting(not any(others), *others, bool(some[DRAG:].any()))
 
@@ -116,6 +123,11 @@ def load(n, table, uses, room, depth, spring):
                 room[RISE, c] = room[spring, c] * table[_EXPONENT, c] / delta
     if uses.layer:
         _layer(n, table, room, spring)
+    if uses.hardening:
+        for c in range(n):
+            harder = 1.0 + table[_HARDENING, c] * room[depth, c]
+            room[RISE, c] = room[RISE, c] * harder + room[spring, c] * table[_HARDENING, c]
+            room[spring, c] *= harder
 
 
 @njit(nogil=True, error_model="numpy")
@@ -204,7 +216,7 @@ def _damp(n, y, at, table, room):
 
 @njit(nogil=True, error_model="numpy")
 def _resist(n, y, at, table, room):
-    """Dissipative part as a power of the approach rate; stiffening with its logarithm."""
+    """Dissipative part as a power of rate, or of depth and rate; stiffening with the rate's logarithm."""
     for c in range(n):
         rate = y[at, n + 1 + c] - y[at, n + 2 + c]
         if room[DELTA, c] > 0.0 and rate != 0.0:
@@ -213,6 +225,9 @@ def _resist(n, y, at, table, room):
             if table[_LOG, c] != 0.0:
                 stiffer = table[_LOG, c] * math.log1p(abs(rate) / table[_LOG_SPEED, c])
                 room[FORCE, c + 1] += room[SPRING, c] * stiffer
+            if table[_MIXED, c] != 0.0:
+                size = room[DELTA, c] ** table[_MIXED_DEPTH, c] * abs(rate) ** table[_MIXED_RATE, c]
+                room[FORCE, c + 1] += table[_MIXED, c] * math.copysign(size, rate)
 
 
 @njit(nogil=True, error_model="numpy")
@@ -267,7 +282,7 @@ def compression_at_rest(weight: np.ndarray, rows: np.ndarray) -> np.ndarray:
     if not (np.any(weight > 0.0) or np.any(rows[:, _ADHESION])):
         return np.zeros(len(weight))
     table, uses, room = _alone(rows)
-    if not (uses.power or uses.layer or uses.adhesion):
+    if not (uses.power or uses.layer or uses.hardening or uses.adhesion):
         return (np.maximum(weight, 0.0) / rows[:, _HERTZ]) ** (2.0 / 3.0)
     return _at_once(_sink, weight, table, uses, room)
 

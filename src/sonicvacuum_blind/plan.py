@@ -166,6 +166,10 @@ def contact_rows(plan: Plan) -> np.ndarray:
         "relaxation_rate",
         "adhesion",
         "log_rate",
+        "hardening",
+        "mixed",
+        "mixed_depth",
+        "mixed_rate",
     ):
         rows[:, C[name]] = law.get(name, 0.0)
     rows[:, C["power_of_rate"]] = law.get("power_of_rate", 1.0)

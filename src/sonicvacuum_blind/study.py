@@ -22,7 +22,7 @@ TAG = "study-2"
 MENDED = ("9b5bd88", "912b466")
 BOTH = 75
 BROKEN = {"full-0870": 6, "full-1242": 42, "full-1552": 16}
-SEEDS = {"small": 20061, "full": 88_822_325, "training": 20063}
+SEEDS = {"small": 20061, "full": 88_822_325, "training": 20063, "laws": 20067}
 TRAINING = 300
 # Single effects in traces of several speeds: d′ → records of each effect.
 STRENGTHS = {3.0: 4, 5.0: 5, 7.5: 5, 10.0: 5, 20.0: 5, 50.0: 3, 150.0: 2, 500.0: 2}
@@ -68,7 +68,7 @@ BALL = (
 
 
 def cases(study: str) -> list[Spec]:
-    """The cases of a study, "small", "full" or "training".
+    """The cases of a study, "small", "full", "training" or "laws".
 
     The training study takes cases evenly out of a list like the full one, with seeds of its own: what is
     calibrated on it has seen nothing of the full study.
@@ -79,7 +79,7 @@ def cases(study: str) -> list[Spec]:
     if study not in SEEDS:
         raise ValueError(f"study {study!r} is not one of {', '.join(SEEDS)}")
     random = np.random.default_rng(np.random.SeedSequence(SEEDS[study]))
-    rows = list(_small() if study == "small" else _full(random))
+    rows = list({"small": _small, "laws": _laws}.get(study, lambda: _full(random))())
     if study == "training":
         rows = [rows[(2 * k + 1) * len(rows) // (2 * TRAINING)] for k in range(TRAINING)]
     # Folder names must not follow the order of kinds.
@@ -115,6 +115,14 @@ def _small():
         ("mass-defect", "tsuji"),
     ):
         yield "pair", "traces", "white", pair, 20.0
+
+
+def _laws():
+    """Contact laws from outside the catalogue, each at three strengths."""
+    for name in foreign.LAWS:
+        for strength in (30.0, 100.0, 300.0):
+            for _ in range(2):
+                yield "foreign", "traces", "white", (name,), strength
 
 
 def _full(random):

@@ -16,7 +16,7 @@ from sonicvacuum.files import InputError
 from sonicvacuum.laboratory.specimen import GRAVITY
 from sonicvacuum_blind import followup, study
 from sonicvacuum_blind.followup import ambiguous, follow, offers, random_change, under
-from sonicvacuum_blind.foretold import foretold
+from sonicvacuum_blind.foretold import foretold, summary
 from sonicvacuum_blind.hide import TOLERANCE, Spec, hide, laboratory
 from sonicvacuum_blind.prediction import predict
 from sonicvacuum_blind.score import Line, read_table
@@ -218,3 +218,26 @@ def test_fresh_runs_are_held_against_both_models(tmp_path):
     assert lines["single, model found, names exact, median"].value == pytest.approx(1.1)
     with pytest.raises(InputError, match="is empty"):
         foretold(tmp_path / "truth", tmp_path / "found", tmp_path / "truth")
+
+
+def test_laws_of_no_particular_form_are_told_with_what_they_close(tmp_path):
+    """Three records: a law kept that closes nine tenths, one that closes half, and none."""
+    near = [{"effect": "tsuji", "distance": 0.2}, {"effect": "linear-dashpot", "distance": 0.31}]
+    for id, after, law in (("a", 2.0, True), ("b", 6.0, True), ("c", 11.0, False)):
+        told = {"named": ["unknown"]} | ({"law": {"nearest": near}} if law else {})
+        for name, content in (
+            ("truth/truth", {"kind": "foreign", "effects": ["depth-damping"], "d_prime": 30.0}),
+            ("found/verdict", told),
+            ("fresh/compared", {"data": 100, "gap": {"before": 11.0, "after": after}}),
+        ):
+            folder, stem = name.split("/")
+            (tmp_path / folder / id).mkdir(parents=True)
+            (tmp_path / folder / id / f"{stem}.json").write_text(json.dumps(content))
+    rows = foretold(tmp_path / "truth", tmp_path / "found", tmp_path / "fresh")
+    assert [r.law for r in rows] == [1, 1, 0]
+    assert rows[0].nearest == "tsuji 0.20 linear-dashpot 0.31"
+    lines = {(one.measure, one.group): one.value for one in summary(rows)}
+    assert lines["free law kept", "foreign"] == pytest.approx(2 / 3)
+    closed = "gap closed on fresh runs"
+    assert lines[closed, "foreign, free law, gaps added up"] == pytest.approx(0.7)
+    assert lines[closed, "foreign, depth-damping, median"] == pytest.approx(0.5)

@@ -6,7 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.integrate import RK45
-from scipy.special import gamma
+from scipy.optimize import brentq
+from scipy.special import beta, gamma
 
 from sonicvacuum.laboratory.specimen import GRAVITY
 from sonicvacuum_blind import stepper
@@ -113,6 +114,26 @@ def test_hunt_crossley_restitution_falls_in_proportion_to_speed():
     """1 − e = c v for small c v (Hunt & Crossley 1975)."""
     loss = 1.0 - bounce(ball(0.5, hunt_crossley=4e-3))["restitution"]
     assert loss == pytest.approx(2e-3, rel=5e-3)  # next order c² v²
+
+
+def test_damping_in_proportion_to_depth_and_rate_loses_its_work():
+    """1 − e = 2 β δ_m² ∫ x √(1 − x^{5/2}) dx / (m v), the work along the elastic path, for small β."""
+    plan, damping = ball(0.3), 1e5
+    depth = (1.25 * plan.striker_mass / plan.stiffness()[0] * 0.3**2) ** 0.4
+    expected = 2.0 * damping * depth**2 * 0.4 * beta(0.8, 1.5) / (plan.striker_mass * 0.3)
+    loss = 1.0 - bounce(ball(0.3, mixed=damping, mixed_depth=1.0, mixed_rate=1.0))["restitution"]
+    assert loss == pytest.approx(expected, rel=2.0 * expected)  # the next order is as small as the loss
+
+
+def test_a_contact_that_hardens_stores_the_striker_s_energy():
+    """½ m v² = K (2/5 δ^{5/2} + 2/7 h δ^{7/2}) at the turning point, and nothing is lost."""
+    plan = ball(0.3, hardening=2e5)
+    setting, energy = problem(plan), 0.5 * plan.striker_mass * 0.3**2
+    stiffness = setting.rows[0, 0]
+    deepest = brentq(lambda d: stiffness * (0.4 * d**2.5 + 2.0 / 7.0 * 2e5 * d**3.5) - energy, 0.0, 1e-3)
+    peak = integrate(setting, np.linspace(0.0, 3e-4, 20000), [0]).force.max()
+    assert peak == pytest.approx(stiffness * deepest**1.5 * (1.0 + 2e5 * deepest), rel=1e-5)  # samples
+    assert bounce(plan)["restitution"] == pytest.approx(1.0, abs=1e-6)
 
 
 def test_relaxing_contact_between_its_limits_is_neither():

@@ -6,7 +6,7 @@ folders that discover is given. Simpler rules see the same cases; two of them ne
 
 
 wildcard_constraints:
-    study="small|training|full",
+    study="small|training|laws|full",
     batch="[0-9]+",
     picture="|".join(PICTURES),
     choice="|".join(CHOICES),
@@ -360,3 +360,28 @@ rule blind_fresh:
 rule blind_resolved:
     input:
         "results/blind/full/resolved.csv",
+
+
+# Contact laws from outside the catalogue: what models with a law of no particular form foretell of runs they never had.
+rule blind_laws:
+    input:
+        "results/blind/laws/fresh.csv",
+
+
+# Run on purpose, as publish_study is.
+rule publish_laws:
+    input:
+        rows="results/blind/laws/fresh_rows.csv",
+        summary="results/blind/laws/fresh.csv",
+    log:
+        "results/logs/publish_laws.log",
+    localrule: True
+    conda:
+        ENVIRONMENT
+    params:
+        keep=home("workflow/resources/reference/laws"),
+    message:
+        "Keeping the tables of laws outside the catalogue in git"
+    shell:
+        "mkdir -p {params.keep:q} && cp {input.rows:q} {params.keep:q}/records.csv"
+        " && cp {input.summary:q} {params.keep:q}/summary.csv > {log:q} 2>&1"

@@ -8,7 +8,7 @@ from sonicvacuum.cli import existing
 from sonicvacuum.cli.helped import FOLDER, PRESENT
 from sonicvacuum.files import InputError
 
-STUDIES = click.Choice(["small", "full", "training"])
+STUDIES = click.Choice(["small", "full", "training", "laws"])
 
 
 def batch_of(text: str) -> tuple[int, int]:
