@@ -131,13 +131,15 @@ def test_a_misfit_without_a_name_is_called_unknown_below_one_in_a_thousand(p, su
 # --- limits
 
 
-def limit(effect, parameter, scale, two_sided, setup, seed=4):
+def limit(effect, parameter, scale, two_sided, setup, elsewhere=(), seed=4):
     """The limit of one effect, with estimate and error of its strength."""
     rng = np.random.default_rng(np.random.SeedSequence(seed))
     column, data = rng.normal(size=(1, 60)), rng.normal(size=60)
     data += 2.0 * column[0]
     (one,) = degenerate.limits(
-        screened(column, data, (Direction(effect, parameter, two_sided=two_sided, unit=scale),)), setup
+        screened(column, data, (Direction(effect, parameter, two_sided=two_sided, unit=scale),)),
+        setup,
+        elsewhere={(effect, parameter): elsewhere},
     )
     size = np.linalg.norm(column)
     return one, float(column[0] @ data / size**2), 1.0 / size
@@ -155,6 +157,19 @@ def test_a_two_sided_limit_is_the_gaussian_one(setup):
     one, estimate, sigma = limit("dynamic-modulus", "modulus_ratio", 0.5, True, setup)
     expected = 1.0 + 0.5 * (estimate + stats.norm.ppf(0.975) * sigma)
     assert one.value == pytest.approx(expected, rel=1e-4)  # 1.96 has three digits
+
+
+def test_a_limit_holds_over_all_explanations(setup):
+    """Beyond it lie 5 % of what the final model and two explanations of 30 and 2 % say together."""
+    others = [degenerate.Elsewhere(0.3, 900.0, 40.0), degenerate.Elsewhere(0.02, 4000.0, 90.0)]
+    one, estimate, sigma = limit("viscous-drag", "rate_per_s", 200.0, False, setup, others)
+    parts = [(0.68, 200.0 * estimate, 200.0 * sigma), (0.3, 900.0, 40.0), (0.02, 4000.0, 90.0)]
+    beyond = sum(w * stats.norm.sf(one.value, s, e) for w, s, e in parts)
+    assert beyond == pytest.approx(0.05, rel=1e-3)  # 1.645 has four digits
+    assert 900.0 < one.value < 1000.0
+    improbable, _, _ = limit("viscous-drag", "rate_per_s", 200.0, False, setup, others[1:])
+    alone, _, _ = limit("viscous-drag", "rate_per_s", 200.0, False, setup)
+    assert alone.value < improbable.value < alone.value + 0.5 * 200.0 * sigma
 
 
 # --- runs held out

@@ -10,7 +10,7 @@ from msgspec import UNSET
 
 from sonicvacuum import stages
 from sonicvacuum.blas import one_thread
-from sonicvacuum.discover import draws, given, law, next_experiment, quantities, verdict
+from sonicvacuum.discover import draws, given, law, next_experiment, quantities, upper, verdict
 from sonicvacuum.discover.draws import Draws
 from sonicvacuum.discover.faults import competition
 from sonicvacuum.discover.fit import goodness, heldout
@@ -22,7 +22,6 @@ from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.nuisances import exact
 from sonicvacuum.discover.posterior import posterior
 from sonicvacuum.discover.rounds import Investigation
-from sonicvacuum.discover.search import directions, screen, singles
 from sonicvacuum.discover.search.free_law import FreeLaw, free_law
 from sonicvacuum.discover.verdict import Verdict
 from sonicvacuum.effects import CATALOGUE, Catalogue
@@ -100,7 +99,7 @@ def discover(
     after = locate.locate(model, final) if final is not found.null else places
     clock.mark("locate")
     fits = [goodness.goodness(forward, found.null), goodness.goodness(model, final)]
-    limits, wider = _limits(found, fits[1])
+    limits, untestable, wider = upper.limits(found, fits[1])
     alike = degenerate.confusable(found.named, found.candidates, found.combinations, found.alike)
     before = heldout.held_out(found.null, found.sizes)
     left = (
@@ -124,7 +123,7 @@ def discover(
         gap=verdict.gaps(found.null, final, found.sizes, before, left),
         where=verdict.where(places),
         upper_limits=verdict.upper_limits(limits),
-        not_testable=sorted({one.effect for one in limits if not one.testable}),
+        not_testable=untestable,
         next_experiment=proposal,
         reasons=[
             *found.reasons,
@@ -171,26 +170,6 @@ def _doubts(found: Investigation, record: Record) -> list[str]:
         except validity.MeaninglessError as error:
             doubts.append(str(error))
     return list(dict.fromkeys(doubts))
-
-
-def _limits(found: Investigation, fit: goodness.Goodness) -> tuple[list[degenerate.Limit], float]:
-    """Upper limits of all effects not named, and the factor on their errors.
-
-    What is smooth is in the noise already; for the rest errors grow with the residual (Birge, Phys. Rev. 40,
-    207, 1932).
-    """
-    forward, final = found.forward, found.final
-    if found.counted is not None:
-        forward, final = found.counted.forward, found.counted.final
-    setup = singles.setup_of(forward)
-    if final is found.null:
-        scores = found.scores
-    else:
-        present = (*final.hypothesis.ids, *forward.experiment.excluded)
-        scores = screen.screen(forward, final, directions.catalogue(setup, present))
-    excess = float(final.normal.chi2.sum() / found.sizes.sum())
-    wider = max(1.0, excess**0.5) if fit.failed else 1.0
-    return degenerate.limits(scores, setup, wider), wider
 
 
 class Clock:

@@ -122,6 +122,7 @@ def _told(folder, verdict, model, tables, catalogue, gauges):
         "runs": [r for r in tables["gap"] if not r["run"].startswith("round ")],
         "added": bool(words.effects_of(verdict)),
         "limits": [rows.limit(r, catalogue) for r in tables["limits"] if r["testable"] == "1"],
+        "unexplained": "unknown" in verdict.named,
         "not_testable": [words.plain(n, catalogue) for n in verdict.not_testable if n not in verdict.named],
         "experiment": ""
         if words.settled(verdict)

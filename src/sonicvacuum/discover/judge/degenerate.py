@@ -1,18 +1,19 @@
 """What this data cannot tell from what was named, and how large every other effect could be.
 
 Two effects are confusable where their evidences differ by less than a χ² of 9 would make (three standard
-deviations). Limits come from the screen at the final model: the largest strength, over places and shapes,
-that 95 % confidence leaves; where that lies beyond the bounds of the search the effect is not testable with
-this data.
+deviations). Limits come from the screen at the final model, the largest strength over places and shapes, and
+from every other explanation that has the effect, each with its probability: beyond a limit lie 5 % of all.
+Where it lies beyond the bounds of the search the effect is not testable with this data.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from sonicvacuum.discover import policy
+from sonicvacuum.discover.fit import tails
 from sonicvacuum.discover.fit.evidence import Candidate, Combination
 from sonicvacuum.discover.search.screen import Screen
 from sonicvacuum.effects import Setup
@@ -20,6 +21,8 @@ from sonicvacuum.effects import Setup
 # Twice the difference of log evidences, as a χ².
 ALIKE = 9.0
 _ONE_SIDED, _TWO_SIDED = policy.NINETY, 1.96
+# A limit between two others to a millionth of their distance.
+_HALVINGS = 20
 
 
 @dataclass(frozen=True)
@@ -65,24 +68,75 @@ def confusable(
     return [members for members in sets.values() if len(members) > 1]
 
 
-def limits(scores: Screen, setup: Setup, wider: float = 1.0) -> list[Limit]:
+@dataclass(frozen=True)
+class Elsewhere:
+    """What an explanation other than the final model says of a parameter.
+
+    Attributes:
+        probability: of the explanation.
+        value, sigma: of the parameter, fitted.
+    """
+
+    probability: float
+    value: float
+    sigma: float
+
+
+def limits(
+    scores: Screen,
+    setup: Setup,
+    wider: float = 1.0,
+    elsewhere: Mapping[tuple[str, str], Sequence[Elsewhere]] | None = None,
+) -> list[Limit]:
     """One limit for every strength that was screened.
 
-    Errors are `wider` times the noise's where a misfit is left that nothing counts as noise.
+    Args:
+        scores: at the final model.
+        setup: of the record.
+        wider: factor on the errors where a misfit is left that nothing counts as noise.
+        elsewhere: (effect, parameter) → what other explanations say of it.
     """
+    others = elsewhere or {}
     worst: dict[tuple[str, str], tuple[float, float, int]] = {}
     for k, d in enumerate(scores.directions):
         length = scores.length[k]
         error = wider / length if length > 0.0 else np.inf
         estimate = scores.strength[k]
-        reach = abs(estimate) + (_TWO_SIDED if d.two_sided else _ONE_SIDED) * error
         key = (d.effect, d.strength)
+        reach = _reach(abs(estimate), error, d, others.get(key, ()), setup)
         if key not in worst or reach > worst[key][0]:
             worst[key] = (reach, estimate, k)
     return [
         _limit(name, reach, estimate, scores.directions[k], setup)
         for (name, _), (reach, estimate, k) in worst.items()
     ]
+
+
+def _reach(strength, error, direction, others, setup):
+    """The strength that is exceeded with 5 %, of one sign or of both, over all explanations."""
+    times = _TWO_SIDED if direction.two_sided else _ONE_SIDED
+    own = strength + times * error
+    seen = [(o.probability, *_strength(o, direction, setup)) for o in others]
+    if not seen or not np.isfinite(own):
+        return own
+    rest, tail = max(0.0, 1.0 - sum(w for w, _, _ in seen)), float(tails.normal(times))
+    parts = [(rest, strength, error), *((w, s, e) for w, s, e in seen if e > 0.0)]
+    w, s, e = np.array(parts).T
+    low, high = own, max(own, float((s + times * e).max()))
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        more = float(w @ tails.normal((middle - s) / e)) > tail
+        low, high = (middle, high) if more else (low, middle)
+    return high
+
+
+def _strength(other, direction, setup):
+    """Strength and its error, in the units of the screen, of a parameter's value and error."""
+    p = setup.catalogue.effect(direction.effect).parameter(direction.strength)
+    off = np.ravel(p.off_in(setup))[0]
+    if np.isinf(off):
+        return p.scale / other.value, p.scale * other.sigma / other.value**2
+    return abs(other.value - off) / p.scale, other.sigma / p.scale
 
 
 def _limit(name, reach, estimate, direction, setup):
