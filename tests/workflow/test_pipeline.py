@@ -11,6 +11,7 @@ import re
 import shutil
 import subprocess
 import sys
+from collections import Counter
 
 import pytest
 from ball import RECORD
@@ -51,11 +52,17 @@ cases:
 """
 )
 TARGET = "results/metrics.csv"
-ALL = {"discover": 1, "card": 4, "simulate": 4, "observe": 4, "metrics": 1}
+# Cards are made in three batches: two variants of one case, the other case, what takes the model of a record.
+ALL = {"discover": 1, "card": 3, "simulate": 3, "observe": 3, "metrics": 1}
 # What follows from the record alone.
 FOUND = {"discover": 1, "card": 1, "simulate": 1, "observe": 1, "metrics": 1}
 PAGE = "results/discover/ball/index.html"
 ODD_PAGE = f"results/discover/{ODD}/index.html"
+
+
+def without_batch(rule):
+    """Name of a rule but for the number of its batch of cards."""
+    return re.sub(r"_\d+$", "", rule)
 
 
 @pytest.fixture(scope="session")
@@ -73,7 +80,10 @@ def planned(snakemake):
         done = snakemake(folder, "--dry-run", target)
         assert done.returncode == 0, done.said
         rows = re.findall(r"^(\w+)\s+(\d+)$", done.said, flags=re.MULTILINE)
-        return {rule: int(count) for rule, count in rows if rule != "total"}
+        jobs = Counter()
+        for rule, count in dict(rows).items():  # a dry run tells its jobs twice
+            jobs[without_batch(rule)] += int(count)
+        return {rule: count for rule, count in jobs.items() if rule != "total"}
 
     return plan
 
@@ -139,16 +149,16 @@ def test_touching_without_changing_plans_nothing(project, planned):
 def test_an_edit_above_the_simulation_leaves_the_simulation_alone(project, planned):
     with open(project / "src/sonicvacuum/observe/pulse.py", "a") as stream:
         stream.write("# edited\n")
-    assert planned(project) == FOUND | {"observe": 4}
+    assert planned(project) == FOUND | {"observe": 3}
 
 
 def test_an_edit_of_the_stepper_replans_all_that_follows(project, planned):
     with open(project / "src/sonicvacuum/physics/kernel.py", "a") as stream:
         stream.write("# edited\n")
-    assert planned(project) == FOUND | {"card": 4, "simulate": 4, "observe": 4}
+    assert planned(project) == FOUND | {"card": 3, "simulate": 3, "observe": 3}
 
 
-def test_changing_one_variant_reruns_that_card_alone(project, planned):
+def test_changing_one_variant_reruns_its_case_alone(project, planned):
     (project / "config.yaml").write_text(CONFIG.replace("15.0", "14.0"))
     assert planned(project) == {"card": 1, "simulate": 1, "observe": 1, "metrics": 1}
 
@@ -227,7 +237,7 @@ def test_each_folder_of_products_says_where_they_come_from(project, pytestconfig
         *found[0]["given"].items(),
     ]:
         assert hashlib.sha256((project / path).read_bytes()).hexdigest() == digest, path
-    assert {made["rule"] for made in files.values()} == {*ALL, "record_page"}
+    assert {without_batch(made["rule"]) for made in files.values()} == {*ALL, "record_page"}
     assert all(re.fullmatch("[0-9a-f]{64}", made["sources"]) for made in files.values())
     assert files[TARGET]["command"].startswith("sonicvacuum paper metrics results/metrics/coated.soft.csv")
     assert found[1]["files"][PAGE.replace("index.html", "verdict.json")]["inputs"].keys() == {

@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 CONFIG = SimpleNamespace(cases={}, ledger={}, records={})
 CARDS = FIGURES = OWN = STUDY = ANIMATIONS = ()
+CARD_BATCHES = {}
 STUDY_TABLES = ""
 
 

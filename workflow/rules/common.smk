@@ -63,6 +63,11 @@ def repeated(option, values):
     return [word for value in values for word in (option, str(value))]
 
 
+def place(wildcards, output):
+    """Where a verb writes what it makes of several things: one file, or the folder of several."""
+    return output[0] if len(output) == 1 else Path(output[0]).parent
+
+
 def record_files(wildcards):
     """What discover reads of a record."""
     folder = Path(RECORDS[wildcards.record])

@@ -40,17 +40,33 @@ def text(*parts):
     return msgspec.json.encode(parts).decode()
 
 
-def resolved(wildcards):
-    """Text of a card: it reruns the rule of this card alone when the configuration changes."""
-    case, variant = wildcards.card.split(".")
-    parts = configuration.card(CONFIG, case, variant), configuration.model(CONFIG, case, variant)
-    return text(*parts[: 1 + (parts[1] is not None)])
+def resolved(cards):
+    """Text of some cards: it reruns the rules of these alone when the configuration changes."""
+    parts = [
+        part(CONFIG, *name.split(".")) for name in cards for part in (configuration.card, configuration.model)
+    ]
+    return text(*parts)
 
 
-def model_of(wildcards):
+def model_of(card):
     """The model that a card takes, made from a record: its file, or none."""
-    wanted = configuration.model(CONFIG, *wildcards.card.split("."))
+    wanted = configuration.model(CONFIG, *card.split("."))
     return [f"results/discover/{wanted.record}/model.json"] if wanted else []
+
+
+def batched():
+    """Name → cards that one process makes, since starting one takes longer than most cards do.
+
+    Those of a case, and those that wait for the model of a record.
+    """
+    found = {}
+    for card in CARDS:
+        wanted = configuration.model(CONFIG, *card.split("."))
+        found.setdefault(f"model.{wanted.record}" if wanted else card.split(".")[0], []).append(card)
+    return found
+
+
+CARD_BATCHES = batched()
 
 
 def drawn(figure):

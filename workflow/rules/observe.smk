@@ -1,26 +1,29 @@
 """Gauge readings and metrics of each card, and all metrics in one table."""
 
+for number, (batch, names) in enumerate(CARD_BATCHES.items()):
 
-rule observe:
-    input:
-        card="results/cards/{card}.json",
-        history="results/histories/{card}.npz",
-    output:
-        signals="results/signals/{card}.csv",
-        metrics="results/metrics/{card}.csv",
-    log:
-        "results/logs/observe/{card}.log",
-    benchmark:
-        "results/benchmarks/observe/{card}.tsv"
-    conda:
-        ENVIRONMENT
-    params:
-        sources=sources("paper observe"),
-    message:
-        "Reading the gauges of {wildcards.card}"
-    shell:
-        "sonicvacuum paper observe {input.card:q} {input.history:q} --signals {output.signals:q}"
-        " --metrics {output.metrics:q} 2> {log:q}"
+    rule:
+        name:
+            f"observe_{number}"
+        input:
+            cards=expand("results/cards/{card}.json", card=names),
+            histories=expand("results/histories/{card}.npz", card=names),
+        output:
+            signals=expand("results/signals/{card}.csv", card=names),
+            metrics=expand("results/metrics/{card}.csv", card=names),
+        log:
+            f"results/logs/observe/{batch}.log",
+        benchmark:
+            f"results/benchmarks/observe/{batch}.tsv"
+        conda:
+            ENVIRONMENT
+        params:
+            sources=sources("paper observe"),
+        message:
+            f"Reading the gauges of {batch}"
+        shell:
+            "sonicvacuum paper observe {input.cards:q} --histories results/histories --signals results/signals"
+            " --metrics results/metrics 2> {log:q}"
 
 
 rule metrics:

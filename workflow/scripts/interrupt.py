@@ -75,7 +75,9 @@ def commands(finished: Path) -> dict[str, str]:
         for made in json.loads(path.read_text(encoding="utf-8"))["files"].values():
             line = re.sub(r"\s2?> .*$", "", made.get("command") or "")
             if line.startswith("sonicvacuum "):
-                found.setdefault(made["rule"], line.removeprefix("sonicvacuum "))
+                # Rules that differ in a number differ in their cards alone.
+                rule = re.sub(r"_\d+$", "", made["rule"])
+                found.setdefault(rule, line.removeprefix("sonicvacuum "))
     return found | OTHERS
 
 

@@ -5,7 +5,7 @@ import json
 import click
 
 from sonicvacuum.cli import existing
-from sonicvacuum.cli.helped import WRITTEN, verb
+from sonicvacuum.cli.helped import PLACE, WRITTEN, places_of, verb
 from sonicvacuum.cli.own_effects import catalogue, own_effects
 from sonicvacuum.files import InputError, likely, replacing
 from sonicvacuum.outputs import check_apart
@@ -13,24 +13,50 @@ from sonicvacuum.outputs import check_apart
 
 @verb(
     "sonicvacuum card --case fig3a --variant matched --out card.json",
+    "sonicvacuum card --case fig3a.nominal --case fig3a.matched --out cards",
     short_help="Resolve a case of config.yaml into a card (JSON, SI units).",
 )
 @click.option("--config", "path", default="config.yaml", show_default=True, type=existing())
-@click.option("--case", help="Name of the case; without it, all cards are listed.")
-@click.option("--variant", default="nominal", show_default=True)
-@click.option("--model", type=existing(), help="model.json of discover, where the case asks for one.")
-@click.option("--out", type=WRITTEN, help="File to write; default: standard output.")
+@click.option(
+    "--case",
+    "cases",
+    multiple=True,
+    help="A case, or CASE.VARIANT, once or more; without it, all are listed.",
+)
+@click.option("--variant", default="nominal", show_default=True, help="Of cases that are given without one.")
+@click.option("--model", type=existing(), help="model.json of discover, where the cases ask for one.")
+@click.option("--out", type=PLACE, help="File to write, of several the folder; default: standard output.")
 @own_effects
-def card(path, case, variant, model, out, own):
-    """Resolve one case of the configuration into a card (JSON, SI units)."""
+def card(path, cases, variant, model, out, own):
+    """Resolve cases of the configuration into cards (JSON, SI units).
+
+    One is written to OUT, several to OUT/CASE.VARIANT.json. All are resolved before the first is written.
+    """
+    from sonicvacuum import config as configuration
+
+    config = configuration.read(path)
+    if not cases:
+        click.echo("\n".join(configuration.card_names(config)))
+        return
+    names = [case if "." in case else f"{case}.{variant}" for case in cases]
+    if len(names) > 1 and out is None:
+        raise InputError("several cases: give --out with the folder to write their cards to")
+    places = places_of(out, names, ".json") if out else []
+    check_apart(places, [path, model, *own])
+    texts = [_text(config, path, name, model, own) for name in names]
+    if not places:
+        click.echo(texts[0], nl=False)
+    for place, text in zip(places, texts, strict=bool(places)):
+        with replacing(place, "wb") as stream:
+            stream.write(text)
+
+
+def _text(config, path, name, model, own) -> bytes:
+    """The card of a case and variant, as it is written."""
     from sonicvacuum import config as configuration
     from sonicvacuum.card import dump
 
-    check_apart([out], [path, model, *own])
-    config = configuration.read(path)
-    if case is None:
-        click.echo("\n".join(configuration.card_names(config)))
-        return
+    case, _, variant = name.partition(".")
     resolved = configuration.card(config, case, variant, path)
     wanted = configuration.model(config, case, variant)
     if (wanted is None) != (model is None):
@@ -43,12 +69,7 @@ def card(path, case, variant, model, out, own):
         from sonicvacuum.simulation import set_up
 
         set_up(resolved, catalogue=catalogue(own))  # an effect that does not exist is best known now
-    text = dump(resolved)
-    if out is None:
-        click.echo(text, nl=False)
-        return
-    with replacing(out, "wb") as stream:
-        stream.write(text)
+    return dump(resolved)
 
 
 def _cure(wanted):

@@ -1,11 +1,13 @@
 """What verbs share: examples as they are typed, exit codes, completion, types of paths; the lock in use."""
 
 import hashlib
+from collections.abc import Sequence
 from pathlib import Path
 
 import click
 
-from sonicvacuum.files import check_written
+from sonicvacuum.files import InputError, check_written
+from sonicvacuum.outputs import check_folder
 
 BEGINNING = """\b
 With files of a recorder:
@@ -33,10 +35,12 @@ class _Written(click.Path):
         return path
 
 
-# Paths: a file to write, a folder to write, a folder to read; a file to read is `sonicvacuum.cli.existing`.
+# Paths: a file to write, a folder to write, a folder to read, a file to write or the folder for
+# several; a file to read is `sonicvacuum.cli.existing`.
 WRITTEN = _Written(dir_okay=False)
 FOLDER = click.Path(file_okay=False)
 PRESENT = click.Path(exists=True, file_okay=False)
+PLACE = click.Path()
 # Digits of a SHA-256 that tell locks apart.
 DIGITS = 12
 
@@ -49,6 +53,26 @@ def examples(*lines: str) -> str:
 def verb(*lines: str, **settings):
     """Decorator that makes a verb of a function, its examples at the end of its help."""
     return click.command(epilog=examples(*lines), **settings)
+
+
+def places_of(out, names: Sequence[str], suffix: str) -> list[Path]:
+    """Where a verb writes what it makes of some things: of one to `out`, of several to `out`/NAME.suffix.
+
+    Raises:
+        InputError: where two have one name, or that place cannot be written.
+    """
+    if len(names) == 1:
+        check_written(out)
+        return [Path(out)]
+    return places_in(out, names, suffix)
+
+
+def places_in(folder, names: Sequence[str], suffix: str) -> list[Path]:
+    """Files of some names in a folder; InputError where two are one, or the folder cannot be written."""
+    if twice := [name for k, name in enumerate(names) if name in names[:k]]:
+        raise InputError(f"{twice[0]}: given twice; each is written to a file of its name: give it once")
+    check_folder(folder)
+    return [Path(folder, name + suffix) for name in names]
 
 
 def locked() -> str:

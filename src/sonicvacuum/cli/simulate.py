@@ -1,10 +1,12 @@
-"""`sonicvacuum simulate`: one card, integrated at the chosen step and at half of it."""
+"""`sonicvacuum simulate`: cards, integrated at the chosen step and at half of it."""
+
+from pathlib import Path
 
 import click
 
 from sonicvacuum.cli import existing, progress
 from sonicvacuum.cli.cards import read_card
-from sonicvacuum.cli.helped import WRITTEN, verb
+from sonicvacuum.cli.helped import PLACE, places_of, verb
 from sonicvacuum.cli.own_effects import catalogue, own_effects
 from sonicvacuum.outputs import check_apart
 
@@ -14,8 +16,11 @@ LONG = 2e9
 LARGE = 1 << 30  # bytes
 
 
-@verb("sonicvacuum simulate card.json --out history.npz")
-@click.argument("card", type=existing())
+@verb(
+    "sonicvacuum simulate card.json --out history.npz",
+    "sonicvacuum simulate cards/*.json --out histories",
+)
+@click.argument("cards", nargs=-1, required=True, type=existing())
 @click.option(
     "--model",
     type=existing(),
@@ -24,24 +29,34 @@ LARGE = 1 << 30  # bytes
 @click.option(
     "--no-limits", is_flag=True, help="Simulate even what seems to need more than a computer gives."
 )
-@click.option("--out", required=True, type=WRITTEN, help="History (.npz) to write.")
+@click.option(
+    "--out", required=True, type=PLACE, help="History (.npz) to write, of several cards the folder."
+)
 @own_effects
-def simulate(card, model, no_limits, out, own):
-    """Integrate the chains of a CARD and keep the contact forces."""
+def simulate(cards, model, no_limits, out, own):
+    """Integrate the chains of CARDS and keep the contact forces.
+
+    The history of one card is written to OUT, those of several to OUT/NAME.npz, a card being NAME.json.
+    All cards are read before the first is simulated.
+    """
     from sonicvacuum import simulation
 
-    check_apart([out], [card, model, *own])
-    resolved, known = read_card(card), catalogue(own)
+    places = places_of(out, [Path(path).stem for path in cards], ".npz")
+    check_apart(places, [*cards, model, *own])
+    known = catalogue(own)
+    resolved = [read_card(path) for path in cards]
     if model:
         from sonicvacuum.cli.model import with_model
 
-        resolved = with_model(resolved, model, known)
-    _tell_beforehand(resolved, known, not no_limits)
-    with progress():
-        simulated = simulation.simulate(resolved, known, limits=not no_limits)
-    for told in simulated.warnings:
-        click.echo(f"Warning: {resolved.name}: {told}", err=True)
-    simulation.save(simulated, out)
+        resolved = [with_model(card, model, known) for card in resolved]
+    for card in resolved:
+        _tell_beforehand(card, known, not no_limits)
+    for card, place in zip(resolved, places, strict=True):
+        with progress():
+            simulated = simulation.simulate(card, known, limits=not no_limits)
+        for told in simulated.warnings:
+            click.echo(f"Warning: {card.name}: {told}", err=True)
+        simulation.save(simulated, place)
 
 
 def _tell_beforehand(card, known, limits):

@@ -1,31 +1,54 @@
-"""`sonicvacuum paper observe`: what the gauges of a card read, and the numbers derived from it."""
+"""`sonicvacuum paper observe`: what the gauges of cards read, and the numbers derived from it."""
+
+from pathlib import Path
 
 import click
 
 from sonicvacuum.cli import existing
 from sonicvacuum.cli.cards import read_card
-from sonicvacuum.cli.helped import WRITTEN, verb
+from sonicvacuum.cli.helped import PLACE, PRESENT, places_in, verb
 from sonicvacuum.cli.own_effects import catalogue, own_effects
-from sonicvacuum.files import replacing
+from sonicvacuum.files import InputError, check_written, replacing
 from sonicvacuum.outputs import check_apart
 
 
-@verb("sonicvacuum paper observe card.json history.npz --signals signals.csv --metrics metrics.csv")
-@click.argument("card", type=existing())
-@click.argument("history", type=existing())
-@click.option("--signals", required=True, type=WRITTEN, help="Gauge readings (CSV) to write.")
-@click.option("--metrics", required=True, type=WRITTEN, help="Metrics (CSV) to write.")
+@verb(
+    "sonicvacuum paper observe card.json history.npz --signals signals.csv --metrics metrics.csv",
+    "sonicvacuum paper observe cards/*.json --histories histories --signals signals --metrics metrics",
+)
+@click.argument("files", nargs=-1, required=True, type=existing(), metavar="CARD HISTORY | CARDS...")
+@click.option("--histories", type=PRESENT, help="Folder of the simulations of any number of CARDS.")
+@click.option("--signals", required=True, type=PLACE, help="Gauge readings (CSV) to write, or their folder.")
+@click.option("--metrics", required=True, type=PLACE, help="Metrics (CSV) to write, or their folder.")
 @own_effects
-def observe(card, history, signals, metrics, own):
-    """Read the gauges of a simulated CARD's HISTORY and measure the pulses."""
+def observe(files, histories, signals, metrics, own):
+    """Read the gauges of a simulated CARD's HISTORY and measure the pulses.
+
+    With --histories, those of any number of CARDS: the history of NAME.json is NAME.npz in that folder, and
+    what is written is NAME.csv in the folders of readings and of metrics.
+    """
     from sonicvacuum import simulation
     from sonicvacuum_paper.metrics import card_rows
     from sonicvacuum_paper.rows import write_rows
 
-    check_apart([signals, metrics], [card, history])
-    simulated = simulation.load(read_card(card), history, catalogue(own))
-    write_signals(simulated, signals)
-    write_rows(card_rows(simulated), metrics)
+    if histories:
+        names = [Path(card).stem for card in files]
+        found = [Path(histories, f"{name}.npz") for name in names]
+        jobs = list(
+            zip(files, found, *(places_in(f, names, ".csv") for f in (signals, metrics)), strict=True)
+        )
+    elif len(files) == 2:
+        check_written(signals)
+        check_written(metrics)
+        jobs = [(*files, signals, metrics)]
+    else:
+        raise InputError("give one CARD and its HISTORY, or CARDS and --histories with the folder of theirs")
+    check_apart([path for job in jobs for path in job[2:]], [path for job in jobs for path in job[:2]])
+    known = catalogue(own)
+    for card, history, readings, measured in jobs:
+        simulated = simulation.load(read_card(card), history, known)
+        write_signals(simulated, readings)
+        write_rows(card_rows(simulated), measured)
 
 
 def write_signals(simulated, path):
