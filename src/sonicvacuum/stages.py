@@ -1,6 +1,7 @@
 """Long work in named stages, told to whoever listens: a terminal shows them, a log need not.
 
-Work calls `begin` and `step`; without a listener both cost nothing and change nothing.
+Work calls `begin` and `step`; without a listener both cost nothing and change nothing. So does `compiling`,
+which tells of the one thing that may keep any work from beginning: kernels that this computer has not yet.
 """
 
 from collections.abc import Callable, Iterator
@@ -11,6 +12,8 @@ Listener = Callable[[str, int, int | None], None]
 
 _listeners: list[Listener] = []
 _now: list = ["", 0, None]
+# Of those who hear of compilations the last alone is told: what stands inside knows how to show it.
+_compilations: list[Callable[[int], None]] = []
 
 
 @contextmanager
@@ -38,3 +41,26 @@ def step() -> None:
 def _tell():
     for listener in _listeners:
         listener(*_now)
+
+
+@contextmanager
+def compilations_told_to(listener: Callable[[int], None]) -> Iterator[None]:
+    """Within this, `listener` alone gets 1 where kernels begin to be compiled, and -1 where they are."""
+    _compilations.append(listener)
+    try:
+        yield
+    finally:
+        _compilations.remove(listener)
+
+
+@contextmanager
+def compiling() -> Iterator[None]:
+    """Within this, kernels are compiled, or waited for while another process compiles them."""
+    tell = _compilations[-1] if _compilations else None
+    if tell:
+        tell(1)
+    try:
+        yield
+    finally:
+        if tell:
+            tell(-1)

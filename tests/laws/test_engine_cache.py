@@ -33,7 +33,8 @@ def copy(tmp_path_factory):
     """A copy of the physics that may be edited."""
     root = tmp_path_factory.mktemp("source")
     (root / "sonicvacuum").mkdir()
-    shutil.copy(PACKAGE / "__init__.py", root / "sonicvacuum")
+    for name in ("__init__.py", "stages.py"):
+        shutil.copy(PACKAGE / name, root / "sonicvacuum")
     unwanted = shutil.ignore_patterns("__pycache__")
     for part in ("physics", "laboratory"):
         shutil.copytree(PACKAGE / part, root / "sonicvacuum" / part, ignore=unwanted)

@@ -13,6 +13,7 @@ import click
 
 from sonicvacuum.blas import THREADS
 from sonicvacuum.cli.helped import BEGINNING, COMPLETION, EXIT_CODES, locked
+from sonicvacuum.cli.stage_lines import compiling_told
 from sonicvacuum.files import MACHINE, InputError, check_file, in_one_line
 
 # Verb → where it stands; the order is the order of the work. The two groups at the end belong to packages
@@ -118,7 +119,8 @@ def main():
     # Before numpy is loaded: then none of scipy's libraries has to be loaded only to be limited.
     os.environ[THREADS] = "1"
     try:
-        cli(standalone_mode=False)
+        with compiling_told():
+            cli(standalone_mode=False)
     except click.ClickException as error:
         error.show()
         sys.exit(2)
@@ -159,14 +161,20 @@ def progress():
 
     from sonicvacuum.physics.watch import told_to
 
-    with tqdm(total=1.0, disable=None, leave=False, bar_format="{l_bar}{bar}| {elapsed}") as bar:
+    bars = []
 
-        def move(part):
-            bar.n = part
-            bar.refresh()
+    def move(part):
+        if not bars:  # not before its kernels are compiled: of that a line tells
+            bars.append(tqdm(total=1.0, disable=None, leave=False, bar_format="{l_bar}{bar}| {elapsed}"))
+        bars[0].n = part
+        bars[0].refresh()
 
+    try:
         with told_to(move):
             yield
+    finally:
+        for bar in bars:
+            bar.close()
 
 
 class _File(click.Path):

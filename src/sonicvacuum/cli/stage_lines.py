@@ -1,16 +1,52 @@
-"""What a terminal shows while a search runs: each stage with steps done, time gone and time left."""
+"""What a terminal shows while a search runs: each stage with steps done, time gone and time left; and what
+any verb says where kernels must be compiled first.
+"""
 
 import sys
 from contextlib import contextmanager
 
-# Told beside a stage while its kernels are compiled, which happens once for a computer.
+import click
+
+from sonicvacuum.stages import compilations_told_to
+
+# Told while kernels are compiled, which happens once for a computer: beside a stage, or by a verb that shows
+# none. A verb takes a few kernels, a search dozens.
 COMPILING = "compiling kernels, once on this computer"
+LENGTH = "some seconds, for a first search of all a minute or two"
+# Where the folder of kernels cannot be written.
+NOT_KEPT = (
+    "compiling kernels; they cannot be kept, so that each command does so again: "
+    "name a folder that can be written in SONICVACUUM_CACHE_DIR"
+)
+
+
+@contextmanager
+def compiling_told():
+    """Within this, the first kernel that must be compiled is told of, in one plain line on standard error."""
+    told = []
+
+    def tell(change):
+        if change < 0 or told:
+            return
+        told.append(True)
+        from sonicvacuum.physics.compiled import cache_folder  # loaded: it is what tells
+
+        context = click.get_current_context(silent=True)
+        name = context.command_path if context else "sonicvacuum"
+        click.echo(f"{name}: {f'{COMPILING}: {LENGTH}' if cache_folder() else NOT_KEPT}", err=True)
+
+    with compilations_told_to(tell):
+        yield
 
 
 @contextmanager
 def stages_shown(name: str, quiet: bool):
     """On a terminal, a line with the stage of a search, steps done, time gone and left; nothing in a log."""
-    if quiet or not sys.stderr.isatty():
+    if quiet:
+        with compilations_told_to(lambda change: None):
+            yield
+        return
+    if not sys.stderr.isatty():
         yield
         return
     from rich.console import Console
@@ -32,7 +68,7 @@ def stages_shown(name: str, quiet: bool):
         def compiling(change):
             shown.update(tasks[-1], compiling=max(0, shown.tasks[-1].fields["compiling"] + change))
 
-        with told_to(tell), _compilations(compiling):
+        with told_to(tell), compilations_told_to(compiling):
             yield
 
 
@@ -69,19 +105,3 @@ def _state_column():
             return Text(state(task.completed, task.total, task.elapsed or 0.0, left, compiling))
 
     return State()
-
-
-@contextmanager
-def _compilations(tell):
-    """Call tell(1) where Numba begins to compile a function, and tell(-1) where it ends."""
-    from numba.core import event
-
-    class Heard(event.Listener):
-        def on_start(self, _):
-            tell(1)
-
-        def on_end(self, _):
-            tell(-1)
-
-    with event.install_listener("numba:compile", Heard()):
-        yield

@@ -29,6 +29,7 @@ from numba.core.caching import CompileResultCacheImpl, _Cache
 from numba.core.serialize import dumps
 
 from sonicvacuum.physics import watch
+from sonicvacuum.stages import compiling
 
 _PACKAGE = Path(__file__).resolve().parent
 _KEPT_FOLDERS = 8
@@ -195,10 +196,7 @@ def _load_or_compile(dispatcher, signature):
         dispatcher.compile(signature)
         return
     _import_array_functions()
-    if path is None:
-        watch.aside(dispatcher.compile, signature)
-        return
-    with _lock(path.with_suffix(".lock")):
+    with compiling(), _lock(path.with_suffix(".lock")) if path else contextlib.nullcontext():
         watch.aside(dispatcher.compile, signature)
 
 

@@ -8,7 +8,6 @@ import math
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.integrate import solve_ivp
 
 # Padé approximant of the viscoelastic restitution in the root of x: Müller & Pöschel, Phys. Rev. E 84, 021302
 # (2011), in powers 0, 1, 2 …
@@ -57,6 +56,7 @@ def hunt_crossley_duration(number: float, exponent: float) -> float:
 
     Lengths are in (m v²/k)^{1/(n+1)} for f = k δ^n, times in that over v; integrated to 1e-10.
     """
+    from scipy.integrate import solve_ivp  # long to load
 
     def motion(_, state):
         depth, rate = max(state[0], 0.0), state[1]
