@@ -274,10 +274,28 @@ def test_intervals_are_of_the_draws_and_not_of_the_gaussian(how, tmp_path):
     assert ("Pareto k" in text) == (how == draws.SAMPLED)
 
 
-def test_a_limit_is_told_from_the_value_without_the_effect():
-    row = {"effect": "contact-exponent", "parameter": "exponent", "limit_95": "1.50042"}
-    assert rows.limit(row, CATALOGUE)["limit"] == "below 1.5004"
-    assert rows.limit({**row, "limit_95": "1.61234"}, CATALOGUE)["limit"] == "below 1.61"
+@pytest.mark.parametrize(
+    ("effect", "parameter", "value", "estimate", "told"),
+    [
+        ("viscous-drag", "rate_per_s", "15.03", "1", "below 15 1/s"),
+        # Fades as its parameter grows.
+        ("sensor-droop", "tau_us", "138.4292", "345.6", "above 138 µs"),
+        # Off is what the record says: 0 for a chain that lies, 1 for one that stands.
+        ("gravity", "fraction", "0.0813", "0.02", "below 0.0813"),
+        ("gravity", "fraction", "0.9312", "0.99", "above 0.931"),
+        # Departs either way: both ends, told from the value without the effect.
+        ("contact-exponent", "exponent", "1.50042", "1.5", "1.4996 to 1.5004"),
+        ("contact-exponent", "exponent", "1.61234", "1.5", "1.39 to 1.61"),
+        ("sensor-offset", "offset_fraction", "0.1508", "-0.02", "−0.151 to 0.151"),
+        # The lower end lies outside of what is searched.
+        ("striker-error", "mass_ratio", "1.901", "0.91", "below 1.9"),
+    ],
+)
+def test_a_limit_says_on_which_side_of_the_value_without_the_effect_it_lies(
+    effect, parameter, value, estimate, told
+):
+    row = {"effect": effect, "parameter": parameter, "limit_95": value, "estimate": estimate}
+    assert rows.limit(row, CATALOGUE)["limit"] == told
 
 
 def test_all_significant_comparisons_are_counted_and_not_only_those_kept():

@@ -43,7 +43,7 @@ _COLUMNS = {
     "where": ("run", "sensor", "feature", "z_before", "q_before"),
     "candidates": ("effects", "delta_chi2", "log10_bayes", "probability", "parameters"),
     "gap": ("run", "data", "before", "after", "held_out_before", "held_out_after"),
-    "limits": ("effect", "parameter", "limit_95", "testable", "place"),
+    "limits": ("effect", "parameter", "limit_95", "estimate", "testable", "place"),
     "quantities": quantities.HEADER,
 }
 

@@ -232,13 +232,24 @@ def limit(row: dict, catalogue) -> dict:
         return {"effect": name, "title": name, "parameter": row["parameter"], "limit": said, "off": ""}
     one = catalogue.effect(row["effect"])
     p = one.parameter(row["parameter"])
-    value, none = float(row["limit_95"]), p.off
-    above = not callable(none) and none is not None and (math.isinf(none) or value < none)
-    side = "" if callable(none) or none is None else ("above " if above else "below ")
     return {
         "effect": one.id,
         "title": one.title,
         "parameter": p.help,
-        "limit": f"{side}{_apart(row['limit_95'], off(p))}{unit_of(p.unit)}",
+        "limit": f"{_bounded(p, row)}{unit_of(p.unit)}",
         "off": off(p),
     }
+
+
+def _bounded(p, row):
+    """`below 0.2`; `above` where the effect fades as its parameter grows, or can only lower it; both ends of
+    what may depart either way from having none.
+    """
+    value, none = float(row["limit_95"]), p.off
+    if callable(none):  # what the record says is not in the table, but the estimate lies on that side
+        none = float(row["estimate"])
+    other = 2.0 * none - value
+    if p.low < none < p.high and p.low <= other <= p.high:
+        ends = (_apart(str(end), off(p)) for end in sorted((value, other)))
+        return " to ".join(ends).replace("-", "−")
+    return f"{'above' if value < none else 'below'} {_apart(row['limit_95'], off(p))}"
