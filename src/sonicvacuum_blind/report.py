@@ -13,7 +13,8 @@ from pathlib import Path
 import pandas as pd
 
 from sonicvacuum.report import tables
-from sonicvacuum_blind.baselines.names import DESIGNS, PANELS, RULES
+from sonicvacuum_blind import words
+from sonicvacuum_blind.baselines.names import PANELS, RULES
 from sonicvacuum_blind.baselines.table import Line as Baseline
 from sonicvacuum_blind.score import Line, Row
 
@@ -123,9 +124,8 @@ def _result(row):
     found, low, high, ideal = (tables.number(row[key], 3) for key in ("value", "low", "high", "ideal"))
     interval = f"{low} to {high}" if low else ""
     goal = row["goal"].replace("<=", "≤").replace(">=", "≥")
-    design, *rest = row["group"].replace("d'", "d′").split(", ")
-    group = ", ".join([DESIGNS.get(design, design), *rest])
-    return [row["measure"], group, row["count"], found, interval, ideal, goal, judgement(row)]
+    of = words.group(row["group"])
+    return [words.asked(row["measure"]), of, row["count"], found, interval, ideal, goal, judgement(row)]
 
 
 def judgement(row: dict) -> str:

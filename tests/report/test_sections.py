@@ -60,7 +60,7 @@ def test_what_the_paper_leaves_open_has_a_page_of_its_own_where_one_is_linked(em
 
 def test_rows_without_cases_and_times_are_left_out(summary):
     (row,) = study.findings(tables.read(summary, study.SUMMARY)).rows
-    assert row == ["named on null", "white", "8", "0", "0 to 0.324", ""]
+    assert row == ["effect named where none is hidden", "white noise", "8", "0", "0 to 0.324", ""]
 
 
 def test_a_summary_with_other_columns_is_refused(tmp_path):
@@ -76,7 +76,7 @@ def test_the_full_study_stands_with_its_pictures_before_the_small_one(empty, sum
     page = blind_page(summary, tmp_path, [(drawing, "What the picture shows.")])
     assert "36 records. Of 1 goals 0 are met, 1 open and 0 missed" in page
     assert page.index("What the picture shows.") < page.index("The small study of this run</h2>")
-    assert "<td>named on null</td><td>white</td>" in page
+    assert "<td>effect named where none is hidden</td><td>white noise</td>" in page
     assert "No table of this study has been made." not in page
     assert "36 records; of 1 goals" in build(Sources(*empty, blind_full=tmp_path))
 
