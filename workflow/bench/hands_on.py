@@ -23,7 +23,8 @@ HEADS = {
     "starts": {
         "verb": "verb",
         "help_s": "`--help`, s",
-        "load_s": "loading, s",
+        "begun_s": "until its input is read, s",
+        "load_s": "loading in all, s",
         "kernels_s": "kernels, s",
         "run_s": "run, s",
     },

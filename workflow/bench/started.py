@@ -1,20 +1,39 @@
 """One verb, run in this process; what it spent until it could begin is written beside it.
 
 `python -P workflow/bench/started.py OUT VERB …` runs `sonicvacuum VERB …` and writes to OUT, as JSON in
-processor seconds: `load`, the interpreter's start and all import statements together, wherever they stand;
-`kernels`, reading compiled kernels from the cache, for which Numba first fills its tables of types.
+processor seconds: `begun`, all until the first file is read that the command line names or that lies in a
+folder it names, which is when a verb has checked its arguments and turns to its work (of a verb that is given
+no file, the first table of data, such as the materials; of one that reads nothing, its first words);
+`load`, the interpreter's start and all import statements together, wherever they stand; `kernels`, reading
+compiled kernels from the cache, for which Numba first fills its tables of types.
 """
 
 import atexit
 import builtins
 import importlib
 import json
+import os
+import site
 import sys
+import sysconfig
 import time
 from pathlib import Path
 
-SPENT = {"load": time.process_time(), "kernels": 0.0}
+SPENT = {"begun": None, "load": time.process_time(), "kernels": 0.0}
 WITHIN: list[str] = []
+# What lies there is code and its own data: of Python, of packages, of caches in the home folder.
+FOREIGN = tuple(
+    str(Path(p).resolve()) + os.sep
+    for p in (
+        *sysconfig.get_paths().values(),
+        *site.getsitepackages(),
+        Path.home() / ".cache",
+        "/proc",
+        "/sys",
+        "/etc",
+    )
+)
+CODE = (".py", ".pyc", ".pyi", ".so", ".pth", ".j2")
 
 
 def counting(function, name):
@@ -42,10 +61,49 @@ def watch_kernels():
         numba.Dispatcher.compile = counting(numba.Dispatcher.compile, "kernels")
 
 
+def begins() -> None:
+    """The verb begins its work, unless it has before."""
+    if SPENT["begun"] is None:
+        SPENT["begun"] = time.process_time()
+
+
+def watch_inputs(words: list[str]) -> None:
+    """Note when the first input of a command line is read, or else the first words are said."""
+    before = ["", *words]
+    given = [Path(w).resolve() for k, w in enumerate(words) if before[k] != "--out" and Path(w).exists()]
+
+    def opened(event, arguments):
+        if (
+            event != "open"
+            or SPENT["begun"] is not None
+            or not isinstance(arguments[0], str | bytes | os.PathLike)
+        ):
+            return
+        mode, flags = arguments[1] or "r", arguments[2] or 0
+        if set(mode) & set("wax+") or flags & (os.O_WRONLY | os.O_RDWR):
+            return
+        path = Path(os.fsdecode(arguments[0])).resolve()
+        ours = path.suffix not in CODE and not str(path).startswith(FOREIGN)
+        if any(path == one or one in path.parents for one in given) if given else ours:
+            begins()
+
+    sys.addaudithook(opened)
+    if not given:
+        write = sys.stdout.write
+        sys.stdout.write = lambda text: (begins(), write(text))[1]
+
+
+def told(out: Path) -> None:
+    """Write what was measured; what never read nor spoke began when it ended."""
+    begins()
+    out.write_text(json.dumps(SPENT), encoding="utf-8")
+
+
 if __name__ == "__main__":
-    out = Path(sys.argv[1]).resolve()
+    target = Path(sys.argv[1]).resolve()
     sys.argv = ["sonicvacuum", *sys.argv[2:]]
-    atexit.register(lambda: out.write_text(json.dumps(SPENT), encoding="utf-8"))
+    watch_inputs(sys.argv[2:])
+    atexit.register(told, target)
     builtins.__import__ = counting(builtins.__import__, "load")
     importlib.import_module = counting(importlib.import_module, "load")
     from sonicvacuum.cli import main

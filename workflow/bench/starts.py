@@ -1,9 +1,10 @@
 """How long each verb of the command line takes to start: processor seconds, written as CSV.
 
 `python workflow/bench/starts.py RESULTS OUT [VERB …]` runs every verb, or those named, on the smallest input
-that makes sense, in a temporary folder; RESULTS is the folder of a finished pipeline. Four numbers for each,
-in seconds of user and system time of the process: `--help`; what a run spends on loading modules, the start
-of the interpreter included; what it spends on reading compiled kernels; the whole run, its work included.
+that makes sense, in a temporary folder; RESULTS is the folder of a finished pipeline. Five numbers for each,
+in seconds of user and system time of the process: `--help`; all that a run spends until it reads its input
+(`started.py` says how that is told); what it spends on loading modules, wherever that happens, the start of
+the interpreter included; what it spends on reading compiled kernels; the whole run, its work included.
 Each is the least of several, of which the first warms the caches: other work on the machine only adds.
 Importing numba alone stands first, as a yardstick. Python keeps its bytecode, whatever the environment says:
 without it every start compiles the package's sources anew.
@@ -134,10 +135,12 @@ def expanded(words: str) -> list[str]:
 
 
 def measured(verb: str, results: Path, folder: Path) -> list[str]:
-    """Row of one verb: seconds of `--help`, loading, reading kernels and the run; empty where not run."""
+    """Row of one verb: seconds of `--help`, until its input is read, of loading, reading kernels and the run;
+    empty where not run.
+    """
     helped = min(spent("-P", "-c", COMMAND, *verb.split(), "--help") for _ in range(REPEATS))
     if verb not in INPUTS:
-        return [verb, f"{helped:.2f}", "", "", "", ""]
+        return [verb, f"{helped:.2f}", "", "", "", "", ""]
     options = expanded(INPUTS[verb].format(results=results, out=folder))
     told = folder / "told.json"
     rows: list[tuple[float, ...]] = []
@@ -177,9 +180,9 @@ def main(results: Path, out: Path, names: list[str]) -> None:
     with tempfile.TemporaryDirectory() as folder, open(out, "w", encoding="utf-8", newline="") as stream:
         furnish(Path(folder), results)
         table = csv.writer(stream, lineterminator="\n")
-        table.writerow(["verb", "help_s", "load_s", "kernels_s", "run_s", "run_with"])
+        table.writerow(["verb", "help_s", "begun_s", "load_s", "kernels_s", "run_s", "run_with"])
         numba = min(spent("-P", "-c", "import numba") for _ in range(REPEATS))
-        table.writerow(["(import numba)", "", f"{numba:.2f}", "", "", ""])
+        table.writerow(["(import numba)", "", "", f"{numba:.2f}", "", "", ""])
         for verb in names or verbs():
             table.writerow(measured(verb, results, Path(folder)))
             stream.flush()
