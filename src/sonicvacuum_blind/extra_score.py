@@ -4,10 +4,8 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from sonicvacuum.files import InputError
 from sonicvacuum_blind.extra_cases import SIZES
-from sonicvacuum_blind.hide import TRUTH
-from sonicvacuum_blind.score import UNKNOWN, Line, confidently, found_in, load
+from sonicvacuum_blind.score import UNKNOWN, Line, cases, confidently, load
 from sonicvacuum_blind.shares import quantile, share
 
 # What is hidden can be told from all else where an ideal test sees it by this d′.
@@ -75,14 +73,8 @@ def score(truth_folder, verdict_folder, partly: bool = False) -> list[ExtraRow]:
     Raises:
         InputError: where a case has no verdict.
     """
-    truths, verdicts = found_in(truth_folder, TRUTH), found_in(verdict_folder, "verdict.json")
-    missing = sorted(set(truths) - set(verdicts))
-    if not verdicts or not truths or (missing and not partly):
-        raise InputError(
-            f"{verdict_folder}: no verdict for {len(missing)} of {len(truths)} cases; "
-            "run sonicvacuum discover on their records, or score those that are there with --partly"
-        )
-    rows = [row(load(truths[id]), load(verdicts[id])) for id in truths if id in verdicts]
+    found = cases(truth_folder, verdict_folder, partly)
+    rows = [row(load(truth), load(verdict)) for truth, verdict in found]
     return sorted(rows, key=lambda r: (r.kind, r.size, r.d_prime, r.effects, r.id))
 
 

@@ -101,30 +101,34 @@ def score(truth_folder, verdict_folder, ideal_paths=()) -> list[Row]:
     known = {line["id"]: line for path in ideal_paths for line in read_csv(path, columns=IDEAL)}
     return [
         row(load(truth), load(path), f"{path} (truth: {truth})", path.parent, known.get(truth.parent.name))
-        for truth, path in _cases(truth_folder, verdict_folder)
+        for truth, path in cases(truth_folder, verdict_folder)
     ]
 
 
 def intervals(truth_folder, verdict_folder) -> list[stated.Parameter]:
     """Stated intervals of all cases, with what was hidden; InputError as from `score`."""
     found = []
-    for truth, path in _cases(truth_folder, verdict_folder):
+    for truth, path in cases(truth_folder, verdict_folder):
         found += stated.parameters(load(truth), load(path), path.parent)
     return found
 
 
-def _cases(truth_folder, verdict_folder):
-    """Files of truth and verdict of each case, by id."""
+def cases(truth_folder, verdict_folder, partly: bool = False) -> list[tuple[Path, Path]]:
+    """Files of truth and verdict of each case, by id; `partly`: of those that have a verdict.
+
+    Raises:
+        InputError: where there is no truth, or no verdict of a case.
+    """
     truths, verdicts = found_in(truth_folder, TRUTH), found_in(verdict_folder, "verdict.json")
     if not truths:
         raise InputError(f"{truth_folder}: holds no {TRUTH}; make cases with sonicvacuum blind hide")
     missing = sorted(set(truths) - set(verdicts))
-    if missing:
+    if missing and not (partly and verdicts):
         raise InputError(
             f"{verdict_folder}: no verdict for {len(missing)} of {len(truths)} cases, first {missing[0]}; "
             "run sonicvacuum discover on their records"
         )
-    return [(truths[id], verdicts[id]) for id in sorted(truths)]
+    return [(truths[id], verdicts[id]) for id in sorted(set(truths) & set(verdicts))]
 
 
 def found_in(folder, name: str) -> dict[str, Path]:

@@ -4,9 +4,7 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from sonicvacuum.files import InputError
-from sonicvacuum_blind import TRUTH
-from sonicvacuum_blind.score import LIKELY, UNKNOWN, Line, confidently, found_in, load
+from sonicvacuum_blind.score import LIKELY, UNKNOWN, Line, cases, confidently, load
 from sonicvacuum_blind.shares import counted, quantile
 from sonicvacuum_blind.slips import SLIPS
 
@@ -56,20 +54,19 @@ class SlipRow:
         return self.slip != "sound" and not self.d_prime < PLAIN
 
 
-def score(truth_folder, verdict_folder) -> list[SlipRow]:
+def score(truth_folder, verdict_folder, partly: bool = False) -> list[SlipRow]:
     """Rows of all cases below a folder of truths, by slip, set-up and effect.
+
+    Args:
+        truth_folder: of truths.
+        verdict_folder: of verdicts.
+        partly: leave out cases that have no verdict yet.
 
     Raises:
         InputError: where a case has no verdict.
     """
-    truths, verdicts = found_in(truth_folder, TRUTH), found_in(verdict_folder, "verdict.json")
-    missing = sorted(set(truths) - set(verdicts))
-    if missing or not truths:
-        raise InputError(
-            f"{verdict_folder}: no verdict for {len(missing)} of {len(truths)} cases; "
-            "run sonicvacuum discover on their records"
-        )
-    rows = [row(load(truths[id]), load(verdicts[id])) for id in truths]
+    found = cases(truth_folder, verdict_folder, partly)
+    rows = [row(load(truth), load(verdict)) for truth, verdict in found]
     order = list(SLIPS)
     return sorted(rows, key=lambda r: (order.index(r.slip), r.setup, r.effect))
 

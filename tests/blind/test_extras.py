@@ -7,7 +7,7 @@ import pytest
 
 from sonicvacuum.blas import one_thread
 from sonicvacuum.files import InputError
-from sonicvacuum_blind import extra_cases, extra_page, extra_score
+from sonicvacuum_blind import extra_cases, extra_score, table_page
 from sonicvacuum_blind.catalogue import STUDIED
 from sonicvacuum_blind.systematics import Smooth
 
@@ -111,12 +111,12 @@ def test_shares_tell_apart_what_an_ideal_test_could_name():
 
 def test_the_page_has_its_table_and_keeps_its_words(tmp_path):
     page = tmp_path / "page.md"
-    page.write_text(f"Before.\n\n{extra_page.BEGIN}\nold\n{extra_page.END}\nAfter.\n")
+    page.write_text(f"Before.\n\n{table_page.BEGIN}\nold\n{table_page.END}\nAfter.\n")
     rows = [extra_score.row(TRUTH, VERDICT | {"named": ["tsuji"], "probabilities": {"tsuji": 1.0}})]
-    extra_page.write(extra_score.summary(rows), page)
+    table_page.write(extra_score.summary(rows), page)
     told = page.read_text()
     assert told.startswith("Before.") and told.endswith("After.\n") and "old" not in told
     assert "| truth among what is named | systematic errors, singles | 1 | 1 | 0.207 to 1 | ≥ 0.9 |" in told
     page.write_text("no place for a table")
     with pytest.raises(InputError, match="end of table"):
-        extra_page.write(extra_score.summary(rows), page)
+        table_page.write(extra_score.summary(rows), page)

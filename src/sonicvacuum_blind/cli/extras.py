@@ -6,12 +6,11 @@ from pathlib import Path
 
 import click
 
-from sonicvacuum.cli import existing
-from sonicvacuum.cli.helped import WRITTEN, verb
+from sonicvacuum.cli.helped import verb
 from sonicvacuum.outputs import check_apart
 from sonicvacuum_blind import TRUTH
 from sonicvacuum_blind.cli.hide import check_truth
-from sonicvacuum_blind.cli.options import batch_of, held_against, made_into, say
+from sonicvacuum_blind.cli.options import batch_of, counted_into, held_against, keep, made_into, partly
 
 
 @verb("sonicvacuum blind extras --records extras/records --truth extras/truth --first 40")
@@ -39,20 +38,12 @@ def extras(batch, first, records_folder, truth_folder):
     name="extras-score",
 )
 @held_against
-@click.option("--partly", is_flag=True, help="Leave out cases that have no verdict yet.")
-@click.option("--out", required=True, type=WRITTEN, help="Row of each record (CSV) to write.")
-@click.option("--summary", required=True, type=WRITTEN, help="Table (CSV) to write.")
-@click.option("--page", type=existing(), help="Page (Markdown) whose table is written anew.")
+@partly
+@counted_into
 def extras_score(truth, verdicts, partly, out, summary, page):
     """Count which effects are named beside systematic errors, and which of several."""
-    from sonicvacuum_blind import extra_page, extra_score
-    from sonicvacuum_blind.score import Line, write_table
+    from sonicvacuum_blind import extra_score
 
     check_apart([out, summary], [truth, verdicts])
     rows = extra_score.score(truth, verdicts, partly)
-    lines = extra_score.summary(rows)
-    write_table(rows, extra_score.ExtraRow, out)
-    write_table(lines, Line, summary)
-    if page:
-        extra_page.write(lines, page)
-    say(lines)
+    keep(rows, extra_score.ExtraRow, extra_score.summary(rows), out, summary, page)

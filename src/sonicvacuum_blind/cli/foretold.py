@@ -2,9 +2,9 @@
 
 import click
 
-from sonicvacuum.cli.helped import PRESENT, WRITTEN, verb
+from sonicvacuum.cli.helped import PRESENT, verb
 from sonicvacuum.outputs import check_apart
-from sonicvacuum_blind.cli.options import held_against, say
+from sonicvacuum_blind.cli.options import counted_into, held_against, keep
 
 
 @verb(
@@ -15,16 +15,11 @@ from sonicvacuum_blind.cli.options import held_against, say
 @click.option(
     "--compared", required=True, type=PRESENT, help="Folder of what compare --json wrote: <id>/compared.json."
 )
-@click.option("--out", required=True, type=WRITTEN, help="Row of each run (CSV) to write.")
-@click.option("--summary", required=True, type=WRITTEN, help="Table (CSV) to write.")
-def foretold(truth, verdicts, compared, out, summary):
+@counted_into
+def foretold(truth, verdicts, compared, out, summary, page):
     """Hold models against fresh runs that discover never had."""
     from sonicvacuum_blind import foretold as fresh
-    from sonicvacuum_blind.score import Line, write_table
 
     check_apart([out, summary], [truth, verdicts, compared])
     rows = fresh.foretold(truth, verdicts, compared)
-    lines = fresh.summary(rows)
-    write_table(rows, fresh.Foretold, out)
-    write_table(lines, Line, summary)
-    say(lines)
+    keep(rows, fresh.Foretold, fresh.summary(rows), out, summary, page)

@@ -5,7 +5,7 @@ import re
 import click
 
 from sonicvacuum.cli import existing
-from sonicvacuum.cli.helped import FOLDER, PRESENT
+from sonicvacuum.cli.helped import FOLDER, PRESENT, WRITTEN
 from sonicvacuum.files import InputError
 
 STUDIES = click.Choice(["small", "full", "training", "laws"])
@@ -62,6 +62,13 @@ held_against = _all_of(
     click.option("--truth", required=True, type=PRESENT, help="Folder of truths."),
     click.option("--verdicts", required=True, type=PRESENT, help="Folder of verdicts."),
 )
+# Where a verb that counts writes; `page` is one of docs/.
+counted_into = _all_of(
+    click.option("--out", required=True, type=WRITTEN, help="Row of each record (CSV) to write."),
+    click.option("--summary", required=True, type=WRITTEN, help="Table (CSV) to write."),
+    click.option("--page", type=existing(), help="Page (Markdown) whose table is written anew."),
+)
+partly = click.option("--partly", is_flag=True, help="Leave out cases that have no verdict yet.")
 
 
 def say(lines) -> None:
@@ -70,3 +77,15 @@ def say(lines) -> None:
         if line.count:
             interval = f"{line.value:.3f} [{line.low:.3f}, {line.high:.3f}]"
             click.echo(f"{line.measure}, {line.group}: {interval} of {line.count}  {line.goal}".rstrip())
+
+
+def keep(rows, kind: type, lines, out, summary, page=None) -> None:
+    """Write rows of a dataclass and the lines of their summary, renew the page's table, print the lines."""
+    from sonicvacuum_blind import table_page
+    from sonicvacuum_blind.score import Line, write_table
+
+    write_table(rows, kind, out)
+    write_table(lines, Line, summary)
+    if page:
+        table_page.write(lines, page)
+    say(lines)

@@ -2,9 +2,9 @@
 
 import click
 
-from sonicvacuum.cli.helped import PRESENT, WRITTEN, verb
+from sonicvacuum.cli.helped import PRESENT, verb
 from sonicvacuum.outputs import check_apart
-from sonicvacuum_blind.cli.options import held_against, say
+from sonicvacuum_blind.cli.options import counted_into, held_against, keep
 
 
 @verb(
@@ -23,12 +23,10 @@ from sonicvacuum_blind.cli.options import held_against, say
 @click.option(
     "--random", required=True, nargs=2, type=PRESENT, metavar="RECORDS JOINT", help="The same of random runs."
 )
-@click.option("--out", required=True, type=WRITTEN, help="Row of each case (CSV) to write.")
-@click.option("--summary", required=True, type=WRITTEN, help="Table (CSV) to write.")
-def resolved(truth, verdicts, proposed, random, out, summary):
+@counted_into
+def resolved(truth, verdicts, proposed, random, out, summary, page):
     """Count the ambiguous cases that one more run decides: the proposed one, and a random one."""
     from sonicvacuum_blind import resolved as counting
-    from sonicvacuum_blind.score import Line, write_table
 
     check_apart([out, summary], [truth, verdicts, *proposed, *random])
     rows = [
@@ -36,7 +34,4 @@ def resolved(truth, verdicts, proposed, random, out, summary):
         for choice, folders in (("proposed", proposed), ("random", random))
         for row in counting.resolved(truth, verdicts, choice, *folders)
     ]
-    lines = counting.summary(rows)
-    write_table(rows, counting.Followed, out)
-    write_table(lines, Line, summary)
-    say(lines)
+    keep(rows, counting.Followed, counting.summary(rows), out, summary, page)

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import click
 
-from sonicvacuum.cli.helped import WRITTEN, verb
+from sonicvacuum.cli.helped import verb
 from sonicvacuum.outputs import check_apart
 from sonicvacuum_blind import TRUTH
 from sonicvacuum_blind.cli.hide import check_truth
-from sonicvacuum_blind.cli.options import batch_of, held_against, made_into, say
+from sonicvacuum_blind.cli.options import batch_of, counted_into, held_against, keep, made_into, partly
 
 
 @verb("sonicvacuum blind slips --records slips/records --truth slips/truth --batch 0/8")
@@ -35,16 +35,12 @@ def slips(batch, records_folder, truth_folder):
     name="slips-score",
 )
 @held_against
-@click.option("--out", required=True, type=WRITTEN, help="Row of each record (CSV) to write.")
-@click.option("--summary", required=True, type=WRITTEN, help="Table (CSV) to write.")
-def slips_score(truth, verdicts, out, summary):
+@partly
+@counted_into
+def slips_score(truth, verdicts, partly, out, summary, page):
     """Count which slips are named, and which effects, rightly and wrongly."""
     from sonicvacuum_blind import slip_score
-    from sonicvacuum_blind.score import Line, write_table
 
     check_apart([out, summary], [truth, verdicts])
-    rows = slip_score.score(truth, verdicts)
-    lines = slip_score.summary(rows)
-    write_table(rows, slip_score.SlipRow, out)
-    write_table(lines, Line, summary)
-    say(lines)
+    rows = slip_score.score(truth, verdicts, partly)
+    keep(rows, slip_score.SlipRow, slip_score.summary(rows), out, summary, page)

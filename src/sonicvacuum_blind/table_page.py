@@ -1,4 +1,4 @@
-"""The table of systematic errors and sets in the page that tells of it, written from the counted shares."""
+"""A table of counted shares within the page of docs/ that tells of it."""
 
 import math
 from collections.abc import Iterable
