@@ -55,6 +55,14 @@ def test_swapped_gauges_are_put_right_and_the_damping_is_named(hidden):
     assert any("record put right: gauges-swapped" in reason for reason in v.reasons)
 
 
+def test_exchanged_runs_are_put_right_beside_an_effect_of_speed():
+    """Either run alone looks struck at another speed; that and striker-error passed for the truth."""
+    record, _ = made([("contact-exponent", {"exponent": 1.47})], seed=5, speeds=(0.2, 0.45, 0.95))
+    v = session.discover(changes.runs_swapped(record, "v1", "v2")).verdict
+    assert [(f.fault, f.run) for f in v.faults] == [("runs-swapped", "v1 and v2")]
+    assert v.named == ["contact-exponent"]
+
+
 def test_a_dead_gauge_is_no_effect_of_the_model(empty):
     noise = np.random.default_rng(np.random.SeedSequence(8)).normal(size=700)
     v = session.discover(altered(empty, "g7", lambda _: SIGMA * noise)).verdict

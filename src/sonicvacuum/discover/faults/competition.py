@@ -17,11 +17,11 @@ from sonicvacuum import stages
 from sonicvacuum.discover.faults import policy
 from sonicvacuum.discover.faults.examine import examine
 from sonicvacuum.discover.faults.found import Bench, Finding
-from sonicvacuum.discover.faults.judging import Judge, Judged, Model, noise_volume
+from sonicvacuum.discover.faults.judging import Judge, Judged, Model, excess, noise_volume, suspicious
 from sonicvacuum.discover.faults.slips import Slip, hypotheses
 from sonicvacuum.discover.faults.table import FAULTS
 from sonicvacuum.discover.faults.timing import time_zero, with_starts
-from sonicvacuum.discover.fit import evidence, smooth, tails
+from sonicvacuum.discover.fit import evidence, smooth
 from sonicvacuum.discover.fit.refit import polish
 from sonicvacuum.discover.judge import explanations
 from sonicvacuum.discover.model.experiment import Experiment
@@ -171,8 +171,10 @@ class Search:
         looked = sorted((judge.look(s) for s in slips), key=lambda j: -j.log_odds)
         worth = [j for j in looked if j.gain > policy.LEAST_GAIN][: policy.FOLLOWED]
         if excess(model) > policy.SURE_GAIN:
-            # A pulse that comes a bead earlier overlaps none of what was measured: slopes know nothing of it.
-            worth += [j for j in looked if _of_the_chain(j.slip) and j not in worth]
+            # A pulse that comes a bead earlier, or with another run's speed, overlaps none of what was
+            # measured: slopes know nothing of it.
+            pairs = _both_off(worth)
+            worth += [j for j in looked if (_of_the_chain(j.slip) or j.slip.run in pairs) and j not in worth]
         whole = [judge.look(s) for s in shifted]
         followed = [judge.follow(j) for j in [*worth, *whole]]
         self.simulations += judge.simulations
@@ -296,21 +298,10 @@ def _of_the_chain(slip: Slip) -> bool:
     return not slip.continuous and FAULTS[slip.fault].stretches
 
 
-def excess(model: Model) -> float:
-    """χ² of a nominal fit, its nuisances' included, above the number of data."""
-    e = model.forward.experiment
-    return model.fit.objective - sum(e.size(r) for r in range(len(e.runs)))
-
-
-def suspicious(model: Model) -> bool:
-    """Whether a nominal fit leaves more than its noise, or strains its nuisances."""
-    one, e = model.fit, model.forward.experiment
-    size = sum(e.size(r) for r in range(len(e.runs)))
-    misfit = float(one.normal.chi2.sum()) - size
-    strained = float(one.nu @ one.nu)
-    return misfit > policy.SUSPICIOUS * math.sqrt(2.0 * size) or strained > tails.chi_squared_at(
-        1e-3, len(one.nu)
-    )
+def _both_off(worth: list[Judged]) -> set[str]:
+    """Pairs of runs, as `runs-swapped` names them, that both look struck at another speed."""
+    off = [j.slip.run for j in worth if j.slip.fault == "run-off"]
+    return {f"{a} and {b}" for a in off for b in off if a != b}
 
 
 def obvious(judged: Judged, model: Model) -> bool:

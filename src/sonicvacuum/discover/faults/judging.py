@@ -13,6 +13,7 @@ import numpy as np
 from sonicvacuum.discover.faults import policy
 from sonicvacuum.discover.faults.found import Bench
 from sonicvacuum.discover.faults.slips import Slip
+from sonicvacuum.discover.fit import tails
 from sonicvacuum.discover.fit.refit import Fit, fit
 from sonicvacuum.discover.model.experiment import Experiment
 from sonicvacuum.discover.model.forward import Forward
@@ -60,6 +61,23 @@ class Judged:
     def log_odds(self) -> float:
         """Log of prior times Bayes factor."""
         return self.log_bayes + policy.log_prior(self.slip.alternatives)
+
+
+def excess(model: Model) -> float:
+    """χ² of a nominal fit, its nuisances' included, above the number of data."""
+    e = model.forward.experiment
+    return model.fit.objective - sum(e.size(r) for r in range(len(e.runs)))
+
+
+def suspicious(model: Model) -> bool:
+    """Whether a nominal fit leaves more than its noise, or strains its nuisances."""
+    one, e = model.fit, model.forward.experiment
+    size = sum(e.size(r) for r in range(len(e.runs)))
+    misfit = float(one.normal.chi2.sum()) - size
+    strained = float(one.nu @ one.nu)
+    return misfit > policy.SUSPICIOUS * math.sqrt(2.0 * size) or strained > tails.chi_squared_at(
+        1e-3, len(one.nu)
+    )
 
 
 def noise_volume(experiment: Experiment) -> float:
