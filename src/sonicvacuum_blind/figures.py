@@ -6,6 +6,7 @@ confusion.csv, accuracy.csv, reliability.csv, pit.csv, baselines.csv. A picture 
 not there is left out.
 """
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,6 @@ import pandas
 from matplotlib.figure import Figure
 
 from sonicvacuum.figures import style
-from sonicvacuum.files import InputError, reading
 from sonicvacuum_blind.baselines.names import DESIGNS, PANELS, RULES
 
 CAPTIONS = {
@@ -50,24 +50,15 @@ CAPTIONS = {
 }
 
 
-def draw(folder: Path, wanted=(), out: Path | None = None, prefix: str = "") -> list[Path]:
-    """Draw the wanted pictures, or all whose tables are in the folder; the SVG files, each with its PNG.
+def draw(tables: Mapping[str, pandas.DataFrame], out, prefix: str = "") -> list[Path]:
+    """Draw a picture of each table; the SVG files, each with its PNG.
 
     Args:
-        folder: of the tables.
-        wanted: of `CAPTIONS`.
-        out: folder for the pictures, that of the tables unless given.
+        tables: picture of `CAPTIONS` → its table, as `kept.read` reads it.
+        out: folder for the pictures.
         prefix: of the pictures' names.
-
-    Raises:
-        InputError: where a wanted table, or every table, is missing.
     """
-    folder, written = Path(folder), []
-    chosen = list(wanted) or [name for name in CAPTIONS if (folder / f"{name}.csv").exists()]
-    missing = [name for name in chosen or CAPTIONS if not (folder / f"{name}.csv").exists()]
-    if missing:
-        command = "blind baselines --out" if missing[0] == "baselines" else "blind score --tables"
-        raise InputError(f"{folder}: {missing[0]}.csv is missing; make it with sonicvacuum {command}")
+    written = []
     makers = {
         "confusion": confusion,
         "accuracy": accuracy,
@@ -75,17 +66,10 @@ def draw(folder: Path, wanted=(), out: Path | None = None, prefix: str = "") -> 
         "pit": pit,
         "baselines": baselines,
     }
-    for name in chosen:
-        figure = makers[name](_read(folder / f"{name}.csv"))
-        written.append(Path(out or folder) / f"{prefix}{name}.svg")
-        style.save(figure, written[-1], written[-1].with_suffix(".png"))
+    for name, table in tables.items():
+        written.append(Path(out) / f"{prefix}{name}.svg")
+        style.save(makers[name](table), written[-1], written[-1].with_suffix(".png"))
     return written
-
-
-def _read(path):
-    # "none" is a name here; numbers that do not exist are written nan.
-    with reading(path, "make it with sonicvacuum blind score --tables, or blind baselines --out"):
-        return pandas.read_csv(path, keep_default_na=False, na_values=["", "nan"])
 
 
 def confusion(table: pandas.DataFrame) -> Figure:

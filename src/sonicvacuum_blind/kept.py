@@ -1,6 +1,8 @@
 """What of the full blind study is kept in git: its tables, and the pictures drawn from them."""
 
-from sonicvacuum.files import InputError
+from pathlib import Path
+
+from sonicvacuum.files import InputError, reading
 
 # Picture, by the stem of its file → what it shows.
 PICTURES = {
@@ -26,3 +28,26 @@ def caption(name: str) -> str:
     from sonicvacuum_blind.figures import CAPTIONS
 
     return CAPTIONS[name.removeprefix("blind_")]
+
+
+def read(folder, wanted=()) -> dict:
+    """Picture, without the prefix of its file → its table, a pandas.DataFrame; of those wanted, or of all
+    whose tables are in the folder.
+
+    Raises:
+        InputError: where a wanted table, or every table, is missing, or one cannot be read.
+    """
+    import pandas
+
+    paths = {name.removeprefix("blind_"): Path(table(name, folder)) for name in PICTURES}
+    chosen = list(wanted) or [name for name, path in paths.items() if path.exists()]
+    missing = [name for name in chosen or paths if not paths[name].exists()]
+    if missing:
+        command = "blind baselines --out" if missing[0] == "baselines" else "blind score --tables"
+        raise InputError(f"{folder}: {missing[0]}.csv is missing; make it with sonicvacuum {command}")
+    found = {}
+    for name in chosen:
+        # "none" is a name here; numbers that do not exist are written nan.
+        with reading(paths[name], "make it with sonicvacuum blind score --tables, or blind baselines --out"):
+            found[name] = pandas.read_csv(paths[name], keep_default_na=False, na_values=["", "nan"])
+    return found

@@ -8,7 +8,6 @@ from sonicvacuum.files import InputError, read_text, replacing
 from sonicvacuum_blind.baselines.names import ALARM, EXACT, PANELS, WRONG
 from sonicvacuum_blind.kept import TABLES
 from sonicvacuum_blind.report import Study, followed, percent, read, results, rivals
-from sonicvacuum_blind.study import BOTH, BROKEN, MENDED, SEEDS, TAG, cases
 
 BEGIN = "<!-- study: made by `snakemake publish_study`, do not edit -->"
 END = "<!-- end of study -->"
@@ -63,6 +62,8 @@ def told(study: Study) -> str:
 
 def provenance(score: pd.DataFrame) -> str:
     """How a study was made, from the rows of its records."""
+    from sonicvacuum_blind.study import SEEDS, TAG, cases  # and with it the integrator
+
     kinds = ", ".join(f"{sum(score['kind'] == kind)} {words}" for kind, words in KINDS.items())
     hours, all_cases = score["seconds"].astype(float).sum() / 3600.0, len(cases("full"))
     part = "" if len(score) == all_cases else f"{len(score)} of {all_cases}, the first batches: "
@@ -81,6 +82,8 @@ def provenance(score: pd.DataFrame) -> str:
 
 def mended() -> str:
     """What of the study commits later than the tag searched, and why."""
+    from sonicvacuum_blind.study import BOTH, BROKEN, MENDED
+
     return (
         f"The search broke on three records, {', '.join(BROKEN)}: two ended it, one did not let it end. "
         f"Their batches, {', '.join(map(str, BROKEN.values()))} of 0 to 47, are searched by commits "

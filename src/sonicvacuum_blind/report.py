@@ -14,8 +14,8 @@ import pandas as pd
 
 from sonicvacuum.report import tables
 from sonicvacuum_blind import words
+from sonicvacuum_blind.baselines.line import Line as Baseline
 from sonicvacuum_blind.baselines.names import PANELS, RULES
-from sonicvacuum_blind.baselines.table import Line as Baseline
 from sonicvacuum_blind.score import Line, Row
 
 SUMMARY = [f.name for f in fields(Line)]

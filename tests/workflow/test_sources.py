@@ -33,7 +33,6 @@ VERBS = {
 ENGINE = {
     *("card", "simulate", "discover", "page"),
     *("paper observe", "paper draw", "paper report", "paper runs", "paper uncertainty", "paper rivals"),
-    "blind page",  # its tables are named by the modules that make them
 }
 
 

@@ -71,6 +71,8 @@ def watch_inputs(words: list[str]) -> None:
     """Note when the first input of a command line is read, or else the first words are said."""
     before = ["", *words]
     given = [Path(w).resolve() for k, w in enumerate(words) if before[k] != "--out" and Path(w).exists()]
+    # What verbs of the reproduction read without being told to.
+    given += [Path("config.yaml").resolve()] if given else []
 
     def opened(event, arguments):
         if (

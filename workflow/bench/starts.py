@@ -61,7 +61,7 @@ INPUTS = {
     "paper digitised": "{out}/points.yaml --figure figures/fig4.csv",
     "paper report": "--ledger {results}/ledger.csv --assumptions {results}/assumptions.csv --metrics "
     "{results}/metrics.csv --claims workflow/resources/claims.csv --figure figures/fig3.svg "
-    "--out {out}/report.html",
+    "--card {results}/cards/fig3b.nominal.json --out {out}/report.html",
     "paper runs": "{results}/cards/fig3b.nominal.json --histories {results}/histories --metrics "
     "{results}/metrics.csv --out {out}/runs.html",
     "paper animate": "solitary --out {out}/solitary.svg",

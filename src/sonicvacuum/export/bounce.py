@@ -15,7 +15,6 @@ from sonicvacuum.export.base import Ball
 from sonicvacuum.files import InputError
 from sonicvacuum.observe.contacts import contact_duration
 from sonicvacuum.physics.chain import Chain
-from sonicvacuum.physics.run import simulate
 from sonicvacuum.physics.scales import impact_scales, sampling_of
 
 # Simulated for so many Hertz contact times: heavily damped balls creep out of their dent.
@@ -82,6 +81,8 @@ def bounces(chain: Chain, speeds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def _bounce(one, speed):
     """One ball, sampled in its own contact time."""
+    from sonicvacuum.physics.run import simulate  # and with it Numba: not before what is asked is known
+
     chain = replace(one, speed=np.array([float(speed)]))
     length = CONTACTS * impact_scales(chain)[1]
     history = simulate(chain, [0], length, sampling_of(chain), refine=4.0)

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import msgspec
 import numpy as np
-from scipy.optimize import minimize
+import scipy
 
 from sonicvacuum.blas import one_thread
 from sonicvacuum.discover.fit.calibration import Calibration
@@ -75,7 +75,9 @@ def calibrate(cases: list[Outcome]) -> Calibration:
         given = (calibration.probabilities(c.logs, c.unknown).get(c.truth, 0.0) for c in cases)
         return -sum(math.log(max(p, _LEAST)) for p in given) + 0.5 * float(numbers @ numbers) / _WIDTH**2
 
-    found = minimize(loss, np.zeros(4), method="Nelder-Mead", options={"xatol": 1e-4, "fatol": 1e-4})
+    found = scipy.optimize.minimize(
+        loss, np.zeros(4), method="Nelder-Mead", options={"xatol": 1e-4, "fatol": 1e-4}
+    )
     temper, none, unknown, slope = (float(n) for n in found.x)
     return Calibration(
         round(math.exp(temper), 4), round(none, 4), round(unknown, 4), round(math.exp(slope), 4), len(cases)

@@ -5,7 +5,6 @@ Pairs are left out: these rules name one effect or none.
 """
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -14,6 +13,7 @@ from sonicvacuum.files import InputError
 from sonicvacuum_blind import design
 from sonicvacuum_blind.baselines import rules
 from sonicvacuum_blind.baselines.cases import Case
+from sonicvacuum_blind.baselines.line import Line
 from sonicvacuum_blind.baselines.names import ALARM, EXACT, NULLS, OUTSIDE, SINGLES, WRONG
 from sonicvacuum_blind.breakdown import label_of_verdict
 from sonicvacuum_blind.score import NONE, UNKNOWN, Row
@@ -25,26 +25,6 @@ LEFTOVER = 7.5
 METHOD, IDEAL = "sonicvacuum", "ideal rule"
 QUIETER = 100.0
 RULES = ("best-chi2", "bic", "nearest-shape", "forest", "state")
-
-
-@dataclass(frozen=True)
-class Line:
-    """Share of a group of cases: the name is exact (singles), there is a name (nulls, foreign).
-
-    Attributes:
-        rule: who names; `measure`, `group`: what is counted, on which cases.
-        count, value, low, high: share with 95 % interval (none for the ideal rule, which is computed).
-        note: on what the rule was set, and on which part of the cases it was tried.
-    """
-
-    rule: str
-    measure: str
-    group: str
-    count: int
-    value: float
-    low: float
-    high: float
-    note: str
 
 
 def lines(rule: str, names: Mapping[str, str], cases: Iterable[Case], note: str = "") -> list[Line]:

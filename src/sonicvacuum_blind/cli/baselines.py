@@ -34,13 +34,15 @@ _RULES = ("best-chi2", "bic", "nearest-shape", "forest", "state")
 )
 def baselines(records, truth, verdicts, out, ideal, training, wanted, state_cases):
     """Name what is hidden by simpler rules on the same cases, and count how often they are right."""
-    from sonicvacuum_blind.baselines import table
     from sonicvacuum_blind.baselines.cases import read
-    from sonicvacuum_blind.score import write_table
 
     check_apart([out], [records, truth, verdicts, training, *ideal])
     cases = read(records, truth, verdicts, ideal)
     known = read(*(Path(training) / part for part in ("records", "truth", "verdicts"))) if training else []
+    # Long to load: what is wrong with a case is said before.
+    from sonicvacuum_blind.baselines import table
+    from sonicvacuum_blind.score import write_table
+
     lines = table.compare(cases, known, wanted or table.RULES, state_cases)
     write_table(lines, table.Line, out)
     for line in lines:

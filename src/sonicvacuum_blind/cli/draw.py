@@ -1,7 +1,5 @@
 """`sonicvacuum blind draw`: the pictures of a study."""
 
-from pathlib import Path
-
 import click
 
 from sonicvacuum.cli.helped import FOLDER, PRESENT, verb
@@ -20,7 +18,10 @@ from sonicvacuum.cli.helped import FOLDER, PRESENT, verb
 @click.option("--prefix", default="", help="Put before their names.")
 def draw(folder, wanted, out, prefix):
     """Draw the tables of a blind study in FOLDER: confusion, accuracy, reliability, pit, baselines."""
-    from sonicvacuum_blind import figures
+    from sonicvacuum_blind import kept
 
-    for path in figures.draw(Path(folder), wanted, out, prefix):
+    tables = kept.read(folder, wanted)
+    from sonicvacuum_blind import figures  # long to load: what is missing is said before
+
+    for path in figures.draw(tables, out or folder, prefix):
         click.echo(str(path))

@@ -44,7 +44,6 @@ _FILE = existing()
 @click.option("--out", required=True, type=WRITTEN, help="Page (HTML) to write.")
 def report(cards, histories, sure, out, **given):
     """Write the self-contained page with figures, ledger, audit, discoveries and provenance."""
-    from sonicvacuum_paper.report import page
     from sonicvacuum_paper.shown import own as added
 
     named = [value for key, value in given.items() if key != "linked"]
@@ -52,6 +51,8 @@ def report(cards, histories, sure, out, **given):
     check_apart([out, sure], [*listed, *cards, histories])
     own = [path for path in cards if added(Path(path).stem)] if histories else []
     read = [read_card(card) for card in cards]
+    from sonicvacuum_paper.report import page  # long to load: what is wrong with a card is said before
+
     given["linked"] += (Path(sure).name,) if sure else ()
     sources = page.Sources(cards=read, own=loaded(own, histories), **given)
     if sure:

@@ -24,15 +24,18 @@ _FILE = existing()
 @click.option("--explained", required=True, type=WRITTEN, help="Fits to it (CSV) to write.")
 def rivals(path, record, picture, contours, **out):
     """Compare the layer with a loss, Hertz at 15 GPa with a loss, laws of loss, and a relaxing solid."""
-    import pandas
-
     from sonicvacuum import config as configuration
     from sonicvacuum import records
+
+    out |= {"map": contours}
+    check_apart([*out.values(), picture], [path])
+    cases, measured = configuration.read(path), records.read(record)
+    # Long to load: what is wrong is said before.
+    import pandas
+
     from sonicvacuum.figures import style
     from sonicvacuum_paper.uncertainty import picture as drawing
     from sonicvacuum_paper.uncertainty.rivals import write_rivals
 
-    out |= {"map": contours}
-    check_apart([*out.values(), picture], [path])
-    write_rivals(configuration.read(path), records.read(record), out)
+    write_rivals(cases, measured, out)
     style.save(drawing.draw(pandas.read_csv(contours)), picture)

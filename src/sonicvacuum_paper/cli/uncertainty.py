@@ -19,8 +19,11 @@ def uncertainty(claims, path, draws, named, out):
     """Find how probable each statement of the paper is under each model."""
     from sonicvacuum import config as configuration
     from sonicvacuum.cli.cards import read_card
+
+    check_apart([out], [claims, path, *named])
+    cases, cards = configuration.read(path), [read_card(card) for card in named]
+    # Long to load: what is wrong is said before.
     from sonicvacuum_paper.uncertainty.inputs import DRAWS
     from sonicvacuum_paper.uncertainty.stage import write_uncertainty
 
-    check_apart([out], [claims, path, *named])
-    write_uncertainty(claims, configuration.read(path), out, draws or DRAWS, map(read_card, named))
+    write_uncertainty(claims, cases, out, draws or DRAWS, cards)

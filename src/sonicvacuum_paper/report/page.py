@@ -12,10 +12,9 @@ from sonicvacuum_blind import report as study
 from sonicvacuum_paper import ladder
 from sonicvacuum_paper.assumptions import AUDITED
 from sonicvacuum_paper.figures import caption
-from sonicvacuum_paper.report import answer, cursor, provenance, rivals, runs, tables, uncertain
+from sonicvacuum_paper.report import answer, provenance, rivals, runs, tables, uncertain
 from sonicvacuum_paper.report.steps import masses, settings, steps
 from sonicvacuum_paper.shown import ANIMATIONS
-from sonicvacuum_paper.uncertainty import picture
 
 
 @dataclass(frozen=True)
@@ -113,8 +112,14 @@ def sure(given: Sources) -> str:
 def _open(given, ledger):
     """What the paper leaves open: probabilities of its statements, and what sets rival models apart."""
     of_rivals = (given.contours, given.experiments, given.relaxation, given.losses, given.explained)
-    drawn = given.map_picture and _figure(Path(given.map_picture), picture.CAPTION)
+    drawn = given.map_picture and _figure(Path(given.map_picture), _caption_of_map())
     return {**uncertain.context(ledger), **rivals.context(*of_rivals), "map_picture": drawn}
+
+
+def _caption_of_map():
+    from sonicvacuum_paper.uncertainty.picture import CAPTION  # and with it matplotlib
+
+    return CAPTION
 
 
 CLAIMS = [
@@ -158,6 +163,8 @@ def _claim_row(row: dict) -> dict:
 
 def _figure(svg: Path, told: str | None = None) -> dict:
     """One figure, its SVG inlined, with the scales of its CSV; `told` is its caption, if not its own."""
+    from sonicvacuum_paper.report import cursor  # and with it matplotlib: not before the tables are read
+
     name, table = svg.stem, svg.with_suffix(".csv")
     return {
         "name": name,

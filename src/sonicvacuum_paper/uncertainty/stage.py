@@ -18,9 +18,9 @@ def write_uncertainty(
     A configuration without a ledger holds no statement against its cases: the table is then empty. `named`
     are the cards with the model that `discover` names.
     """
-    rows = []
+    rows, claims = [], read_table(claims_path, Claim)
     if config.ledger:
         cards = sample.cards_of(config, named)
         sampled = sample.sample(cards, inputs.draws(count))
-        rows = agreement.build(cards["fig3a"], sampled, read_table(claims_path, Claim))
+        rows = agreement.build(cards["fig3a"], sampled, claims)
     table.write(rows, out)
