@@ -12,10 +12,14 @@ import shutil
 import subprocess
 import sys
 from collections import Counter
+from pathlib import Path
 
 import pytest
 from ball import RECORD
+from click.testing import CliRunner
 from planner import Planner
+
+from sonicvacuum.cli import cli
 
 # A folder's name may be anything; of this one a shell would make commands.
 ODD = """a b; touch pwned $(touch pwned) `touch pwned` 'q' "d" * ü"""
@@ -288,17 +292,35 @@ use rule * from sonicvacuum as sv_*
     assert planned(tmp_path) == {f"sv_{rule}": count for rule, count in ALL.items()}
 
 
-def test_another_configuration_may_be_named_and_needs_no_ledger(project, snakemake):
-    """Its cases are simulated and shown, and the statements of the paper are left without a number."""
+def test_another_configuration_may_be_named_and_needs_no_ledger(
+    project, snakemake, monkeypatch, pytestconfig
+):
+    """Its cases are simulated and shown; no statement of the paper has a number, and none is told."""
     head, cases = CONFIG.split("ledger:\n")
     (project / "config.yaml").unlink()
     (project / "own.yaml").write_text(head + cases[cases.index("cases:") :])
     tables = ("results/ledger.csv", "results/assumptions.csv", "results/runs.html")
-    done = snakemake(project, *tables, "--configfile", "own.yaml")
+    done = snakemake(project, *tables, PAGE, "--configfile", "own.yaml")
     assert done.returncode == 0, done.said
     assert "coated.soft" in (project / "results/runs.html").read_text()
     verdicts = {line.split(",")[-2] for line in (project / "results/ledger.csv").read_text().splitlines()[1:]}
     assert "disagrees" not in verdicts
+    # What else the whole page needs takes long, and says nothing of these cases.
+    monkeypatch.chdir(project)
+    cards = [f"--card={path}" for path in sorted(Path("results/cards").glob("*.json"))]
+    given = [f"--{name}=results/{name}.csv" for name in ("ledger", "assumptions", "metrics")]
+    claims = f"--claims={pytestconfig.rootpath / 'workflow/resources/claims.csv'}"
+    more = ["--histories=results/histories", f"--discovery={Path(PAGE).parent}", "--out=report.html"]
+    done = CliRunner().invoke(cli, ["paper", "report", *given, claims, *cards, *more], catch_exceptions=False)
+    assert done.exit_code == 0, done.output
+    page = Path("report.html").read_text(encoding="utf-8")
+    assert "<h1>Simulated chains</h1>" in page
+    assert page.count('class="run" data-scales') == len(cards) + 1  # one card has two speeds
+    assert "4 cases of your own configuration, simulated, and 1 record" in page
+    assert "Nothing is named" in page
+    assert not [
+        part for part in ("first", "asked", "disagreements", "ledger", "audit") if f'id="{part}"' in page
+    ]
 
 
 def test_the_workflow_passes_its_lint(pytestconfig, snakemake):

@@ -64,6 +64,7 @@ def build(given: Sources) -> str:
     ledger = _ledger(given)
     metrics = tables.read(given.metrics, tables.METRICS)
     open_questions = _open(given, ledger)
+    own = [runs.told(one, metrics) for one in given.own]
     template = inline.environment("sonicvacuum_paper.report").get_template("page.html.j2")
     return template.render(
         ledger=[_claim_row(row) for row in ledger.to_dict("records")],
@@ -84,7 +85,8 @@ def build(given: Sources) -> str:
         totals={t.model: t for t in ladder.totals(ledger.to_dict("records"))},
         figures=[_figure(Path(svg)) for svg in given.figures],
         cards=[_card_row(card, metrics) for card in given.cards],
-        own=[runs.told(one, metrics) for one in given.own],
+        own=own,
+        of_paper=tables.asked(ledger) or not own,
         catalogue=len(IDS),
         discoveries=[record.section(folder) for folder in given.discoveries],
         full=given.blind_full and study.read(given.blind_full),

@@ -58,6 +58,13 @@ def headline(ledger: pd.DataFrame) -> str:
     )
 
 
+def asked(ledger: pd.DataFrame) -> bool:
+    """Whether any statement that needs a simulation has the number of some model: not where all cases are of
+    the user's own.
+    """
+    return bool((ledger.loc[ledger["kind"] == SIMULATION, list(LADDER)] != "").any(axis=None))
+
+
 def first(ledger: pd.DataFrame) -> list[dict]:
     """The table of a first look: what is printed, and each model's number with what became of it."""
     known = ledger.set_index("claim")
