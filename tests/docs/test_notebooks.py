@@ -1,10 +1,11 @@
-"""The notebooks in docs/ run as they stand and print what they show."""
+"""The notebooks in docs/ run as they stand, print what they show, and have a picture."""
 
 import contextlib
 import io
 import json
 
 import pytest
+from matplotlib import pyplot
 
 NAMES = ("fig3a", "verdict", "dimer")
 
@@ -16,12 +17,21 @@ def test_a_notebook_prints_what_it_shows(name, pytestconfig, monkeypatch):
     book = json.loads((folder / f"{name}.ipynb").read_text(encoding="utf-8"))
     monkeypatch.chdir(folder)
     scope: dict = {}
+    pyplot.close("all")
     for cell in (c for c in book["cells"] if c["cell_type"] == "code"):
         said = io.StringIO()
         with contextlib.redirect_stdout(said):
             exec(compile("".join(cell["source"]), name, "exec"), scope)
-        shown = "".join(line for output in cell["outputs"] for line in output["text"])
+        shown = "".join(line for output in cell["outputs"] for line in output.get("text", ()))
         assert said.getvalue() == shown
+    pictures = [
+        output
+        for c in book["cells"]
+        for output in c.get("outputs", ())
+        if "image/png" in output.get("data", ())
+    ]
+    assert len(pictures) == len(pyplot.get_fignums()) == 1
+    pyplot.close("all")
 
 
 def test_every_notebook_is_linked(pytestconfig):
