@@ -157,3 +157,15 @@ def test_pages_print_with_their_folds_open(open_page, pictures, name, most):
     if name == "report.html":
         assert page.locator("#claims td.verdict").first.is_visible()
         assert not page.locator("#ledger .controls").is_visible()
+
+
+def test_of_all_runs_those_are_printed_that_are_unfolded_and_with_their_numbers(open_page, pictures):
+    page = open_page("runs.html#fig3b.nominal")
+    page.emulate_media(media="print")
+    rows = page.locator("#cards > tbody > tr")
+    assert [row.is_visible() for row in rows.all()].count(True) == 1
+    assert page.locator("[id='fig3b.nominal'] figure.run td").first.is_visible()
+    assert page.get_by_text("On paper stand the cases that are unfolded").is_visible()
+    assert pages_of(page.pdf(path=pictures / "runs.pdf", format="A4")) == 1
+    page.emulate_media(media="screen")
+    assert rows.first.is_visible()

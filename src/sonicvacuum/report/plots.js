@@ -37,7 +37,8 @@
 
   function chart(box, height, data, series, label, range) {
     const c = colours();
-    const axis = { stroke: c.ink, grid: { stroke: c.line, width: 1 }, ticks: { stroke: c.line, width: 1 } };
+    const values = (_, ticks) => ticks.map((v) => String(v).replace("-", "−"));
+    const axis = { stroke: c.ink, values, grid: { stroke: c.line, width: 1 }, ticks: { stroke: c.line, width: 1 } };
     const options = {
       width: box.clientWidth, height, scales: { x: { time: false }, y: range ? { range } : {} },
       cursor: { sync: { key: sync.key }, drag: { x: true, y: false } },

@@ -245,11 +245,11 @@ def _bounded(p, row):
     """`below 0.2`; `above` where the effect fades as its parameter grows, or can only lower it; both ends of
     what may depart either way from having none.
     """
-    value, none = float(row["limit_95"]), p.off
-    if callable(none):  # what the record says is not in the table, but the estimate lies on that side
-        none = float(row["estimate"])
+    value = float(row["limit_95"])
+    # What the record says is not in the table, but the estimate lies between that and the limit.
+    none = float(row["estimate"]) if callable(p.off) else p.off
     other = 2.0 * none - value
-    if p.low < none < p.high and p.low <= other <= p.high:
+    if not callable(p.off) and p.low < none < p.high and p.low <= other <= p.high:
         ends = (_apart(str(end), off(p)) for end in sorted((value, other)))
         return " to ".join(ends).replace("-", "−")
     return f"{'above' if value < none else 'below'} {_apart(row['limit_95'], off(p))}"
