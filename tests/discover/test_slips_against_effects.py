@@ -57,10 +57,25 @@ def test_swapped_gauges_are_put_right_and_the_damping_is_named(hidden):
 
 def test_exchanged_runs_are_put_right_beside_an_effect_of_speed():
     """Either run alone looks struck at another speed; that and striker-error passed for the truth."""
-    record, _ = made([("contact-exponent", {"exponent": 1.47})], seed=5, speeds=(0.2, 0.45, 0.95))
+    record, _ = made([("contact-exponent", {"exponent": 1.495})], seed=5, speeds=(0.2, 0.45, 0.95))
     v = session.discover(changes.runs_swapped(record, "v1", "v2")).verdict
     assert [(f.fault, f.run) for f in v.faults] == [("runs-swapped", "v1 and v2")]
     assert v.named == ["contact-exponent"]
+
+
+def test_a_run_that_is_off_is_put_right_beside_an_effect():
+    """An error of all strikers explains a part of one run's, and was named beside the drag with 0.998."""
+    record, _ = made([("viscous-drag", {"rate_per_s": 400.0})], seed=6, speeds=(0.2, 0.45, 0.95))
+    v = session.discover(changes.strikers(record, "speed_m_s", 0.1, ("v1",))).verdict
+    assert [(f.fault, f.run) for f in v.faults] == [("run-off", "v1")]
+    assert v.faults[0].value == pytest.approx(np.exp(-0.1), abs=0.03)  # the stated 1 %, three times
+    assert v.named == ["viscous-drag"]
+
+
+def test_a_gauge_in_volts_does_not_change_the_name_of_the_damping(hidden):
+    """Beside a gain that far off, pairs that were held to the catalogue's range of it fitted worse."""
+    v = session.discover(altered(hidden, "wall", lambda y: 0.08 * y)).verdict
+    assert set(v.named) == {"sensor-gain", "kuwabara-kono"}
 
 
 def test_a_dead_gauge_is_no_effect_of_the_model(empty):

@@ -9,9 +9,9 @@ import pytest
 from made_records import made
 
 from sonicvacuum.discover.faults import changes, policy
-from sonicvacuum.discover.faults.competition import Search, obvious, suspicious
+from sonicvacuum.discover.faults.competition import Search, obvious
 from sonicvacuum.discover.faults.found import Bench
-from sonicvacuum.discover.faults.judging import Judge
+from sonicvacuum.discover.faults.judging import Judge, suspicious
 from sonicvacuum.discover.faults.slips import hypotheses
 from sonicvacuum.effects import CATALOGUE
 

@@ -21,6 +21,15 @@ from sonicvacuum.discover.faults.judging import Judge, Judged, Model, excess, no
 from sonicvacuum.discover.faults.slips import Slip, hypotheses
 from sonicvacuum.discover.faults.table import FAULTS
 from sonicvacuum.discover.faults.timing import time_zero, with_starts
+from sonicvacuum.discover.faults.weights import (
+    ALIKE,
+    alias,
+    part_without,
+    unexplained,
+    weight_beside,
+    weight_of,
+    without,
+)
 from sonicvacuum.discover.fit import evidence, smooth
 from sonicvacuum.discover.fit.refit import polish
 from sonicvacuum.discover.judge import explanations
@@ -206,12 +215,15 @@ class Search:
     def _instead(self, found: Investigation, ranked: list[Judged]) -> Investigation | None:
         """The investigation of the record with one slip more put right, where that explains it better."""
         left, size = unexplained(found), float(found.sizes.sum())
-        rivals = ranked
+        final = Model(self.bench, found.forward, found.final)
         if left:
             # What is left is more than a slip that explains little of it.
             rivals = [j for j in ranked if j.gain > (1.0 - policy.LEFT) * (found.null.objective - size)]
-            if found.final is not found.null:
-                rivals += self._beside(Model(self.bench, found.forward, found.final), found)
+        else:
+            rivals = [*ranked, *self._in_place(found)]
+        # Runs whose stated errors are strained may be all that betrays a slip beside the right effect.
+        if found.final is not found.null and (left or suspicious(final)):
+            rivals += self._beside(final, found)
         rivals = sorted(rivals, key=lambda j: -j.log_odds)
         return self.weighed(found, rivals, left) if rivals else None
 
@@ -223,12 +235,25 @@ class Search:
         return [
             replace(j, gain=j.gain + own, log_bayes=j.log_bayes + weight)
             for j in self.ranked(model)
-            if j.gain > (1.0 - policy.LEFT) * misfit
+            if j.gain > (1.0 - policy.LEFT) * misfit or not unexplained(found)
         ]
+
+    def _in_place(self, found: Investigation) -> list[Judged]:
+        """Slips in place of one effect of a set that moves data as some slip does, beside the others."""
+        judged = []
+        for name in found.named if len(found.named) > 1 else ():
+            if part := part_without(found, name):
+                rest, fit = part
+                own, weight = found.null.objective - fit.objective, weight_beside(found, rest)
+                judged += [
+                    replace(j, gain=j.gain + own, log_bayes=j.log_bayes + weight)
+                    for j in self.ranked(Model(self.bench, found.forward, fit))
+                ]
+        return judged
 
     def weighed(self, found, rivals, left):
         """The investigation of the record with the best rival put right, None where that is no better."""
-        same = [j for j in rivals if _alias(j, found)]
+        same = [j for j in rivals if alias(j, found)]
         if same and rivals[0].log_odds - same[0].log_odds < 0.5 * ALIKE:
             self._share(found, [j for j in rivals if j.gain > same[0].gain - ALIKE], same[0])
             return None
@@ -270,23 +295,22 @@ class Search:
         before, now = (max(f.final.objective - size, 1.0) for f in (found, after))
         return now > policy.LEFT * before
 
-    def _share(self, found: Investigation, rivals: list[Judged], alias: Judged | None, p: float = 1.0):
+    def _share(self, found: Investigation, rivals: list[Judged], like: Judged | None, p: float = 1.0):
         """Say slips that explain as well as the effects named, and take their share from these.
 
-        With `alias`, the slip among them that moves the data exactly as the effect: both weigh the same.
+        With `like`, the slip among them that moves the data exactly as one effect: both weigh the same.
         """
-        odds = np.array([j.log_odds for j in rivals] + ([alias.log_odds] if alias else []))
+        odds = np.array([j.log_odds for j in rivals] + ([like.log_odds] if like else []))
         weights = np.exp(odds - odds.max())
         weights *= p / weights.sum()
         for judged, weight in zip(rivals, weights, strict=False):
             if weight >= policy.SHOWN:
                 self.findings.append(judged.slip.finding(judged.size, float(weight)))
-        share, taken = float(weights[: len(rivals)].sum()), 0.0
-        for name in found.probabilities:
-            if name not in ("none", "unknown"):
-                taken += share * found.probabilities[name]
-                found.probabilities[name] *= 1.0 - share
-        found.probabilities["none"] = found.probabilities.get("none", 0.0) + taken
+        share, told = float(weights[: len(rivals)].sum()), found.probabilities
+        for name, own in list(told.items()):
+            if kept := without(name, found, like):
+                told[name] -= share * own
+                told[kept] = told.get(kept, 0.0) + share * own
         names = " or ".join(dict.fromkeys(j.slip.fault for j in rivals))
         found.reasons.append(
             f"a slip, {names}, explains these data as well: none is missing where it was made"
@@ -311,30 +335,3 @@ def obvious(judged: Judged, model: Model) -> bool:
         and judged.gain > policy.SHARE * excess(model)
         and not FAULTS[judged.slip.fault].alias
     )
-
-
-def unexplained(found: Investigation) -> bool:
-    """Whether something is left that nothing found explains."""
-    return "unknown" in found.named
-
-
-def weight_of(found: Investigation) -> float:
-    """Log of prior times evidence of all explanations of a record together, against its nominal model's."""
-    prior = found.forward.experiment.prior_odds
-    logs = explanations.log_weights(found.candidates, found.combinations, found.alike, prior)
-    return float(np.logaddexp.reduce(list(logs.values())))
-
-
-# Slips and an effect within this Δχ² explain alike.
-ALIKE = 9.0
-
-
-def _alias(judged: Judged, found: Investigation) -> bool:
-    """Whether a slip moves these data exactly as the one effect that is named."""
-    nuisance = FAULTS[judged.slip.fault].alias
-    if not nuisance or judged.model is None or len(found.named) != 1 or unexplained(found):
-        return False
-    effect = found.forward.experiment.catalogue.effect(found.named[0])
-    if all(p.acts_like != nuisance for p in effect.parameters):
-        return False
-    return judged.gain > found.null.objective - found.final.objective - ALIKE

@@ -6,7 +6,8 @@ followed, and all pairs of the nominal screen, whose joint gains are algebra. On
 share one effect with it are tried as well.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -54,8 +55,10 @@ def search(
 ) -> list[Combination]:
     """The best pairs, best first; `scores` is the screen of the nominal model, `candidates` the singles."""
     setup = singles.setup_of(forward)
-    seen = linear(scores, setup)
+    let_go = partial(_let_go, candidates)
+    seen = [let_go(s) for s in linear(scores, setup)]
     asked = [s for c in candidates[:STARTED] if c.gain > 0.0 for s in beside(forward, null, c.fit, setup)]
+    asked = [let_go(s) for s in asked]
     found: dict[frozenset, Combination] = {}
     _refit(forward, null, setup, _best(asked, found, BESIDE), found)
     _refit(forward, null, setup, _best(seen, found, LINEAR), found)
@@ -73,6 +76,16 @@ def search(
         if max(found.values(), key=lambda p: p.log_bayes) is best:
             break
     return sorted(found.values(), key=lambda p: -p.log_bayes)
+
+
+def _let_go(candidates: list[Candidate], start: Start) -> Start:
+    """The start with each effect as free as it had to be alone: a bound may make it look the worse."""
+    alone = {c.effect: c.fit.hypothesis.components[0].free for c in candidates if "beyond" in c.flags}
+    parts = []
+    for c in start.hypothesis.components:
+        further = {x.parameter.name: x for x in alone.get(c.effect.id, ())}
+        parts.append(replace(c, free=tuple(further.get(x.parameter.name, x) for x in c.free)))
+    return replace(start, hypothesis=Hypothesis(tuple(parts), start.hypothesis.common))
 
 
 def _key(start: Start, best: Combination) -> tuple:

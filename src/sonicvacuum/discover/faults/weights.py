@@ -1,0 +1,79 @@
+"""What explanations of a record weigh, and which effects a slip stands for."""
+
+import math
+
+import numpy as np
+
+from sonicvacuum.discover.faults.judging import Judged
+from sonicvacuum.discover.faults.table import FAULTS
+from sonicvacuum.discover.fit import evidence
+from sonicvacuum.discover.fit.refit import Fit
+from sonicvacuum.discover.judge import explanations
+from sonicvacuum.discover.rounds import Investigation
+
+# Slips and an effect within this Δχ² explain alike.
+ALIKE = 9.0
+# What slips and effects both move, see `table.Fault.alias`.
+NUISANCES = {fault.alias for fault in FAULTS.values()} - {""}
+
+
+def unexplained(found: Investigation) -> bool:
+    """Whether something is left that nothing found explains."""
+    return "unknown" in found.named
+
+
+def logs_of(found: Investigation) -> dict[str, float]:
+    """Explanation of a record → log of prior times evidence, against its nominal model's."""
+    prior = found.forward.experiment.prior_odds
+    return explanations.log_weights(found.candidates, found.combinations, found.alike, prior)
+
+
+def weight_of(found: Investigation) -> float:
+    """Log of prior times evidence of all explanations of a record together, against its nominal model's."""
+    return float(np.logaddexp.reduce(list(logs_of(found).values())))
+
+
+def alias(judged: Judged, found: Investigation) -> bool:
+    """Whether a slip moves these data exactly as one effect that is named, all else of it being the same."""
+    if judged.model is None or unexplained(found) or not _aliased(found, judged):
+        return False
+    return judged.gain > found.null.objective - found.final.objective - ALIKE
+
+
+def acts_like(found: Investigation, name: str) -> set[str]:
+    """The nuisances as which an effect's parameters act."""
+    return {p.acts_like for p in found.forward.experiment.catalogue.effect(name).parameters} - {None}
+
+
+def _aliased(found, judged):
+    """Effects named that act as a slip does."""
+    nuisance = FAULTS[judged.slip.fault].alias
+    return [n for n in found.named if nuisance and nuisance in acts_like(found, n)]
+
+
+def without(name: str, found: Investigation, like: Judged | None) -> str:
+    """The explanation that is left of one where a slip stands for its effects, or for those that act `like`
+    it; "" where the slip stands for none of them.
+    """
+    effects = explanations.effects(name)
+    if name in (explanations.NONE, explanations.UNKNOWN):
+        return ""
+    if like is None:
+        return explanations.NONE
+    kept = [n for n in effects if n not in _aliased(found, like)]
+    return explanations.key(kept) if len(kept) < len(effects) else ""
+
+
+def part_without(found: Investigation, name: str) -> tuple[str, Fit] | None:
+    """A set that is named, one effect left out, as it was fitted; None where it was not, or where no slip
+    moves data as that effect does.
+    """
+    rest = explanations.key(n for n in found.named if n != name)
+    fits = {explanations.key([c.effect]): c.fit for c in found.candidates}
+    fits |= {explanations.key(c.effects): c.fit for c in found.combinations}
+    return (rest, fits[rest]) if rest in fits and NUISANCES & acts_like(found, name) else None
+
+
+def weight_beside(found: Investigation, rest: str) -> float:
+    """Log of prior times evidence of an explanation, against the nominal model's of none."""
+    return logs_of(found)[rest] - math.log(evidence.PRIOR_NONE)
