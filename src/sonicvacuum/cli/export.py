@@ -7,6 +7,7 @@ import click
 from sonicvacuum.cli import existing
 from sonicvacuum.cli.helped import WRITTEN, verb
 from sonicvacuum.cli.own_effects import catalogue, own_effects
+from sonicvacuum.files import likely
 
 NAMES = ("lammps", "liggghts", "yade", "mujoco", "drake", "all")
 
@@ -115,7 +116,8 @@ def _law(name, parameters, known):
     if name == "none":
         return {}
     if name not in known:
-        raise click.UsageError(f"--law {name}: no such effect; one of none, {', '.join(known.ids)}")
+        cure = likely(name, ("none", *known.ids)) or f"one of none, {', '.join(known.ids)}"
+        raise click.UsageError(f"--law {name}: no such effect; {cure}")
     one = known.effect(name)
     needed = [p.name for p in one.parameters if p.switches and p.name not in parameters]
     if needed:
