@@ -1,16 +1,20 @@
-"""What `make docs` adds to the pages that stand here: gallery of effects, ledger, committed figures.
+"""What `make docs` adds to the pages that stand here: gallery of effects, ledger, committed figures, notebooks
+as pages.
 
 Hooks of MkDocs. The gallery is simulated: a chain of twelve steel beads without and with each effect,
 written as CSV and drawn from it.
 """
 
+import base64
 import csv
+import json
 import tempfile
 from pathlib import Path
 
 from mkdocs.structure.files import File
 
 from sonicvacuum.figures import gallery
+from sonicvacuum.report.inline import formula
 
 ROOT = Path(__file__).resolve().parents[1]
 _DRAWN = Path(tempfile.mkdtemp(prefix="gallery-"))
@@ -24,16 +28,42 @@ def on_files(files, config):
             files.append(File.generated(config, f"gallery/{name}.{kind}", abs_src_path=str(path)))
     for path in sorted((ROOT / "figures").glob("*.png")):
         files.append(File.generated(config, f"figures/{path.name}", abs_src_path=str(path)))
-    files.append(File.generated(config, "effects.md", content=gallery.page("gallery")))
+    files.append(File.generated(config, "effects.md", content=gallery.page("gallery", formula)))
     files.append(File.generated(config, "ledger.md", content=_ledger()))
+    for path in sorted((ROOT / "docs").glob("*.ipynb")):
+        text, pictures = _notebook(path)
+        files.append(File.generated(config, f"{path.stem}.md", content=text))
+        for name, picture in pictures.items():
+            files.append(File.generated(config, name, content=picture))
     return files
 
 
 def on_page_markdown(markdown, page, config, files):
-    """Links to the committed figures as they are on the site; their guide is only named."""
-    return markdown.replace("[figures/README.md](../figures/README.md)", "`figures/README.md`").replace(
-        "](../figures/", "](figures/"
-    )
+    """Links as they are on the site: to the committed figures, whose guide is only named, and to notebooks."""
+    for written, there in (
+        ("[figures/README.md](../figures/README.md)", "`figures/README.md`"),
+        ("[docs/example](example/README.md)", "`docs/example`"),
+        ("](../figures/", "](figures/"),
+        (".ipynb)", ".md)"),
+    ):
+        markdown = markdown.replace(written, there)
+    return markdown
+
+
+def _notebook(path):
+    """A notebook with what it printed and drew, as Markdown, and its pictures: place → PNG."""
+    parts, pictures = [], {}
+    for cell in json.loads(path.read_text(encoding="utf-8"))["cells"]:
+        source = "".join(cell["source"])
+        parts.append(source if cell["cell_type"] == "markdown" else f"```python\n{source}\n```")
+        for output in cell.get("outputs", ()):
+            if "text" in output:
+                parts.append(f"```text\n{''.join(output['text'])}```")
+            elif "image/png" in output.get("data", {}):
+                name = f"notebooks/{path.stem}-{len(pictures)}.png"
+                pictures[name] = base64.b64decode(output["data"]["image/png"])
+                parts.append(f"![What the cell draws]({name})")
+    return "\n\n".join(parts) + "\n", pictures
 
 
 def _ledger():

@@ -5,7 +5,7 @@ such a chain cannot have (a coating's, a resting load's) is shown on one that ca
 the picture drawn from them.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -110,33 +110,41 @@ def draw(table, path) -> None:
         save(figure, path)
 
 
-def page(pictures: str) -> str:
-    """The gallery as Markdown; pictures stand in the folder `pictures` beside it."""
+def page(pictures: str, typeset: Callable[[str], str] = str) -> str:
+    """The gallery as Markdown; pictures stand in the folder `pictures` beside it.
+
+    `typeset` sets what effects write in plain letters: powers, Greek letters, signs.
+    """
     head = """# Gallery of effects
 
 What an ideal chain may lack: grey without, orange with the effect at its typical strength.
 """
-    return head + "\n".join(_entry(effect, pictures) for effect in CATALOGUE)
+    return head + "\n".join(_entry(effect, pictures, typeset) for effect in CATALOGUE)
 
 
-def _entry(effect: Effect, pictures):
+def _entry(effect: Effect, pictures, typeset):
+    def told(text):
+        return str(typeset(text)).replace("*", "&#42;")  # a radius of curvature is no emphasis
+
+    units = {p.name: "" if p.unit == "1" else f" {p.unit}" for p in effect.parameters}
     parameters = "\n".join(
-        f"* `{p.name}`: {p.help}; searched from {p.low:g} to {p.high:g}" for p in effect.parameters
+        f"* `{p.name}`: {told(f'{p.help}; searched from {p.low:g} to {p.high:g}{units[p.name]}')}"
+        for p in effect.parameters
     )
     return f"""
 ## {effect.title} (`{effect.id}`)
 
-Lacking: {effect.missing}.
+Lacking: {told(effect.missing)}.
 
-    {effect.equation}
+> {told(effect.equation)}
 
 ![{effect.title}]({pictures}/{effect.id}.svg)
 
-**What it moves**: {effect.signature}. **Energy**: {effect.energy}.
+**What it moves**: {told(effect.signature)}. **Energy**: {told(effect.energy)}.
 
 {parameters}
 
-**When to think of it**: {effect.when_to_use}. **When not**: {effect.when_not}.
+**When to think of it**: {told(effect.when_to_use)}. **When not**: {told(effect.when_not)}.
 
-Source: {effect.reference}. Numbers: [{effect.id}.csv]({pictures}/{effect.id}.csv)
+Source: {told(effect.reference)}. Numbers: [{effect.id}.csv]({pictures}/{effect.id}.csv)
 """
