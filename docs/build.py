@@ -1,5 +1,5 @@
-"""What `make docs` adds to the pages that stand here: gallery of effects, ledger, committed figures, notebooks
-as pages.
+"""What `make docs` adds to the pages that stand here: gallery of effects, ledger, committed figures, and the
+notebooks as pages.
 
 Hooks of MkDocs. The gallery is simulated: a chain of twelve steel beads without and with each effect,
 written as CSV and drawn from it.
@@ -39,7 +39,7 @@ def on_files(files, config):
 
 
 def on_page_markdown(markdown, page, config, files):
-    """Links as they are on the site: to the committed figures, whose guide is only named, and to notebooks."""
+    """Links as they are on the site: to committed figures, whose guide is only named, and to notebooks."""
     for written, there in (
         ("[figures/README.md](../figures/README.md)", "`figures/README.md`"),
         ("[docs/example](example/README.md)", "`docs/example`"),
