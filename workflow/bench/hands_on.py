@@ -1,4 +1,5 @@
-"""The tables of docs/hands-on.md, from what `starts.py`, `ten_minutes.py` and `long_records.py` measured.
+"""The tables of docs/hands-on.md, from what `starts.py`, `ten_minutes.py`, `long_records.py` and `pages.py`
+measured.
 
 `python workflow/bench/hands_on.py` renews the page from the tables kept beside the ledger.
 """
@@ -28,6 +29,15 @@ HEADS = {
         "kernels_s": "kernels, s",
         "run_s": "run, s",
     },
+    "pages": {
+        "page": "page",
+        "kB": "kB",
+        "at 1300": "at 1300",
+        "all unfolded": "all unfolded",
+        "at 900": "at 900",
+        "at 400": "at 400",
+        "A4 pages": "A4 pages",
+    },
     "long_records": {
         "samples": "samples of a run",
         "reading_s": "reading, s",
@@ -43,7 +53,8 @@ def table(name: str) -> str:
     heads = HEADS[name]
     with open(KEPT / f"{name}.csv", encoding="utf-8", newline="") as stream:
         rows = list(csv.DictReader(stream))
-    rule = ["---:" if column.endswith("_s") else "---" for column in heads]
+    numbers = name == "pages"
+    rule = ["---:" if c.endswith("_s") or (numbers and c != "page") else "---" for c in heads]
     cells = [[_cell(column, row[column]) for column in heads] for row in rows]
     return "\n".join("| " + " | ".join(line) + " |" for line in [list(heads.values()), rule, *cells])
 

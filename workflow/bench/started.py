@@ -3,7 +3,7 @@
 `python -P workflow/bench/started.py OUT VERB …` runs `sonicvacuum VERB …` and writes to OUT, as JSON in
 processor seconds: `begun`, all until the first file is read that the command line names or that lies in a
 folder it names, which is when a verb has checked its arguments and turns to its work (of a verb that is given
-no file, the first table of data, such as the materials; of one that reads nothing, its first words);
+no file, the first table of data; of one that reads nothing, all that it loads);
 `load`, the interpreter's start and all import statements together, wherever they stand; `kernels`, reading
 compiled kernels from the cache, for which Numba first fills its tables of types.
 """
@@ -61,14 +61,8 @@ def watch_kernels():
         numba.Dispatcher.compile = counting(numba.Dispatcher.compile, "kernels")
 
 
-def begins() -> None:
-    """The verb begins its work, unless it has before."""
-    if SPENT["begun"] is None:
-        SPENT["begun"] = time.process_time()
-
-
 def watch_inputs(words: list[str]) -> None:
-    """Note when the first input of a command line is read, or else the first words are said."""
+    """Note when the first input of a command line is read."""
     before = ["", *words]
     given = [Path(w).resolve() for k, w in enumerate(words) if before[k] != "--out" and Path(w).exists()]
     # What verbs of the reproduction read without being told to.
@@ -87,17 +81,15 @@ def watch_inputs(words: list[str]) -> None:
         path = Path(os.fsdecode(arguments[0])).resolve()
         ours = path.suffix not in CODE and not str(path).startswith(FOREIGN)
         if any(path == one or one in path.parents for one in given) if given else ours:
-            begins()
+            SPENT["begun"] = time.process_time()
 
     sys.addaudithook(opened)
-    if not given:
-        write = sys.stdout.write
-        sys.stdout.write = lambda text: (begins(), write(text))[1]
 
 
 def told(out: Path) -> None:
-    """Write what was measured; what never read nor spoke began when it ended."""
-    begins()
+    """Write what was measured."""
+    if SPENT["begun"] is None:
+        SPENT["begun"] = SPENT["load"]
     out.write_text(json.dumps(SPENT), encoding="utf-8")
 
 
