@@ -14,9 +14,13 @@ def write(found: Design, path) -> None:
         left = panel(figure, (24.0, 14.0, 48.0, _HEIGHT - 24.0))
         _bars(left, [place(g) for g in found.single], list(found.single.values()), "one gauge, one run")
         right = panel(figure, (112.0, 14.0, DOUBLE - 116.0, _HEIGHT - 24.0))
-        names = ["+".join(one.gauges) + f", {len(one.speeds_m_s)} run(s)" for one in found.best]
+        names = ["+".join(one.gauges) + f", {_runs(len(one.speeds_m_s))}" for one in found.best]
         _bars(right, names, [one.least for one in found.best], "best choices")
         save(figure, path)
+
+
+def _runs(count):
+    return "1 run" if count == 1 else f"{count} runs"
 
 
 def _bars(axes, names, values, title):

@@ -41,14 +41,14 @@ def write(prediction: ChainPrediction, path) -> None:
         figure = canvas(DOUBLE, _HEIGHT)
         axes = panel(figure, (16.0, 12.0, DOUBLE - 20.0, _HEIGHT - 16.0))
         if prediction.window_us:
-            axes.axvspan(*prediction.window_us, color=BAND, lw=0, label="record")
+            axes.axvspan(*prediction.window_us, color=BAND, lw=0, label="to be recorded")
         for k, (gauge, reading) in enumerate(prediction.readings_N.items()):
             label = f"bead {gauge}" if gauge.isdigit() else gauge
             axes.plot(prediction.time_us, reading, color=_COLORS[k % len(_COLORS)], lw=1.0, label=label)
         first = prediction.window_us[0] if prediction.window_us else 0.0
         last = prediction.echo_until_us or prediction.time_us[-1]
         axes.set_xlim(first, max(last, prediction.window_us[1] if prediction.window_us else 0.0))
-        axes.set_xlabel("time after the impact (us)")
+        axes.set_xlabel("time after the impact (µs)")
         axes.set_ylabel("reading (N)")
         axes.legend(loc="upper right")
         save(figure, path)

@@ -1,5 +1,6 @@
 """A design in words and as JSON; both say the same numbers."""
 
+from collections.abc import Sequence
 from typing import Any
 
 from sonicvacuum.prediction.design import TARGET, Design, Layout
@@ -53,8 +54,17 @@ def _named(found):
 
 def _told(one: Layout):
     """Gauges and runs in words."""
-    gauges, speeds = " and ".join(map(place, one.gauges)), " and ".join(f"{v:.3g}" for v in one.speeds_m_s)
+    gauges, speeds = places(one.gauges), " and ".join(f"{v:.3g}" for v in one.speeds_m_s)
     return f"{gauges}, {'a run' if len(one.speeds_m_s) == 1 else 'runs'} at {speeds} m/s"
+
+
+def places(gauges: Sequence[str]) -> str:
+    """What some gauges are called together: beads 8 and 10 and wall."""
+    beads = [g for g in gauges if g.isdigit()]
+    others = [place(g) for g in gauges if not g.isdigit()]
+    if len(beads) > 1:
+        return " and ".join([f"beads {', '.join(beads[:-1])} and {beads[-1]}", *others])
+    return " and ".join([*map(place, beads), *others])
 
 
 def place(gauge: str) -> str:
