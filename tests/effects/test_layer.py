@@ -8,10 +8,12 @@ from effect_cases import in_lanes, nominal
 
 from sonicvacuum.effects import effect
 from sonicvacuum.effects.coating_thickness import coefficients, layer_factor
+from sonicvacuum.forward import see
 from sonicvacuum.laboratory.bodies import Bodies
 from sonicvacuum.physics.contact import hertz_constant
 from sonicvacuum.physics.laws import columns_of, depth_at, elastic_at
 from sonicvacuum.physics.layered import Layer, solve
+from sonicvacuum.physics.scales import CROSSINGS, passage_of, sampling_of
 
 THICKNESS = 50e-6
 
@@ -84,3 +86,16 @@ def test_depth_at_rest_is_that_of_the_law_in_force():
     np.testing.assert_allclose(elastic_at(laws, table, depth), load, rtol=1e-12)  # rounding
     hertz = (load / chain.stiffnesses(7)) ** (2.0 / 3.0)
     assert np.all(depth < 0.8 * hertz)
+
+
+def test_a_chain_is_looked_at_for_as_long_as_its_own_law_asks_for():
+    """A thin hard coating is crossed sooner than its soft material alone, and the window goes with it."""
+    bare = in_lanes(nominal(), 1)
+    coated = effect("coating-thickness").apply(bare, layer_thickness_um=1e6 * THICKNESS)
+    windows, arrivals = [], []
+    for setup in (bare, coated):
+        windows.append(passage_of(setup.chain, CROSSINGS))
+        seen = see(setup, windows[-1], sampling_of(setup.chain))
+        arrivals.append(seen.history.time[seen.history.of(setup.chain.beads)[:, 0].argmax()])
+    assert windows[1] < 0.8 * windows[0]
+    assert max(arrival / window for arrival, window in zip(arrivals, windows, strict=True)) < 0.5

@@ -35,6 +35,12 @@ def test_a_chain_does_not_depend_on_its_company(count):
     np.testing.assert_allclose(h.striker_speed, ALL.striker_speed[:count], rtol=1e-10)
 
 
+@pytest.mark.parametrize("count", [1, 2])
+def test_few_chains_in_lanes_are_those_of_many_to_the_bit(count):
+    h = simulate(ensemble().take(np.arange(count)), CONTACTS, DURATION, 1e-6, alone=False)
+    assert np.array_equal(h.force, ALL.force[..., :count])
+
+
 def test_unequal_companions():
     # A slow, soft and a fast, stiff chain in one group: steps differ thirtyfold.
     modulus, speed = np.array([1e9, 15e9, 200e9]), np.array([0.01, 0.44, 5.0])

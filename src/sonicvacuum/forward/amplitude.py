@@ -123,9 +123,8 @@ def _struck(chain, diameters, sensor, pair, speeds, refine):
     """(2, lanes) amplitude at the gauge and speed across the pair, of chains struck at these speeds."""
     lanes = replace(chain, speed=speeds)
     gauges = (replace(sensor, id="(gauge)"), *pair, Gauge("(end)", "wall", None))
-    seen = see(
-        Setup(lanes, gauges), passage_of(lanes, CROSSED), sampling_of(lanes), refine=refine, forgiving=True
-    )
+    setup, duration = Setup(lanes, gauges), passage_of(lanes, CROSSED)
+    seen = see(setup, duration, sampling_of(lanes), refine=refine, forgiving=True, alone=False)
     from sonicvacuum.forward.together import runs_of  # and with it Numba, as in `motion.see`
 
     runs = runs_of(seen.readings, seen.history.time, Geometry(chain.beads, diameters, gauges))

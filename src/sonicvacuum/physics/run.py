@@ -27,6 +27,8 @@ COINCIDENCE = 1e-9
 AUDIT_ENTRIES = 400
 # Shares of the work per thread, so that threads end together though groups differ in cost.
 SHARES = 8
+# Beyond so many bodies one chain or two never take lanes: eight copies cost more than compiling.
+LONG = 1000
 # Steps of one body (in all lanes of a group) below which a call is over in a fraction of a second.
 SHORT = 5e6
 
@@ -46,10 +48,11 @@ def simulate(
     symplectic: bool = True,
     audit: bool = False,
     threads: int = 1,
+    alone: bool = True,
 ) -> History:
     """Integrate a batch of chains from the moment of impact.
 
-    The result for a chain depends neither on `threads` nor on the other chains of the batch: alone, a
+    The result for a chain depends neither on `threads` nor on the other chains of the batch: `alone`, a
     chain is computed without lanes, which changes rounding errors only.
 
     Args:
@@ -64,6 +67,8 @@ def simulate(
         symplectic: False takes the Runge–Kutta stepper of dissipative laws for any law.
         audit: keep the energy and momentum balance.
         threads: groups run on so many threads.
+        alone: whether one chain or two are computed without lanes. With them they cost a little more, and one
+            compiled kernel serves any number of chains.
 
     Raises:
         ValueError: for a contact, body or method that does not exist, a duration, interval, step or
@@ -79,7 +84,9 @@ def simulate(
     every = chain.beads + 1
     reachable = min(every, reachable_bodies(chain, duration))
     while True:
-        batch = _Batch(chain, laws, reachable, contacts, bodies, samples, interval, step, refine, audit)
+        batch = _Batch(
+            chain, laws, reachable, contacts, bodies, samples, interval, step, refine, audit, alone
+        )
         batch.run(scheme, threads)
         if not batch.status[:, kernel.RAN_OUT].any():
             return batch.history()
@@ -121,10 +128,10 @@ def _zeros(*shape):
     return buffer[start : start + size].reshape(shape)
 
 
-def _deal(cost):
+def _deal(cost, alone):
     """(groups, width) chains of each group, like costs together, dearest first; the last chain fills up."""
     order = np.argsort(-cost, kind="stable")
-    width = 1 if len(order) <= 2 else LANES
+    width = 1 if alone and len(order) <= 2 else LANES
     groups = -(-len(order) // width)
     dealt = np.empty(groups * width, dtype=np.int64)
     dealt[: len(order)] = order
@@ -135,14 +142,14 @@ def _deal(cost):
 class _Batch:
     """The arrays of one call of the stepper: group first, lane last."""
 
-    def __init__(self, chain, laws, bodies, contacts, watched, samples, interval, step, refine, audit):
+    def __init__(self, chain, laws, bodies, contacts, watched, samples, interval, step, refine, audit, alone):
         self.chain, self.laws, self.bodies = chain, laws, bodies
         self.wanted, self.samples, self.interval = contacts, samples, interval
         self.recorded = [c for c in contacts if c < bodies]
         self.watched, self.moving = watched, [b for b in watched if b < bodies]
         coefficients, mass = chain.coefficients(laws, bodies), chain.masses(bodies)
         self._choose_steps(coefficients, mass, step, refine)
-        self.dealt = _deal(self.steps)
+        self.dealt = _deal(self.steps, alone or bodies > LONG)
         self.composition = Composition(laws, self.dealt.shape[1], audit, bool(watched))
         self._fill_table(coefficients, mass)
         self._set_clock()

@@ -344,4 +344,5 @@ class Forward:
             refine=accuracy.refinement(self._norm),
             threads=self.threads,
             forgiving=True,
+            alone=False,
         )

@@ -67,7 +67,7 @@ def _experiment(record, catalogue):
     odds = _priors(record, catalogue)
     informed = catalogue.informed(parts[0].chain, record.tolerances)
     present = stated(record, parts[0].chain, informed)
-    parts = acting(parts, present, informed)
+    parts = tuple(_as_long(b, record) for b in acting(parts, present, informed)) if present else parts
     return Experiment(
         name=record.name or record.title,
         runs=runs,
@@ -226,6 +226,12 @@ def batches(record: Record) -> tuple[Batch, ...]:
             duration = duration_of(record, runs, chain) + 4.0 * room
             result.append(Batch(chain, tuple(places), room, duration))
     return tuple(result)
+
+
+def _as_long(batch: Batch, record: Record) -> Batch:
+    """A batch simulated for as long as its chains ask for with all that acts in them."""
+    runs = [record.runs[k] for k in batch.runs]
+    return replace(batch, duration=duration_of(record, runs, batch.chain) + 4.0 * batch.interval)
 
 
 def noise(records: Sequence[Record]) -> tuple[np.ndarray, np.ndarray]:
