@@ -21,6 +21,8 @@ from sonicvacuum.discover.search import directions, screen, singles
 # Candidates whose Δχ² is this far behind the best are not followed to their minimum.
 NEAR = 15.0
 FAR = 0.5
+# Share of the Δχ² that a name takes from which on the last steps of fits matter: they gain some hundredths.
+HOPEFUL = 0.7
 # Those with a place may be the best at a better one, if they are not further behind than this.
 ALONG = 60.0
 COARSE = 6
@@ -104,7 +106,7 @@ def investigate(experiment: Experiment, threads: int = 1, null: Fit | None = Non
     setup = singles.setup_of(forward)
     scores = screen.screen(forward, null, directions.catalogue(setup, experiment.excluded))
     threshold = scores.threshold(policy.FALSE_ALARM)
-    found = _polished(forward, null, singles.fit_all(forward, null, scores))
+    found = _polished(forward, null, singles.fit_all(forward, null, scores), threshold)
     prior = experiment.prior_odds
     few = enough.told(forward, (c for c in found if significant(c, threshold, prior)))
     passes = (
@@ -207,14 +209,14 @@ def _likelier_than_none(found: list[Candidate], prior) -> bool:
     return odds[found[0].effect] > odds["none"]
 
 
-def _polished(forward, null, found):
-    """The leading candidates followed to their minimum."""
+def _polished(forward, null, found, threshold):
+    """The leading candidates followed to their minimum, to the last step where one may be named."""
     result = []
     most = max((c.gain for c in found), default=0.0)
     # Where something is hardly known, fits that have not settled may be far from their minima.
     least = most - (max(NEAR, FAR * most) if wide.wide(forward) else NEAR)
     for c in found:
-        if c.gain > least and not c.fit.settled:
+        if c.gain > least and (most > HOPEFUL * threshold or not c.fit.settled):
             better = polish(forward, c.fit)
             flags = tuple(f for f in c.flags if f != "unsettled") + ("unsettled",) * (not better.settled)
             c = _moved(c, null, better, c.places, flags)

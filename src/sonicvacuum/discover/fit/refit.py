@@ -100,11 +100,13 @@ def fit(
     iterations: int = ITERATIONS,
     coarse: int = 0,
     halved: int = 0,
+    finish: bool = True,
 ) -> Fit:
     """The best fit from (L, p) starts; only the `keep` of lowest χ² are followed.
 
     With `coarse`, starts are judged, and followed for so many steps, on running integrals of the traces
     first. With `halved`, four times as many starts are followed for so many steps before they are judged.
+    Without `finish` the last steps, with slopes to second order, are left to `polish`.
     """
     u = np.atleast_2d(np.asarray(u, dtype=float))
     nu = np.broadcast_to(nu, (len(u), forward.layout.size)).copy()
@@ -126,7 +128,8 @@ def fit(
     order = np.argsort(now.objective, kind="stable")
     best = int(order[0])
     found = hypothesis if places is None else hypothesis.with_places(places[best])
-    last = _finished(forward, found, now.take([best]))
+    last = now.take([best])
+    last = _finished(forward, found, last) if finish else last
     return Fit(found, last, bool(settled[best]), now.objective[order[1:]], now.nu[order[1:]])
 
 

@@ -38,7 +38,7 @@ def setup_of(forward: Forward) -> Setup:
 
 
 def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
-    """Candidates, best first."""
+    """Candidates, best first; their last steps, with slopes to second order, are yet to be taken."""
     best = scores.best()
     gains = {e: float(np.square(scores.z[k])) for e, k in best.items()}
     largest = max(gains.values(), default=0.0)
@@ -97,7 +97,9 @@ def candidate(forward, null: Fit, scores: Screen, effect: Effect, effort: Effort
             continue
         hypothesis = Hypothesis((Component(effect, free),))
         keep = _kept(effect, free, effort)
-        one = fit(forward, hypothesis, u, nu, places, keep, effort.steps, effort.coarse, effort.halved)
+        how = (keep, effort.steps, effort.coarse, effort.halved)
+        # Most are far behind another: those that are not are finished once all are known.
+        one = fit(forward, hypothesis, u, nu, places, *how, finish=False)
         if not np.isfinite(one.objective):
             continue
         gain = null.objective - one.objective
