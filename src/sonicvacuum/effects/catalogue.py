@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from sonicvacuum.effects.sized import sized
+from sonicvacuum.effects.sized import ratios_of, sized
 
 if TYPE_CHECKING:
     from sonicvacuum.effects.base import Effect, Setup
@@ -74,8 +74,9 @@ class Catalogue:
         """The catalogue with ranges that suit a record's chains (`sized`), and what it states of the effects'
         parameters, see `Effect.stated`.
         """
+        ratios = ratios_of(chain)
         return Catalogue(
-            tuple(sized(e, chain).informed(chain, tolerances) for e in self.effects), self.besides
+            tuple(sized(e, ratios).informed(chain, tolerances) for e in self.effects), self.besides
         )
 
     def held(self, ids: Iterable[str]) -> Catalogue:

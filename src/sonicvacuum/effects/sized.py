@@ -10,6 +10,7 @@ in the same way. Time constants of the electronics have no such unit, and stay.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -39,19 +40,29 @@ def _units(force: float, time: float, speed: float) -> dict[str, float]:
     }
 
 
-def sized(effect: Effect, chain: Chain) -> Effect:
-    """The effect with ranges that suit a record's nominal chains; the same where the catalogue's do."""
+def ratios_of(chain: Chain) -> dict[str, float]:
+    """Unit of a parameter → size of a record's impact over that of the catalogue's, where it is far off."""
     force, time = impact_scales(chain)
     own = _units(force, time, float(chain.speed.max()))
     usual = _units(FORCE, TIME, SPEED)
     ratios = {unit: own[unit] / usual[unit] for unit in own}
-    parameters = tuple(_moved(p, ratios.get(p.unit, 1.0)) for p in effect.parameters)
+    return {unit: ratio for unit, ratio in ratios.items() if abs(math.log(ratio)) >= math.log(FAR)}
+
+
+def sized(effect: Effect, ratios: Mapping[str, float]) -> Effect:
+    """The effect with ranges that suit a record's nominal chains; the same where the catalogue's do.
+
+    `ratios` are those of `ratios_of` these chains.
+    """
+    if not any(p.unit in ratios for p in effect.parameters):
+        return effect
+    parameters = tuple(_moved(p, ratios[p.unit]) if p.unit in ratios else p for p in effect.parameters)
     return effect if parameters == effect.parameters else replace(effect, parameters=parameters)
 
 
 def _moved(parameter: Parameter, ratio: float) -> Parameter:
     """A parameter with its bounds and its typical deviation so many times as large."""
-    if abs(math.log(ratio)) < math.log(FAR) or parameter.known or parameter.electronic:
+    if parameter.known or parameter.electronic:
         return parameter
     low, high = (
         min(max(ratio * x, parameter.least), parameter.most) for x in (parameter.low, parameter.high)
