@@ -4,12 +4,14 @@ Every verdict is made in a process of its own, on one thread, by the verb that u
 told apart into: what is loaded before the search (Python, libraries, compiled code), the compiled stepper,
 what surrounds it in a prediction, the rest of the search, tables, pictures and page. Compiled code, Python's
 too, is in its cache already, as for whoever has used the command before: each version's first verdict is not
-counted.
+counted. On a machine that does other work too, --least takes the least of each part in place of the median.
 
-    python workflow/bench/seconds.py RECORD… --before COMMIT [--repeats 3] [--out results/seconds.csv]
+    python workflow/bench/seconds.py RECORD… --before COMMIT [--repeats 3] [--least] [--out TABLE.csv]
+    python workflow/bench/seconds.py --draw TABLE.csv PICTURE.svg      # and the table as Markdown
 """
 
 import argparse
+import csv
 import json
 import os
 import statistics
@@ -91,8 +93,10 @@ def verdict(source: Path, record: Path, folder: Path) -> dict:
     return {**own, "sum": spent["all"], "named": "+".join(found["named"]), "chains": found["simulations"]}
 
 
-def measured(sources: dict[str, Path], records: list[Path], repeats: int) -> list[dict]:
-    """Medians of each record in each version of the sources, versions in turns."""
+def measured(
+    sources: dict[str, Path], records: list[Path], repeats: int, told=statistics.median
+) -> list[dict]:
+    """Medians (`told`) of each record in each version of the sources, versions in turns."""
     rows = []
     with tempfile.TemporaryDirectory() as folder:
         for record in records:
@@ -102,21 +106,76 @@ def measured(sources: dict[str, Path], records: list[Path], repeats: int) -> lis
                     one = verdict(source, record, Path(folder))
                     found[name] += [one] if turn else []
             for name, several in found.items():
-                medians = {p: f"{statistics.median(one[p] for one in several):.3f}" for p in (*PARTS, "sum")}
-                own = {"sources": name, "record": record.name, **medians}
+                parts = {p: f"{told([one[p] for one in several]):.3f}" for p in (*PARTS, "sum")}
+                own = {"sources": name, "record": record.name, **parts}
                 rows.append(own | {key: several[0][key] for key in ("named", "chains")})
                 print(*(rows[-1][c] for c in COLUMNS), flush=True)
     return rows
 
 
+def markdown(rows: list[dict]) -> str:
+    """The table as it stands in docs/benchmark.md."""
+    header = ("record", "named", "", "chains", *PARTS, "sum")
+    lines = ["| " + " | ".join(header) + " |", "|---|---|---|" + "---:|" * (len(header) - 3)]
+    for row in rows:
+        seconds = [f"{float(row[part]):.2f}" for part in (*PARTS, "sum")]
+        cells = (row["record"], row["named"] or "nothing", row["sources"], row["chains"], *seconds)
+        lines.append("| " + " | ".join(cells) + " |")
+    return "\n".join(lines)
+
+
+def draw(rows: list[dict], path: Path) -> None:
+    """Bars of the parts of each verdict, before above now, as the format that the path ends with."""
+    from sonicvacuum.figures import style
+
+    colours = (style.GREY, style.BLUE, style.SKY, style.ORANGE, style.PURPLE, style.GREEN)
+    records = list(dict.fromkeys(row["record"] for row in rows))
+    with style.context():
+        height = 26.0 + 15.0 * len(records)
+        figure = style.canvas(style.DOUBLE, height)
+        axes = style.panel(figure, (44.0, 12.0, style.DOUBLE - 54.0, height - 26.0))
+        for row in rows:
+            # Versions of a record lie together, the first above.
+            at = 3.0 * records.index(row["record"]) + (0.0 if row["sources"] == "before" else 1.0)
+            left = 0.0
+            for part, colour in zip(PARTS, colours, strict=True):
+                size = float(row[part])
+                axes.barh(at, size, left=left, height=0.85, color=colour, lw=0.0, label=part)
+                left += size
+            axes.text(left, at, f" {left:.1f} s", va="center", fontsize=7.0)
+            axes.annotate(
+                row["sources"], (0.0, at), (-3.0, 0.0), textcoords="offset points", ha="right", va="center"
+            )
+        for k, record in enumerate(records):
+            named = next(row["named"] for row in rows if row["record"] == record) or "nothing"
+            told = f"{record}\n{named.replace('+', ' +' + chr(10))}"
+            spot = (-0.1, 3.0 * k + 0.5)
+            axes.text(*spot, told, transform=axes.get_yaxis_transform(), ha="right", va="center")
+        axes.set(ylim=(3.0 * len(records) - 1.2, -0.8), yticks=[], xlabel="processor time (s)")
+        axes.margins(x=0.1)
+        handles = {h.get_label(): h for h in axes.containers}
+        axes.legend(handles.values(), handles.keys(), ncols=3, loc="lower center", bbox_to_anchor=(0.42, 1.0))
+        style.save(figure, path)
+
+
 def main() -> None:
-    """The table."""
+    """The table, or its figure."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("records", nargs="+", type=Path)
-    parser.add_argument("--before", required=True, help="an earlier commit")
+    parser.add_argument("records", nargs="*", type=Path)
+    parser.add_argument("--before", help="an earlier commit")
     parser.add_argument("--repeats", type=int, default=3)
+    parser.add_argument("--least", action="store_true", help="least in place of median times")
     parser.add_argument("--out", type=Path, default=Path("results/seconds.csv"))
+    parser.add_argument("--draw", nargs=2, type=Path, metavar=("TABLE", "PICTURE"), help="draw a table")
     given = parser.parse_args()
+    if given.draw:
+        with open(given.draw[0], newline="", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        draw(rows, given.draw[1])
+        print(markdown(rows))
+        return
+    if not (given.records and given.before):
+        parser.error("give records and --before COMMIT, or --draw")
     with tempfile.TemporaryDirectory() as folder:
         earlier = Path(folder) / "earlier"
         kept = subprocess.run(
@@ -127,7 +186,7 @@ def main() -> None:
         with tarfile.open(fileobj=BytesIO(kept.stdout)) as archive:
             archive.extractall(earlier, filter="data")
         sources = {"before": earlier / "src", "now": ROOT / "src"}
-        rows = measured(sources, given.records, given.repeats)
+        rows = measured(sources, given.records, given.repeats, min if given.least else statistics.median)
     write_csv(given.out, COLUMNS, ([row[c] for c in COLUMNS] for row in rows))
 
 

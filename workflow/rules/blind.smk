@@ -20,6 +20,7 @@ rule hide:
         "results/logs/hide/{study}-{batch}.log",
     benchmark:
         "results/benchmarks/hide/{study}-{batch}.tsv"
+    priority: 1
     conda:
         ENVIRONMENT
     params:
@@ -41,6 +42,7 @@ rule discover_hidden:
         "results/logs/discover_hidden/{study}-{batch}.log",
     benchmark:
         "results/benchmarks/discover_hidden/{study}-{batch}.tsv"
+    priority: 1
     conda:
         ENVIRONMENT
     params:

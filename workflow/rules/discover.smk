@@ -22,6 +22,8 @@ rule discover:
         "results/logs/discover/{record}.log",
     benchmark:
         "results/benchmarks/discover/{record}.tsv"
+    # The longest jobs, which most others wait for, are not to be the last.
+    priority: 2
     conda:
         ENVIRONMENT
     params:
