@@ -6,6 +6,8 @@ but the integral over strengths and shapes by nested sampling (dynesty: J. S. Sp
 Soc. 493, 3132, 2020), every point simulated, the nuisances at their best for it; a row for each explanation.
 
     python workflow/bench/nested.py RECORD… --out table.csv     (or: make nested)
+
+With `--live 40 --most 1`, of the likeliest explanation and with twice the variance, it takes a fifth of it.
 """
 
 import argparse
@@ -65,8 +67,11 @@ class Prior:
         return self.u[k] + math.log(relative) if c.endless else sign * abs(self.u[k]) * relative
 
 
-def sampled(forward, null, one, gain: float) -> tuple[float, float, int]:
-    """Logarithm of the Bayes factor against the nominal model, its error, and how often was simulated."""
+def sampled(forward, null, one, gain: float, live: int = LIVE) -> tuple[float, float, int]:
+    """Logarithm of the Bayes factor against the nominal model, its error, and how often was simulated.
+
+    `live` points are followed at a time; the error goes as one over their root.
+    """
     from dynesty import NestedSampler  # in the environment of `make bench` only
 
     prior, held = Prior(one, gain), np.arange(len(one.u))
@@ -79,9 +84,9 @@ def sampled(forward, null, one, gain: float) -> tuple[float, float, int]:
 
     state = np.random.Generator(np.random.PCG64(np.random.SeedSequence(SEED)))
     # The first bound early: the cube is wide beside where the likelihood is.
-    early = {"min_ncall": 2 * LIVE, "min_eff": 60.0}
+    early = {"min_ncall": 2 * live, "min_eff": 60.0}
     sampler = NestedSampler(
-        gained, prior, len(one.u), nlive=LIVE, bound="multi", sample="unif", rstate=state, first_update=early
+        gained, prior, len(one.u), nlive=live, bound="multi", sample="unif", rstate=state, first_update=early
     )
     sampler.run_nested(dlogz=0.05, print_progress=False)
     found = sampler.results
@@ -89,17 +94,17 @@ def sampled(forward, null, one, gain: float) -> tuple[float, float, int]:
 
 
 @one_thread
-def rows(folder: Path):
-    """The rows of one record."""
+def rows(folder: Path, live: int = LIVE, most: int = MOST):
+    """The rows of one record, of so many of its likeliest explanations."""
     found = session.discover(records.read(folder), threads=1).found
     if not found.candidates:
         return
     best = max(c.log_bayes for c in found.candidates)
     likely = [c for c in found.candidates if c.log_bayes > best - AWAY and len(c.fit.u)]
-    for c in sorted(likely, key=lambda c: -c.log_bayes)[:MOST]:
+    for c in sorted(likely, key=lambda c: -c.log_bayes)[:most]:
         begun = time.process_time()
         laplace = log_bayes(c.fit, c.gain)
-        value, error, calls = sampled(found.forward, found.null, c.fit, c.gain)
+        value, error, calls = sampled(found.forward, found.null, c.fit, c.gain, live)
         u, density = proposed(c.fit)
         weight = log_posterior(found.forward, c.fit, u, np.arange(len(c.fit.u))) - density
         k = pareto_k(np.exp(weight - weight.max()))
@@ -113,10 +118,12 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("records", nargs="+", type=Path)
     parser.add_argument("--out", type=Path, required=True)
+    parser.add_argument("--live", type=int, default=LIVE, help="points that are followed at a time")
+    parser.add_argument("--most", type=int, default=MOST, help="explanations of each record")
     asked = parser.parse_args()
     made = []
     for folder in asked.records:
-        for row in rows(folder):
+        for row in rows(folder, asked.live, asked.most):
             made.append(row)
             print(*row, flush=True)
             write_csv(asked.out, COLUMNS, made)
