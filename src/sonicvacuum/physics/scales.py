@@ -2,18 +2,16 @@
 
 import math
 
-import numpy as np
-
 from sonicvacuum.physics.chain import Chain
-from sonicvacuum.physics.contact import contact_time
-from sonicvacuum.physics.laws import HERTZ, depth_at
+from sonicvacuum.physics.contact import compression_at, contact_time
+from sonicvacuum.physics.laws import HERTZ, elastic_at
 
 # Time for the pulse to cross the chain, with room for softer contacts; and to come back.
 CROSSINGS, COUNTING = 2.5, 5.0
 # A solitary wave passes one bead in about this many contact times (m²/(K² v))^{1/5} of the impact.
 _PASSAGE = 1.5
 # Share of the impact's force that the weakest pulses still have that are looked at.
-WEAK = 0.3
+WEAK = 0.1
 # A Hertz impact lasts so many times (m²/(K² v))^{1/5} (Johnson, Contact Mechanics, 1985, Sec. 11.4).
 _HERTZ = 3.21
 # Speed of a striker by the peak force that it makes in a Hertz impact, and speed of a wave by its force, as
@@ -72,15 +70,15 @@ def _quicker(chain: Chain) -> float:
     """Contact time by the law in force over that of Hertz contacts, 1 at most, of the slowest contact.
 
     A coated bead is as soft as its coating only where it is touched lightly. The time goes as K^{−2/5}, K of
-    the Hertz contact that bears a WEAK share of the impact's force at the same compression.
+    the Hertz contact that bears as much at the compression of a WEAK share of the impact's force.
     """
     laws, bodies = chain.laws(), chain.beads + 1
     if not laws.in_slot("factor") or HERTZ not in laws.in_slot("elastic"):
         return 1.0
-    force = np.full((chain.beads, chain.lanes), WEAK * impact_scales(chain)[0])
-    depth = depth_at(laws, chain.coefficients(laws, bodies)[1:], force)
-    ratio = chain.stiffnesses(bodies)[1:] * depth**1.5 / force
-    return min(1.0, _largest(ratio) ** 0.4)
+    force = WEAK * impact_scales(chain)[0]
+    depth = compression_at(force, chain.stiffnesses(bodies)[1:])
+    stiffer = elastic_at(laws, chain.coefficients(laws, bodies)[1:], depth) / force
+    return min(1.0, float(stiffer.min()) ** -0.4)
 
 
 def _largest(values) -> float:

@@ -98,8 +98,10 @@ def candidate(forward, null: Fit, scores: Screen, effect: Effect, effort: Effort
         hypothesis = Hypothesis((Component(effect, free),))
         keep = _kept(effect, free, effort)
         how = (keep, effort.steps, effort.coarse, effort.halved)
-        # Most are far behind another: those that are not are finished once all are known.
-        one = fit(forward, hypothesis, u, nu, places, *how, finish=False)
+        # Most are far behind another: those that are not are finished once all are known. The evidence of a
+        # shape asks for its error, and so for slopes to second order.
+        shaped = any(c.parameter.known or not c.parameter.switches for c in free)
+        one = fit(forward, hypothesis, u, nu, places, *how, finish=shaped)
         if not np.isfinite(one.objective):
             continue
         gain = null.objective - one.objective
