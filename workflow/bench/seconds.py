@@ -106,8 +106,11 @@ def measured(
                     one = verdict(source, record, Path(folder))
                     found[name] += [one] if turn else []
             for name, several in found.items():
-                parts = {p: f"{told([one[p] for one in several]):.3f}" for p in (*PARTS, "sum")}
-                own = {"sources": name, "record": record.name, **parts}
+                parts = {part: told([one[part] for one in several]) for part in PARTS}
+                seconds = {
+                    part: f"{value:.3f}" for part, value in (parts | {"sum": sum(parts.values())}).items()
+                }
+                own = {"sources": name, "record": record.name, **seconds}
                 rows.append(own | {key: several[0][key] for key in ("named", "chains")})
                 print(*(rows[-1][c] for c in COLUMNS), flush=True)
     return rows
