@@ -13,6 +13,7 @@ import pytest
 
 from sonicvacuum import cli
 from sonicvacuum.cli import VERBS
+from sonicvacuum.cli.helped import strayed
 
 
 def call(monkeypatch, *arguments):
@@ -302,6 +303,18 @@ def test_a_number_written_as_text_is_named_with_its_material(monkeypatch, capsys
     told = capsys.readouterr().err
     assert "materials.parylene-c.modulus_GPa" in told
     assert "YAML reads this as text: write 2.0e+1" in told
+
+
+def test_the_command_notices_that_another_clone_s_environment_runs(tmp_path):
+    """As after copying a clone: its .venv, activated, runs what it was copied from."""
+    for clone in ("first", "copy"):
+        (tmp_path / clone / "src/sonicvacuum").mkdir(parents=True)
+        (tmp_path / clone / ".venv").mkdir()
+    told = strayed(tmp_path / "copy", tmp_path / "first/.venv")
+    assert str(tmp_path / "first/.venv") in told
+    assert "make env" in told
+    assert strayed(tmp_path / "copy", tmp_path / "copy/.venv") == ""
+    assert strayed(tmp_path, tmp_path / "first/.venv") == ""
 
 
 def test_make_notices_a_clone_that_was_moved(tmp_path, pytestconfig):

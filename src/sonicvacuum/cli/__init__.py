@@ -8,11 +8,12 @@ import sys
 from contextlib import contextmanager, suppress
 from difflib import get_close_matches
 from importlib import import_module
+from pathlib import Path
 
 import click
 
 from sonicvacuum.blas import THREADS
-from sonicvacuum.cli.helped import BEGINNING, COMPLETION, EXIT_CODES, locked
+from sonicvacuum.cli.helped import BEGINNING, COMPLETION, EXIT_CODES, locked, strayed
 from sonicvacuum.cli.stage_lines import compiling_told
 from sonicvacuum.files import MACHINE, InputError, check_file, in_one_line
 
@@ -118,6 +119,9 @@ def main():
     """Run the command line; bad input and interruption end quietly."""
     # Before numpy is loaded: then none of scipy's libraries has to be loaded only to be limited.
     os.environ[THREADS] = "1"
+    with suppress(OSError):  # a working folder that is gone
+        if told := strayed(Path.cwd(), Path(sys.prefix)):
+            click.echo(f"Warning: {in_one_line(told)}", err=True)
     try:
         with compiling_told():
             cli(standalone_mode=False)

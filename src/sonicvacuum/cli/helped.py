@@ -81,3 +81,17 @@ def locked() -> str:
     if not lock.is_file():
         return "installed as a package, no requirements.lock beside it"
     return f"requirements.lock sha256 {hashlib.sha256(lock.read_bytes()).hexdigest()[:DIGITS]}"
+
+
+def strayed(here: Path, environment: Path) -> str:
+    """What is wrong where a clone has an environment of its own and that of another one runs, "" elsewhere.
+
+    An environment holds its own place: activated in a copy, it runs the code of the clone it was made in.
+    """
+    own = here / ".venv"
+    if not (own.is_dir() and (here / "src/sonicvacuum").is_dir()) or own.resolve() == environment.resolve():
+        return ""
+    return (
+        f"{here}: what runs is {environment}, not the .venv of this clone: was it moved or copied? Run make "
+        "env here, then source .venv/bin/activate"
+    )
