@@ -1,0 +1,75 @@
+"""What was found, how sure that is and what is left open, in words."""
+
+import pytest
+from made_verdicts import KINDS, gaps, model, verdict
+from msgspec.structs import replace
+
+from sonicvacuum.effects import CATALOGUE
+from sonicvacuum.report import bench, rows, words
+
+
+@pytest.mark.parametrize(
+    ("probability", "text"),
+    [
+        (1.0, "practically certain (above 0.99)"),
+        (0.96, "very probable (0.96)"),
+        (0.85, "probable (0.85)"),
+        (0.5, "more probable than not (0.50)"),
+        (0.2, "less probable than all its rivals together (0.20)"),
+    ],
+)
+def test_probabilities_in_words(probability, text):
+    assert words.in_words(probability) == text
+
+
+def test_a_gap_that_is_not_closed_is_not_called_closed():
+    assert "the gap is not closed" in words.gap(verdict(gap=gaps(2.0, 2.5)))
+    assert "of the gap closed" not in words.gap(verdict(gap=gaps(0.9, 0.8)))
+
+
+def test_a_modulus_that_had_to_move_far_is_told_first():
+    far = replace(model(KINDS["none"]), modulus_ratio=3.07)
+    assert "has to be 3.07 times as large as recorded" in bench.moved_modulus(KINDS["none"], far)
+    assert bench.moved_modulus(KINDS["none"], replace(far, modulus_ratio=1.1)) == ""
+    assert bench.moved_modulus(KINDS["single"], far) == ""
+
+
+def test_data_in_which_nothing_would_show_are_not_called_free_of_effects():
+    blind = {"named": [], "parameters": {}, "upper_limits": {}, "not_testable": ["gravity", "tsuji"]}
+    odds = {"none": 0.999, "unknown": 0.001}
+    text = words.headline(verdict(**blind, probabilities=odds))
+    assert "no effect of the catalogue would show" in text
+    assert "certain" not in text
+    some = blind | {"upper_limits": {"tsuji": {"gamma": 0.1}}, "not_testable": ["gravity"]}
+    text = words.headline(verdict(**some, probabilities=odds))
+    assert "none of the effects that these data could show is missing is practically certain" in text
+
+
+def test_none_that_is_less_probable_than_an_effect_says_so():
+    odds = {"none": 0.3, "tsuji": 0.6, "unknown": 0.1}
+    text = words.headline(verdict(named=[], probabilities=odds, parameters={}))
+    assert "damping with constant restitution (0.60 against 0.30 for none)" in text
+
+
+@pytest.mark.parametrize(
+    ("effect", "parameter", "value", "estimate", "told"),
+    [
+        ("viscous-drag", "rate_per_s", "15.03", "1", "below 15 1/s"),
+        # Fades as its parameter grows.
+        ("sensor-droop", "tau_us", "138.4292", "345.6", "above 138 µs"),
+        # Off is what the record says: 0 for a chain that lies, 1 for one that stands.
+        ("gravity", "fraction", "0.0813", "0.02", "below 0.0813"),
+        ("gravity", "fraction", "0.9312", "0.99", "above 0.931"),
+        # Departs either way: both ends, told from the value without the effect.
+        ("contact-exponent", "exponent", "1.50042", "1.5", "1.4996 to 1.5004"),
+        ("contact-exponent", "exponent", "1.61234", "1.5", "1.39 to 1.61"),
+        ("sensor-offset", "offset_fraction", "0.1508", "-0.02", "−0.151 to 0.151"),
+        # The lower end lies outside of what is searched.
+        ("striker-error", "mass_ratio", "1.901", "0.91", "below 1.9"),
+    ],
+)
+def test_a_limit_says_on_which_side_of_the_value_without_the_effect_it_lies(
+    effect, parameter, value, estimate, told
+):
+    row = {"effect": effect, "parameter": parameter, "limit_95": value, "estimate": estimate}
+    assert rows.limit(row, CATALOGUE)["limit"] == told
