@@ -216,7 +216,8 @@ def _polished(forward, null, found, threshold):
     # Where something is hardly known, fits that have not settled may be far from their minima.
     least = most - (max(NEAR, FAR * most) if wide.wide(forward) else NEAR)
     for c in found:
-        if c.gain > least and (most > HOPEFUL * threshold or not c.fit.settled):
+        hopeful = most > HOPEFUL * threshold and not c.fit.finished
+        if c.gain > least and (hopeful or not c.fit.settled):
             better = polish(forward, c.fit)
             flags = tuple(f for f in c.flags if f != "unsettled") + ("unsettled",) * (not better.settled)
             c = _moved(c, null, better, c.places, flags)

@@ -44,6 +44,7 @@ class Fit:
         settled: whether the fit converged.
         others: (n,) objectives of the other starts that settled elsewhere, ascending.
         elsewhere: (n, q) their nuisances.
+        finished: whether the last steps were taken with slopes to second order.
     """
 
     hypothesis: Hypothesis
@@ -51,6 +52,7 @@ class Fit:
     settled: bool = True
     others: np.ndarray = None
     elsewhere: np.ndarray = None
+    finished: bool = True
 
     @property
     def u(self) -> np.ndarray:
@@ -130,7 +132,7 @@ def fit(
     found = hypothesis if places is None else hypothesis.with_places(places[best])
     last = now.take([best])
     last = _finished(forward, found, last) if finish else last
-    return Fit(found, last, bool(settled[best]), now.objective[order[1:]], now.nu[order[1:]])
+    return Fit(found, last, bool(settled[best]), now.objective[order[1:]], now.nu[order[1:]], finish)
 
 
 def polish(forward: Forward, one: Fit, iterations: int = ITERATIONS) -> Fit:

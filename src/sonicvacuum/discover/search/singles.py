@@ -38,7 +38,7 @@ def setup_of(forward: Forward) -> Setup:
 
 
 def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
-    """Candidates, best first; their last steps, with slopes to second order, are yet to be taken."""
+    """Candidates, best first; where slopes can be trusted, their last steps are yet to be taken."""
     best = scores.best()
     gains = {e: float(np.square(scores.z[k])) for e, k in best.items()}
     largest = max(gains.values(), default=0.0)
@@ -61,7 +61,9 @@ def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
         for effect in chosen:
             far = effect.id in best and abs(scores.strength[best[effect.id]]) > FAR
             grid = nonlinear or (loose and far and not effect.places)
-            effort = Effort(grid, steps, COARSE if grid and traced else 0)
+            # Most are far behind another; near the nominal model, those that are not are finished once all
+            # are known. Far from it the last steps are as good as any.
+            effort = Effort(grid, steps, COARSE if grid and traced else 0, finish=loose)
             effort = Effort(True, ITERATIONS, 0, wide.FIRST) if grid and rough else effort
             found.append(candidate(forward, null, scores, effect, effort))
             stages.step()
@@ -77,13 +79,15 @@ def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
 @dataclass(frozen=True)
 class Effort:
     """How an effect is searched: `grid` adds starts over the whole range to those of the screen; all are
-    followed for so many `steps`, on integrals of the traces for `coarse` steps before; `halved`: see `fit`.
+    followed for so many `steps`, on integrals of the traces for `coarse` steps before. `halved` and `finish`:
+    see `fit`.
     """
 
     grid: bool
     steps: int
     coarse: int
     halved: int = 0
+    finish: bool = True
 
 
 def candidate(forward, null: Fit, scores: Screen, effect: Effect, effort: Effort):
@@ -98,10 +102,9 @@ def candidate(forward, null: Fit, scores: Screen, effect: Effect, effort: Effort
         hypothesis = Hypothesis((Component(effect, free),))
         keep = _kept(effect, free, effort)
         how = (keep, effort.steps, effort.coarse, effort.halved)
-        # Most are far behind another: those that are not are finished once all are known. The evidence of a
-        # shape asks for its error, and so for slopes to second order.
+        # The evidence of a shape asks for its error, and so for slopes to second order.
         shaped = any(c.parameter.known or not c.parameter.switches for c in free)
-        one = fit(forward, hypothesis, u, nu, places, *how, finish=shaped)
+        one = fit(forward, hypothesis, u, nu, places, *how, finish=effort.finish or shaped)
         if not np.isfinite(one.objective):
             continue
         gain = null.objective - one.objective
