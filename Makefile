@@ -118,7 +118,7 @@ slips: env  ## slips of the laboratory in 270 records, searched and counted; tak
 extras: env  ## smooth systematic errors, three and four effects: 139 records, searched and counted; takes hours
 	$(START) --cores $(CORES) results/blind_extras/summary.csv
 
-laws: env  ## contact laws from outside the catalogue: 36 records, their free-form laws tried on fresh runs; half an hour
+laws: env  ## contact laws from outside the catalogue: 30 records, their free-form laws tried on fresh runs; half an hour
 	$(START) --cores $(CORES) blind_laws
 
 docs: .venv/documented  ## build the documentation into results/docs

@@ -51,19 +51,23 @@ def _log_rate(plan, place, slope):
     return plan.with_law(log_rate=slope, log_speed=1e-2)
 
 
-def _hardening(plan, place, per_depth):
-    """The contact stiffens with depth: F (1 + h δ), `per_depth` in units of the impact's own depth."""
-    return plan.with_law(hardening=per_depth / (plan.contact_time * plan.speed))
+def _damping(depth, rate):
+    """Strength and change of a damping β δ^depth |v|^rate sign v; a strength of 1 is as large as the elastic
+    force at the impact's depth and speed.
+    """
+
+    def values(s, plan, shape):
+        return {"beta_SI": s * plan.force_scale / (_depth(plan) ** depth * plan.speed**rate)}
+
+    def put(plan, place, beta_SI):
+        return plan.with_law(mixed=beta_SI, mixed_depth=depth, mixed_rate=rate)
+
+    return values, put
 
 
-def _damped(depth, rate):
-    """Damping β δ^depth |v|^rate sign v, its `share` of the elastic force at the impact's depth and speed."""
-
-    def put(plan, place, share):
-        size = (plan.contact_time * plan.speed) ** depth * plan.speed**rate
-        return plan.with_law(mixed=share * plan.force_scale / size, mixed_depth=depth, mixed_rate=rate)
-
-    return put
+def _depth(plan):
+    """Compression in m of the impact, roughly."""
+    return plan.contact_time * plan.speed
 
 
 def _saturating(plan, place, inverse_limit):
@@ -121,10 +125,16 @@ ENTRIES = (
         0.01,
         0.5,
     ),
-    _entry("hardening", _strength("per_depth"), _hardening, 0.01, 2.0),
-    _entry("depth-damping", _strength("share"), _damped(1.0, 1.0), 0.01, 2.0),
-    _entry("root-rate-damping", _strength("share"), _damped(0.5, 0.5), 0.01, 2.0),
-    _entry("square-rate-damping", _strength("share"), _damped(1.5, 2.0), 0.01, 2.0),
+    _entry(
+        "hardening",
+        _strength("per_m", lambda p: 1.0 / _depth(p)),
+        lambda plan, place, per_m: plan.with_law(hardening=per_m),
+        0.01,
+        2.0,
+    ),
+    _entry("depth-damping", *_damping(1.0, 1.0), 0.01, 2.0),
+    _entry("root-rate-damping", *_damping(0.5, 0.5), 0.01, 2.0),
+    _entry("square-rate-damping", *_damping(1.5, 2.0), 0.01, 2.0),
     _entry(
         "baseline-drift",
         _strength("N_per_s", lambda p: p.force_scale / p.contact_time),
@@ -150,9 +160,8 @@ STUDIED = (
     "sensor-crosstalk",
     "baseline-drift",
 )
-# Contact laws among them, which a law of no particular form may stand for.
+# Contact laws among them that only push, which a law of no particular form may stand for. (Adhesion pulls.)
 LAWS = (
-    "adhesion",
     "log-rate-stiffening",
     "hardening",
     "depth-damping",
