@@ -6,13 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from made_records import made
+from made_records import BEADS, made
 
 from sonicvacuum.discover.faults import changes, policy
 from sonicvacuum.discover.faults.competition import Search, obvious
 from sonicvacuum.discover.faults.found import Bench
-from sonicvacuum.discover.faults.judging import Judge, suspicious
+from sonicvacuum.discover.faults.judging import Judge, Model, suspicious
 from sonicvacuum.discover.faults.slips import hypotheses
+from sonicvacuum.discover.rounds import investigate
 from sonicvacuum.effects import CATALOGUE
 
 LATE = {"v0": 180.0, "v1": 150.0}
@@ -142,3 +143,15 @@ def test_another_number_of_beads_is_tried_where_slopes_promise_nothing(empty, mo
     monkeypatch.setattr(Judge, "look", blind)
     _, _, ranked = search(changes.bead_count(empty, 1))
     assert (ranked[0].slip.fault, ranked[0].slip.value(ranked[0].size)) == ("bead-count", 10.0)
+
+
+def test_a_bead_less_is_not_looked_for_beside_an_effect_at_the_last():
+    """There is no such place in a shorter chain: the search ended in an error."""
+    record, _ = made([("mass-defect", {"mass_ratio": 3.0, "bead": BEADS})], seed=7)
+    one = Search(Bench(record), CATALOGUE, 1, [])
+    one.nominal()
+    found = investigate(one.make(one.bench))
+    assert found.final.hypothesis.components[0].place == BEADS
+    assert "bead-count" not in {
+        j.slip.fault for j in one.ranked(Model(one.bench, found.forward, found.final))
+    }

@@ -175,6 +175,9 @@ class Search:
         done = {(f.fault, f.run, f.sensor) for f in self.findings}
         slips = [s for s in with_starts(hypotheses(record), record, seen)]
         slips = [s for s in slips if (s.fault, s.run, s.sensor) not in done]
+        if any(c.effect.places in ("bead", "contact") for c in model.fit.hypothesis.components):
+            # In a chain of another length its place would be another one, or none.
+            slips = [s for s in slips if not _of_the_chain(s)]
         shifted = [] if any(f.fault == "time-zero" for f in self.findings) else time_zero(record, seen)
         stages.begin("slips of the laboratory")
         looked = sorted((judge.look(s) for s in slips), key=lambda j: -j.log_odds)
