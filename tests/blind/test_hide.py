@@ -136,7 +136,10 @@ def test_studies_cover_what_is_asked(tmp_path):
         assert len({s.id for s in specs}) == len(specs)
         assert [s.place for s in specs] == list(range(len(specs)))
     assert {s.effects[0] for s in full if s.kind == "single"} == set(catalogue.BY_ID)
-    assert {s.effects[0] for s in full if s.kind == "foreign"} == set(foreign.BY_ID)
+    laws = study.cases("laws")
+    assert {s.effects[0] for s in full if s.kind == "foreign"} == set(foreign.STUDIED)
+    assert {s.effects[0] for s in laws} == set(foreign.LAWS)
+    assert set(foreign.STUDIED) | set(foreign.LAWS) == set(foreign.BY_ID)
     study.write_cases(full, tmp_path / "cases.csv")
     assert study.read_cases(tmp_path / "cases.csv") == full
     parts = [study.batch(small, k, 5) for k in range(5)]

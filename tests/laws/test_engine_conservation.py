@@ -45,6 +45,7 @@ def _batch(chain, step, samples=2, **changes):
         "interval": step * 120,
         "refine": 1.0,
         "audit": False,
+        "alone": True,
     }
     return _Batch(chain, chain.laws(), samples=samples, step=step, **(settings | changes))
 
