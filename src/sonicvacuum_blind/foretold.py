@@ -127,11 +127,10 @@ def _laws(rows):
         return []
     lines = [counted("free law kept", "foreign", [r.law for r in rows])]
     groups = {"foreign, free law": with_law}
-    groups |= {f"foreign, {name}": [r for r in rows if r.effects == name] for name in _in_order(rows)}
+    groups |= {
+        f"foreign, {name}": [r for r in rows if r.effects == name]
+        for name in sorted({r.effects for r in rows})
+    }
     for group, chosen in groups.items():
         lines += [_closed(group, chosen), _each(group, chosen)]
     return lines
-
-
-def _in_order(rows):
-    return sorted({r.effects for r in rows})

@@ -7,6 +7,9 @@ from sonicvacuum.discover.judge.degenerate import Elsewhere, Limit
 from sonicvacuum.discover.rounds import Investigation
 from sonicvacuum.discover.search import directions, screen, singles
 
+# Explanations less probable than this move no limit: beyond one lie 5 % of all.
+FAINT = 1e-3
+
 
 def limits(found: Investigation, fit: Goodness) -> tuple[list[Limit], list[str], float]:
     """Limits, effects that the data cannot test, and the factor on the limits' errors.
@@ -44,7 +47,7 @@ def _elsewhere(found):
     fits |= {explanations.key(c.effects): c.fit for c in found.combinations}
     for name, fit in fits.items():
         probability = found.probabilities.get(name, 0.0)
-        if probability > 0.0 and name != explanations.key(found.named):
+        if probability > FAINT and name != explanations.key(found.named):
             for effect, values in verdict.parameters(fit).items():
                 for parameter, v in values.items():
                     told.setdefault((effect, parameter), []).append(Elsewhere(probability, v.value, v.sigma))

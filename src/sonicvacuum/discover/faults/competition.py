@@ -31,7 +31,7 @@ from sonicvacuum.discover.faults.weights import (
     without,
 )
 from sonicvacuum.discover.fit import evidence, smooth
-from sonicvacuum.discover.fit.refit import polish
+from sonicvacuum.discover.fit.refit import Fit, polish
 from sonicvacuum.discover.judge import explanations
 from sonicvacuum.discover.model.experiment import Experiment
 from sonicvacuum.discover.model.forward import Forward
@@ -218,28 +218,25 @@ class Search:
     def _instead(self, found: Investigation, ranked: list[Judged]) -> Investigation | None:
         """The investigation of the record with one slip more put right, where that explains it better."""
         left, size = unexplained(found), float(found.sizes.sum())
-        final = Model(self.bench, found.forward, found.final)
         if left:
             # What is left is more than a slip that explains little of it.
             rivals = [j for j in ranked if j.gain > (1.0 - policy.LEFT) * (found.null.objective - size)]
         else:
             rivals = [*ranked, *self._in_place(found)]
         # Runs whose stated errors are strained may be all that betrays a slip beside the right effect.
+        final = Model(self.bench, found.forward, found.final)
         if found.final is not found.null and (left or suspicious(final)):
-            rivals += self._beside(final, found)
+            rivals += self._beside(found)
         rivals = sorted(rivals, key=lambda j: -j.log_odds)
         return self.weighed(found, rivals, left) if rivals else None
 
-    def _beside(self, model: Model, found: Investigation) -> list[Judged]:
+    def _beside(self, found: Investigation) -> list[Judged]:
         """Slips beside the effects that were found, as if beside the nominal model: their gain included."""
         own = found.null.objective - found.final.objective
         misfit = found.final.objective - float(found.sizes.sum())
-        weight = weight_of(found) - math.log(evidence.PRIOR_NONE)
-        return [
-            replace(j, gain=j.gain + own, log_bayes=j.log_bayes + weight)
-            for j in self.ranked(model)
-            if j.gain > (1.0 - policy.LEFT) * misfit or not unexplained(found)
-        ]
+        judged = self._included(found, found.final, weight_of(found) - math.log(evidence.PRIOR_NONE))
+        least = (1.0 - policy.LEFT) * misfit if unexplained(found) else 0.0
+        return [j for j in judged if j.gain - own > least]
 
     def _in_place(self, found: Investigation) -> list[Judged]:
         """Slips in place of one effect of a set that moves data as some slip does, beside the others."""
@@ -247,12 +244,16 @@ class Search:
         for name in found.named if len(found.named) > 1 else ():
             if part := part_without(found, name):
                 rest, fit = part
-                own, weight = found.null.objective - fit.objective, weight_beside(found, rest)
-                judged += [
-                    replace(j, gain=j.gain + own, log_bayes=j.log_bayes + weight)
-                    for j in self.ranked(Model(self.bench, found.forward, fit))
-                ]
+                judged += self._included(found, fit, weight_beside(found, rest))
         return judged
+
+    def _included(self, found: Investigation, fit: Fit, weight: float) -> list[Judged]:
+        """Slips beside a fit, what the fit itself gains and weighs against the nominal model included."""
+        own = found.null.objective - fit.objective
+        return [
+            replace(j, gain=j.gain + own, log_bayes=j.log_bayes + weight)
+            for j in self.ranked(Model(self.bench, found.forward, fit))
+        ]
 
     def weighed(self, found, rivals, left):
         """The investigation of the record with the best rival put right, None where that is no better."""
