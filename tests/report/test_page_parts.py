@@ -291,6 +291,17 @@ def test_a_folder_of_older_days_has_a_page_without_origin(tmp_path):
     assert 'class="sketch"' not in page
 
 
+def test_beads_that_differ_come_back_by_their_numbers(tmp_path):
+    """JSON has texts for keys, a record has numbers of beads: a sensor of another mass ended every page."""
+    chain = {"beads": 12, "orientation": "vertical", "bead": STEEL, "wall": {"material": "brass"}}
+    one = record(chain=chain | {"bodies": {5: {"mass_g": 4.5, "faces": "flat"}}})
+    made = write(tmp_path / "made", "single")
+    write_json(given.inputs((one,)), made / given.FILE)
+    _, (read,) = given.read(made)
+    assert read.block == one.block
+    assert "bead 5 bearing-steel, 10 mm, 4.5 g, flat faces" in write_page(made).read_text(encoding="utf-8")
+
+
 @pytest.mark.parametrize(
     "text", ["{", '{"format": 1}', json.dumps({"version": "1", "records": [{"name": 3}]})]
 )

@@ -66,4 +66,15 @@ def read(folder: Path) -> tuple[Inputs, list[Record]] | None:
         found = msgspec.json.decode(read_text(path), type=Inputs)
     except (msgspec.DecodeError, msgspec.ValidationError) as error:
         raise InputError(f"{path}: not what sonicvacuum discover writes ({error}); run it again") from None
-    return found, [Record(parse(g.record, path), name=g.name, digest=g.sha256) for g in found.records]
+    return found, [
+        Record(parse(_numbered(g.record), path), name=g.name, digest=g.sha256) for g in found.records
+    ]
+
+
+def _numbered(content: dict) -> dict:
+    """`record.yaml` with numbers of beads as keys: JSON knows none but text."""
+    chain = content.get("chain", {})
+    if not isinstance(chain, dict) or not isinstance(bodies := chain.get("bodies"), dict):
+        return content
+    by_number = {int(k) if k.isdecimal() else k: body for k, body in bodies.items()}
+    return content | {"chain": chain | {"bodies": by_number}}
