@@ -15,10 +15,10 @@ from sonicvacuum.cli.discover import discover
 from sonicvacuum.discover import session
 from sonicvacuum.discover.compare import read_model
 from sonicvacuum.discover.fit.refit import fit
+from sonicvacuum.discover.fit.wide import nominal
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, variants
 from sonicvacuum.discover.model.problem import experiment
-from sonicvacuum.discover.rounds import nominal
 from sonicvacuum.discover.search import directions, screen
 from sonicvacuum.discover.verdict import Verdict
 from sonicvacuum.effects import IDS, effect

@@ -8,11 +8,11 @@ from made_records import made
 from sonicvacuum.discover import law as telling
 from sonicvacuum.discover import verdict
 from sonicvacuum.discover.compare import compare, read_model
+from sonicvacuum.discover.fit.wide import nominal
 from sonicvacuum.discover.judge.law import formula, surface
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.free_law import of_some
 from sonicvacuum.discover.model.problem import experiment
-from sonicvacuum.discover.rounds import nominal
 from sonicvacuum.discover.search.free_law import free_law
 from sonicvacuum.effects import CATALOGUE, Setup
 from sonicvacuum.figures import force_law

@@ -7,12 +7,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from sonicvacuum.discover.fit import wide
+from sonicvacuum.discover.compare import compare
+from sonicvacuum.discover.fit import refit, wide
+from sonicvacuum.discover.fit.evidence import Combination, log_bayes
+from sonicvacuum.discover.fit.wide import nominal
 from sonicvacuum.discover.judge import gross
 from sonicvacuum.discover.model.forward import Forward
-from sonicvacuum.discover.model.hypothesis import Hypothesis
+from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, variants
 from sonicvacuum.discover.model.problem import experiment
-from sonicvacuum.discover.rounds import investigate, nominal
+from sonicvacuum.discover.rounds import investigate
+from sonicvacuum.discover.search.singles import setup_of
+from sonicvacuum.discover.verdict import Model
 from sonicvacuum.effects import CATALOGUE, IDS
 from sonicvacuum.records import Record, Signals
 from sonicvacuum.records.reader import parse
@@ -106,6 +111,30 @@ def test_the_nominal_fit_finds_a_wall_far_from_what_the_record_says():
     modulus = forward.layout.other("modulus")[0]
     stiffer = np.exp(null.nu[modulus] * forward.nuisance_sigma[modulus])
     assert stiffer == pytest.approx(STIFFER, rel=0.05)  # of the noise: a few parts in a thousand
+
+
+def test_a_model_is_held_against_data_with_such_a_wall():
+    effects = {"sensor-droop": {"tau_us": TAU}}
+    model = Model(record="other", effects=effects, speed_ratio={}, trigger_us={}, gain={}, modulus_ratio=1.0)
+    told = compare(model, made(list(effects.items()), 0.0))
+    assert told.gap.after < 1.0 + 4.0 * np.sqrt(2.0 / told.data)  # noise, within 4 of its errors
+    assert told.gap.before > 10.0
+
+
+def test_an_explanation_that_missed_its_minimum_is_fitted_once_more():
+    forward = Forward(experiment(made([("sensor-droop", {"tau_us": TAU})], 0.0)))
+    null = nominal(forward)
+    droop = CATALOGUE.effect("sensor-droop")
+    (free,) = variants(droop, setup_of(forward))
+    missed = refit.fit(forward, Hypothesis((Component(droop, free),)), np.array([[1.0]]), null.nu * 0.0)
+    gain = null.objective - missed.objective
+    one = Combination(("sensor-droop",), missed, gain, log_bayes(missed, gain))
+    (found,) = gross._at_their_best(forward, null, [one])
+    size = sum(forward.experiment.size(k) for k in range(2))
+    assert missed.objective > 2.0 * size
+    assert found.fit.objective < size * (1.0 + 4.0 * np.sqrt(2.0 / size))  # noise, within 4 of its errors
+    assert found.log_bayes > one.log_bayes
+    assert found.gain == pytest.approx(null.objective - found.fit.objective)
 
 
 def test_nothing_wide_needs_one_start(empty):

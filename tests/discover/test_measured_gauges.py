@@ -8,10 +8,10 @@ import pytest
 from made_records import made
 
 from sonicvacuum.discover import session
+from sonicvacuum.discover.fit.wide import nominal
 from sonicvacuum.discover.model.experiment import whitened_gaps
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.problem import experiment, flicker, noise
-from sonicvacuum.discover.rounds import nominal
 from sonicvacuum.records import Record, Signals, read, write
 from sonicvacuum.records.reader import parse
 

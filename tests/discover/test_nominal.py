@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from sonicvacuum.discover import rounds
+from sonicvacuum.discover.fit import wide
 
 SIZE = 5000
 # Three standard deviations of χ² of as many data, √(2N) each.
@@ -37,7 +37,7 @@ def test_a_nominal_fit_that_leaves_much_starts_once_more(monkeypatch, left, agai
         return Fitted(SIZE + (again if coarse else left))
 
     experiment = SimpleNamespace(runs=[None], size=lambda run: SIZE)
-    monkeypatch.setattr(rounds, "fit", fit)
-    found = rounds.nominal(SimpleNamespace(experiment=experiment, layout=SimpleNamespace(size=3)))
+    monkeypatch.setattr(wide, "fit", fit)
+    found = wide.nominal(SimpleNamespace(experiment=experiment, layout=SimpleNamespace(size=3)))
     assert found.objective == SIZE + kept
-    assert asked == [0, rounds.COARSE][:tries]
+    assert asked == [0, wide.COARSE][:tries]

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from made_records import block, made
 
+from sonicvacuum.discover.fit.wide import nominal
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Hypothesis
 from sonicvacuum.discover.model.nuisances import Layout, Shared, exact
 from sonicvacuum.discover.model.problem import experiment
 from sonicvacuum.discover.model.slow import columns
-from sonicvacuum.discover.rounds import nominal
 from sonicvacuum.discover.search import directions, screen
 from sonicvacuum.discover.search.singles import setup_of
 from sonicvacuum.files import InputError

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from made_records import made
 
-from sonicvacuum.discover import rounds
-from sonicvacuum.discover.fit import places
+from sonicvacuum.discover.fit import places, wide
 from sonicvacuum.discover.fit.refit import fit
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, variants
@@ -32,7 +31,7 @@ def fitted(forward, null, id, place, strength):
 )
 def test_a_neighbouring_place_leads_to_the_true_one(id, kind, parameters, wrong):
     forward = Forward(experiment(made([(id, parameters)], seed=9)[0]), 1)
-    null = rounds.nominal(forward)
+    null = wide.nominal(forward)
     start = fitted(forward, null, id, *wrong)
     found = places.settled(forward, start, singles.setup_of(forward))
     assert places.placed(found)
@@ -42,6 +41,6 @@ def test_a_neighbouring_place_leads_to_the_true_one(id, kind, parameters, wrong)
 
 def test_what_sits_nowhere_stays():
     forward = Forward(experiment(made([], seed=9)[0]), 1)
-    null = rounds.nominal(forward)
+    null = wide.nominal(forward)
     assert not places.placed(null)
     assert places.settled(forward, null, singles.setup_of(forward)) is null

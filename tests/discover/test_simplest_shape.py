@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from sonicvacuum.discover.fit.wide import nominal
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.problem import experiment
-from sonicvacuum.discover.rounds import nominal
 from sonicvacuum.discover.search import unknown
 from sonicvacuum.records import Record
 

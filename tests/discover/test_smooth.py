@@ -8,10 +8,11 @@ from made_records import made
 
 from sonicvacuum.discover import session
 from sonicvacuum.discover.fit import smooth
+from sonicvacuum.discover.fit.wide import nominal
 from sonicvacuum.discover.model.experiment import Smooth
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.problem import experiment
-from sonicvacuum.discover.rounds import investigate, nominal
+from sonicvacuum.discover.rounds import investigate
 from sonicvacuum.records import Record
 
 

@@ -7,9 +7,9 @@ import pytest
 from made_records import made
 from msgspec import structs
 
+from sonicvacuum.discover.fit.wide import nominal
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.problem import experiment, together
-from sonicvacuum.discover.rounds import nominal
 from sonicvacuum.files import InputError
 
 

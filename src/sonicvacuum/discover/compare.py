@@ -9,7 +9,7 @@ import numpy as np
 from msgspec import Struct
 
 from sonicvacuum.blas import one_thread
-from sonicvacuum.discover.fit.refit import fit
+from sonicvacuum.discover.fit import wide
 from sonicvacuum.discover.model import window
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis
@@ -138,6 +138,6 @@ def compare(model: Model, record: Record, threads: int = 1, catalogue: Catalogue
 
 def _fit(forward, one):
     try:
-        return fit(forward, one, np.zeros((1, 0)), np.zeros((1, forward.layout.size)))
+        return wide.nominal(forward, one)
     except ValueError as error:
         raise InputError(f"the model does not fit this record: {error}") from None

@@ -1,8 +1,7 @@
 """The order of the steps: nominal model, screen, singles, what is left, pairs, more effects, decision."""
 
-import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -10,12 +9,11 @@ from sonicvacuum import stages
 from sonicvacuum.discover import policy
 from sonicvacuum.discover.fit import bounds, enough, evidence, places, smooth, wide
 from sonicvacuum.discover.fit.evidence import Candidate, Combination
-from sonicvacuum.discover.fit.refit import Fit, fit, polish
+from sonicvacuum.discover.fit.refit import Fit, polish
 from sonicvacuum.discover.judge import explanations
 from sonicvacuum.discover.judge.decision import Case, Decision, View
 from sonicvacuum.discover.model.experiment import Experiment
 from sonicvacuum.discover.model.forward import Forward
-from sonicvacuum.discover.model.hypothesis import Hypothesis
 from sonicvacuum.discover.search import directions, screen, singles
 
 # Candidates whose Δχ² is this far behind the best are not followed to their minimum.
@@ -25,7 +23,6 @@ FAR = 0.5
 HOPEFUL = 0.7
 # Those with a place may be the best at a better one, if they are not further behind than this.
 ALONG = 60.0
-COARSE = 6
 
 
 @dataclass(frozen=True)
@@ -76,23 +73,6 @@ class Investigation:
         return [c for c in self.combinations if len(c.effects) == 2]
 
 
-def nominal(forward: Forward) -> Fit:
-    """The nominal model with its nuisances fitted."""
-    start = np.zeros((1, forward.layout.size))
-    direct = fit(forward, Hypothesis(), np.zeros((1, 0)), start)
-    size = sum(forward.experiment.size(r) for r in range(len(forward.experiment.runs)))
-    if direct.objective - size < policy.MINIMA * math.sqrt(2.0 * size):
-        return direct
-    tried = [direct, fit(forward, Hypothesis(), np.zeros((1, 0)), start, coarse=COARSE)]
-    if direct.objective > 2.0 * size and wide.wide(forward):
-        starts = wide.starts(forward)
-        nothing = np.zeros((len(starts), 0))
-        tried.append(fit(forward, Hypothesis(), nothing, starts, keep=wide.FOLLOWED, halved=wide.FIRST))
-    best = min(tried, key=lambda f: f.objective)
-    best = best if best.objective < direct.objective - policy.SAME_MINIMUM else direct
-    return replace(best, elsewhere=tried[-1].elsewhere)
-
-
 def investigate(experiment: Experiment, threads: int = 1, null: Fit | None = None) -> Investigation:
     """Find what is missing from the nominal model of a data set; `null` is its fit, where at hand."""
     known = smooth.blocks(experiment)
@@ -102,7 +82,7 @@ def investigate(experiment: Experiment, threads: int = 1, null: Fit | None = Non
         known = None  # stated, so that nothing is to be inferred
     forward = Forward(experiment, threads)
     stages.begin("nominal model")
-    null = null or nominal(forward)
+    null = null or wide.nominal(forward)
     setup = singles.setup_of(forward)
     scores = screen.screen(forward, null, directions.catalogue(setup, experiment.excluded))
     threshold = scores.threshold(policy.FALSE_ALARM)

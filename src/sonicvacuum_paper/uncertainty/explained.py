@@ -18,11 +18,11 @@ import pandas as pd
 from sonicvacuum.discover import quantities
 from sonicvacuum.discover.fit import evidence
 from sonicvacuum.discover.fit.refit import fit
+from sonicvacuum.discover.fit.wide import nominal
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis
 from sonicvacuum.discover.model.parameters import coordinate
 from sonicvacuum.discover.model.problem import experiment
-from sonicvacuum.discover.rounds import nominal
 from sonicvacuum.discover.search.singles import setup_of
 from sonicvacuum.records import Record
 from sonicvacuum_paper.uncertainty.formats import EXPLAINED, LAYER, LOSS, MODULUS

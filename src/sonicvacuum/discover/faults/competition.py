@@ -32,12 +32,13 @@ from sonicvacuum.discover.faults.weights import (
 )
 from sonicvacuum.discover.fit import evidence, smooth
 from sonicvacuum.discover.fit.refit import Fit, polish
+from sonicvacuum.discover.fit.wide import nominal
 from sonicvacuum.discover.judge import explanations
 from sonicvacuum.discover.model.experiment import Experiment
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Hypothesis
 from sonicvacuum.discover.model.problem import together
-from sonicvacuum.discover.rounds import Investigation, investigate, nominal
+from sonicvacuum.discover.rounds import Investigation, investigate
 from sonicvacuum.discover.search import directions, screen, singles
 from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.records import Record

@@ -4,12 +4,16 @@ Where an echo of the simulation does not overlap the measured one, χ² has no s
 from the middle of a wide prior ends in the nearest of several minima. Fits start all over the prior instead.
 """
 
+import math
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
 
+from sonicvacuum.discover import policy
 from sonicvacuum.discover.fit.refit import Fit, fit
 from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.model.hypothesis import Hypothesis
 
 # Known no better than this, a modulus or a speed may put an echo beside the measured one.
 WIDE = 0.1
@@ -18,6 +22,8 @@ STEP, REACH, MOST = 0.5, 2.0, 1.0
 # Starts that are followed to their minimum; steps of all before these are chosen; minima that the fits of
 # effects start from.
 FOLLOWED, FIRST, MINIMA = 8, 4, 3
+# Steps on running integrals, where a fit of nuisances alone starts once more from these.
+COARSE = 6
 
 
 def starts(forward: Forward) -> np.ndarray:
@@ -57,9 +63,32 @@ def minima(forward: Forward, null: Fit) -> np.ndarray:
     return np.concatenate([null.nu[None], others[: MINIMA - 1]])
 
 
-def again(forward: Forward, one: Fit) -> Fit:
-    """The better of a fit and of one from all over the priors, with the effects as they are there."""
-    rows = starts(forward)
+def nominal(forward: Forward, held: Hypothesis | None = None) -> Fit:
+    """The nominal model, or one with effects as they are held, with its nuisances fitted.
+
+    Where much is left, fits start once more from running integrals, and from all over the priors of what is
+    hardly known.
+    """
+    held = held or Hypothesis()
+    start = np.zeros((1, forward.layout.size))
+    direct = fit(forward, held, np.zeros((1, 0)), start)
+    size = sum(forward.experiment.size(r) for r in range(len(forward.experiment.runs)))
+    if direct.objective - size < policy.MINIMA * math.sqrt(2.0 * size):
+        return direct
+    tried = [direct, fit(forward, held, np.zeros((1, 0)), start, coarse=COARSE)]
+    if direct.objective > 2.0 * size and wide(forward):
+        rows = starts(forward)
+        tried.append(fit(forward, held, np.zeros((len(rows), 0)), rows, keep=FOLLOWED, halved=FIRST))
+    best = min(tried, key=lambda f: f.objective)
+    best = best if best.objective < direct.objective - policy.SAME_MINIMUM else direct
+    return replace(best, elsewhere=tried[-1].elsewhere)
+
+
+def again(forward: Forward, one: Fit, more: np.ndarray | None = None) -> Fit:
+    """The better of a fit and of one from all over the priors, with the effects as they are there; from
+    `more` (L, q) nuisances as well.
+    """
+    rows = starts(forward) if more is None else np.concatenate([starts(forward), more])
     u = np.repeat(one.u[None], len(rows), axis=0)
     other = fit(forward, one.hypothesis, u, rows, keep=FOLLOWED, halved=FIRST)
     return min((one, other), key=lambda f: f.objective)
