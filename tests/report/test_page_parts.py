@@ -119,6 +119,25 @@ def test_what_all_runs_share_is_called_by_its_name_and_unit():
         assert part in told
 
 
+def test_what_the_data_measure_is_told_with_its_error():
+    known = {
+        "gain g1": Known(value=0.0943, sigma=0.084, prior=None),
+        "modulus foam": Known(value=1.47, sigma=0.018, prior=0.5),
+        "modulus steel": Known(value=1.01, sigma=0.02, prior=0.03),
+        "clock": Known(value=-0.02, sigma=1e-5, prior=5e-3),
+    }
+    assert bench.measured(verdict(nuisances=known)) == (
+        "The data measure what the record leaves open, as factors of what it says: calibration of g1 "
+        "0.0943 ± 0.0079 and modulus of foam 1.47 ± 0.026 (stated to 50 %)."
+    )
+    assert bench.measured(verdict()) == ""
+
+
+def test_numbers_of_a_page_have_no_powers_of_ten_where_people_write_none():
+    said = bench.nuisances(replace(model(verdict()), trigger_us={"slow": 332.1}, gain={"g1": 12.3}))
+    assert "gauge gains by up to 1100 % and time zeros by up to 330 µs" in said
+
+
 def test_a_gauge_at_fault_is_called_by_its_name():
     found = verdict(parameters={"sensor-gain": {
         "gain_ratio": Value(value=0.68, sigma=0.01), "sensor": Value(value=1.0, sigma=0.0)}})  # fmt: skip

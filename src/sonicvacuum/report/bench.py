@@ -12,6 +12,7 @@ from sonicvacuum.discover.faults.table import FAULTS
 from sonicvacuum.discover.model.nuisances import MODULUS_REL_SIGMA
 from sonicvacuum.discover.verdict import PUT_RIGHT, Fault, Model, Verdict
 from sonicvacuum.records import Record
+from sonicvacuum.report.tables import number
 from sonicvacuum.report.words import in_words, joined
 
 # A modulus that moved by more than this, in its logarithm, is told first.
@@ -28,6 +29,8 @@ _WHAT = {
 }
 # What has moved by more of its stated standard errors than this has left them.
 STRAINED = 2.5
+# Data that leave less than this of a stated error have measured it.
+TOLD = 0.5
 
 
 def slips(verdict: Verdict) -> list[str]:
@@ -70,15 +73,31 @@ def nuisances(model: Model) -> str:
     if abs(model.modulus_ratio - 1.0) >= 5e-4:
         parts.append(f"modulus of the beads' material times {model.modulus_ratio:.4g}")
     if farthest(model.speed_ratio.values()) >= 5e-5:
-        parts.append(f"striker speeds by up to {100.0 * farthest(model.speed_ratio.values()):.2g} %")
+        parts.append(f"striker speeds by up to {_short(100.0 * farthest(model.speed_ratio.values()))} %")
     if farthest(model.gain.values()) >= 5e-5:
-        parts.append(f"gauge gains by up to {100.0 * farthest(model.gain.values()):.2g} %")
+        parts.append(f"gauge gains by up to {_short(100.0 * farthest(model.gain.values()))} %")
     shift = max((abs(v) for v in model.trigger_us.values()), default=0.0)
     if shift >= 5e-3:
-        parts.append(f"time zeros by up to {shift:.2g} µs")
+        parts.append(f"time zeros by up to {_short(shift)} µs")
     if not parts:
         return "What the record states with an error (speeds, time zeros, gains, modulus) stays as recorded."
     return f"What the record states with an error has followed the data: {joined(parts)}."
+
+
+def measured(verdict: Verdict) -> str:
+    """What the data know better than the record does: moduli, masses and sizes, calibrations; else empty."""
+    parts = []
+    for name, known in (verdict.nuisances or {}).items():
+        kind, _, of = name.partition(" ")
+        told = known.prior is None or known.sigma < TOLD * known.prior
+        if kind in _SHIFTS or not 0.0 < known.sigma < math.inf or not told:
+            continue
+        what = _WHAT.get(kind, "calibration" if kind == "gain" else kind)
+        stated = "" if known.prior is None else f" (stated to {_short(100.0 * known.prior)} %)"
+        value = f"{known.value:.3g} ± {_short(known.value * known.sigma)}"
+        parts.append(f"{what}{f' of {of}' if of else ''} {value}{stated}")
+    said = "The data measure what the record leaves open, as factors of what it says"
+    return f"{said}: {joined(parts)}." if parts else ""
 
 
 def moved_modulus(verdict: Verdict, model: Model) -> str:
@@ -136,6 +155,11 @@ def _told_of(kind, of, value):
         return f"Check the recorder's clock: the data ask for one that is off by {100.0 * value:.2g} %"
     what = _WHAT.get(kind, kind.replace("-", " "))
     return _asked(f"the {what} of {of}" if of else f"the {what}", value)
+
+
+def _short(value: float) -> str:
+    """Two digits, without powers of ten where people write none."""
+    return number(f"{value:.2g}", 2)
 
 
 def _asked(what, ratio):

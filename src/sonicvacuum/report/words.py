@@ -314,7 +314,7 @@ def experiment(proposal: Next | None, cells: list[dict], catalogue: Catalogue = 
     one, other = (plain(name, catalogue) for name in proposal.separates[:2])
     text = (
         f"One more run {steps} would tell {one} from {other} best: they would differ by about "
-        f"{math.sqrt(max(proposal.delta_chi2, 0.0)):.2g} standard errors."
+        f"{number(f'{math.sqrt(max(proposal.delta_chi2, 0.0)):.2g}', 2)} standard errors."
     )
     return text + (" That would hardly decide." if proposal.delta_chi2 < 9.0 else "")
 
