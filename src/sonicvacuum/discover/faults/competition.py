@@ -17,12 +17,14 @@ from sonicvacuum import stages
 from sonicvacuum.discover.faults import policy
 from sonicvacuum.discover.faults.examine import examine
 from sonicvacuum.discover.faults.found import Bench, Finding
-from sonicvacuum.discover.faults.judging import Judge, Judged, Model, excess, noise_volume, suspicious
+from sonicvacuum.discover.faults.judging import Judge, Judged, Model, excess, noise_volume, occam, suspicious
 from sonicvacuum.discover.faults.slips import Slip, hypotheses
 from sonicvacuum.discover.faults.table import FAULTS
 from sonicvacuum.discover.faults.timing import time_zero, with_starts
 from sonicvacuum.discover.faults.weights import (
     ALIKE,
+    NUISANCES,
+    acts_like,
     alias,
     part_without,
     unexplained,
@@ -108,6 +110,8 @@ class Search:
         self.bench, self.catalogue, self.threads = bench, catalogue, threads
         self.findings, self.simulations = list(plain), 0
         self._nominal: Model | None = None
+        # Effects that alone explain as much as the likeliest slip, which moves all pulses as they may.
+        self._matching: set[str] = set()
 
     def make(self, bench: Bench) -> Experiment:
         """The data set of a record as far as it was put right."""
@@ -133,6 +137,8 @@ class Search:
         found = self._investigate()
         if not looked and set(found.named) - {explanations.UNKNOWN}:
             ranked = self._as_small(model, found)
+        elif ranked and any(self._like_slips(found, name) for name in found.named):
+            ranked = self.ranked(model, afar=True)
         for _ in range(policy.MOST):
             better = self._instead(found, ranked)
             if better is None:
@@ -169,8 +175,8 @@ class Search:
         kept = [j for j in followed if j.gain > own - ALIKE and j.log_odds > 0.0]
         return sorted(kept, key=lambda j: -j.log_odds)
 
-    def ranked(self, model: Model) -> list[Judged]:
-        """Slips that gain enough beside a model, fitted, the likeliest first."""
+    def ranked(self, model: Model, afar: bool = False) -> list[Judged]:
+        """Slips that gain enough beside a model, fitted, the likeliest first; masses also `afar`."""
         judge, record = Judge(model, self.judged), model.bench.record
         seen = predicted(self.make(model.bench), self.threads)
         done = {(f.fault, f.run, f.sensor) for f in self.findings}
@@ -181,9 +187,13 @@ class Search:
             slips = [s for s in slips if not _of_the_chain(s)]
         shifted = [] if any(f.fault == "time-zero" for f in self.findings) else time_zero(record, seen)
         stages.begin("slips of the laboratory")
-        looked = sorted((judge.look(s) for s in slips), key=lambda j: -j.log_odds)
+        far = excess(model) > policy.SURE_GAIN
+        looked = [judge.look(s) for s in slips]
+        if far and afar:
+            looked = [judge.from_afar(j) if FAULTS[j.slip.fault].curved else j for j in looked]
+        looked.sort(key=lambda j: -j.log_odds)
         worth = [j for j in looked if j.gain > policy.LEAST_GAIN][: policy.FOLLOWED]
-        if excess(model) > policy.SURE_GAIN:
+        if far:
             # A pulse that comes a bead earlier, or with another run's speed, overlaps none of what was
             # measured: slopes know nothing of it.
             pairs = _both_off(worth)
@@ -202,7 +212,14 @@ class Search:
         known = directions.catalogue(singles.setup_of(forward), forward.experiment.excluded)
         found = singles.fit_all(forward, model.fit, screen.screen(forward, model.fit, known))
         self.simulations += forward.chains - before
-        return any(c.gain > judged.gain - ALIKE for c in found)
+        self._matching = {c.effect for c in found if c.gain > judged.gain - ALIKE}
+        return bool(self._matching)
+
+    def _like_slips(self, found: Investigation, name: str) -> bool:
+        """Whether an effect named moves data as some slip does."""
+        if name == explanations.UNKNOWN:
+            return False
+        return name in self._matching or bool(NUISANCES & acts_like(found, name))
 
     def _accept(self, ranked: list[Judged], chosen: Judged, share: float = 1.0) -> None:
         """Put a slip right; its rivals are said as far as they are probable."""
@@ -243,7 +260,7 @@ class Search:
         """Slips in place of one effect of a set that moves data as some slip does, beside the others."""
         judged = []
         for name in found.named if len(found.named) > 1 else ():
-            if part := part_without(found, name):
+            if self._like_slips(found, name) and (part := part_without(found, name)):
                 rest, fit = part
                 judged += self._included(found, fit, weight_beside(found, rest))
         return judged
@@ -253,7 +270,7 @@ class Search:
         own = found.null.objective - fit.objective
         return [
             replace(j, gain=j.gain + own, log_bayes=j.log_bayes + weight)
-            for j in self.ranked(Model(self.bench, found.forward, fit))
+            for j in self.ranked(Model(self.bench, found.forward, fit), afar=True)
         ]
 
     def weighed(self, found, rivals, left):
@@ -289,8 +306,7 @@ class Search:
         gain = found.null.objective - after.null.objective
         if not best.slip.continuous:
             gain += noise_volume(found.forward.experiment) - noise_volume(after.forward.experiment)
-        own = best.log_bayes - 0.5 * best.gain
-        return 0.5 * gain + min(own, 0.0) + policy.log_prior(best.slip.alternatives)
+        return 0.5 * gain + occam(best.slip, best.size, gain) + policy.log_prior(best.slip.alternatives)
 
     def _hollow(self, found, after):
         """Whether what is left after a slip is nearly all that was left before."""

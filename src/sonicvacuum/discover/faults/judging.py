@@ -48,7 +48,7 @@ class Judged:
         size: where it fits best.
         gain: Δ(−2 log L) against the model of the record as it is.
         log_bayes: natural log of the Bayes factor against it, prior of the slip left aside.
-        model: fitted to the record put right; None after the linear look.
+        model: fitted to the record put right; None after a linear look.
     """
 
     slip: Slip
@@ -145,7 +145,7 @@ class Judge:
             after = min(self._least(*one) for one in changed)
             after += volume if slip.continuous else own_volume
         gain = self._least(*own) + volume - after
-        return Judged(slip, size, gain, 0.5 * gain + _occam(slip, size, gain))
+        return Judged(slip, size, gain, 0.5 * gain + occam(slip, size, gain))
 
     def _normal(self, parts, nu, extra=None):
         """Gradient, Hessian and χ² over all runs; the size of a slip is the last unknown."""
@@ -179,7 +179,7 @@ class Judge:
     def follow(self, judged: Judged) -> Judged:
         """The slip fitted: its size with all else, the record changed with it."""
         slip = judged.slip
-        size, model = self._fitted(slip, judged.size)
+        size, model = (judged.size, judged.model) if judged.model else self._fitted(slip, judged.size)
         for _ in range(STEPS if slip.continuous else 0):
             inner = Judge(model, self.make)
             new_size, new = self._fitted(slip, size + inner._step(slip), model.fit)
@@ -190,7 +190,26 @@ class Judge:
             if gained < LAST:
                 break
         gain = self._value(slip, self.model) - self._value(slip, model)
-        return Judged(slip, size, gain, 0.5 * gain + _occam(slip, size, gain), model)
+        return Judged(slip, size, gain, 0.5 * gain + occam(slip, size, gain), model)
+
+    def from_afar(self, judged: Judged) -> Judged:
+        """The slip where it fits best one or two prior widths to either side, if that gains more than it does
+        as looked at.
+
+        Where a striker comes off, or meets the beads once more, is no smooth matter of masses, so that no
+        slope leads across.
+        """
+        slip, best = judged.slip, judged
+        for side in (-1.0, 1.0):
+            last = None
+            for widths in (1.0, 2.0):
+                size, model = self._fitted(slip, slip.start + side * widths * slip.width, last, True)
+                last = model.fit
+                gain = self._value(slip, self.model) - self._value(slip, model)
+                if gain <= best.gain:
+                    break
+                best = Judged(slip, size, gain, 0.5 * gain + occam(slip, size, gain), model)
+        return best
 
     def _step(self, slip):
         """Step of a slip's size from a record that is changed already; sizes add up."""
@@ -210,14 +229,18 @@ class Judge:
         """−2 log L; without the volume of the noise for a change that only rescales."""
         return model.fit.objective if slip.continuous else model.objective
 
-    def _fitted(self, slip, size, start: Fit | None = None):
+    def _fitted(self, slip, size, start: Fit | None = None, afresh: bool = False):
+        """The record changed by a size and its model, fitted from a start, or from the model as it is and
+        from nuisances of zero; `afresh` from all of these.
+        """
         far = LONGEST * slip.width
         size = float(np.clip(size, slip.start - far, slip.start + far)) if slip.continuous else 0.0
         bench = self._bench(slip.change(self.model.bench.record, size))
         forward = Forward(self.make(bench), self.model.forward.threads)
-        one = start or self.model.fit
-        nu = np.stack([one.nu, 0.0 * one.nu][: 2 - bool(start)])
-        found = fit(forward, one.hypothesis, np.repeat(one.u[None], len(nu), axis=0), nu)
+        one = self.model.fit
+        nu = ([start.nu] if start else []) + ([one.nu, 0.0 * one.nu] if afresh or not start else [])
+        one = start or one
+        found = fit(forward, one.hypothesis, np.repeat(one.u[None], len(nu), axis=0), np.stack(nu))
         self.simulations += forward.chains
         return size, Model(bench, forward, found)
 
@@ -227,7 +250,7 @@ def _ridged(hessian):
     return hessian + 1e-9 * np.diag(np.maximum(np.diag(hessian), 1e-9))
 
 
-def _occam(slip, size, gain):
+def occam(slip: Slip, size: float, gain: float) -> float:
     """Log of the Occam factor: width of the posterior times the prior's density at the size."""
     if not slip.continuous:
         return slip.occam

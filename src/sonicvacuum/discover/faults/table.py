@@ -16,6 +16,7 @@ class Fault:
         alias: nuisance such that an effect which acts like it (`Parameter.acts_like`) moves the same data in
             the same way, "" where there is none.
         stretches: whether it moves all times or forces at once, as an effect in every contact may.
+        curved: whether no nuisance is like it, so that beside strong pulses slopes mislead on its size.
     """
 
     id: str
@@ -25,6 +26,7 @@ class Fault:
     corrected: bool = True
     alias: str = ""
     stretches: bool = False
+    curved: bool = False
 
 
 FAULTS: dict[str, Fault] = {
@@ -97,7 +99,11 @@ FAULTS: dict[str, Fault] = {
         ),
         Fault("bead-count", "the chain seems to have {value} beads", "count the beads", stretches=True),
         Fault(
-            "bead-mass", "the beads weigh {value} times the stated mass", "weigh the beads", stretches=True
+            "bead-mass",
+            "the beads weigh {value} times the stated mass",
+            "weigh the beads",
+            stretches=True,
+            curved=True,
         ),
         Fault(
             "bead-size",
@@ -110,6 +116,7 @@ FAULTS: dict[str, Fault] = {
             "the striker weighs {value} times the stated mass",
             "weigh the striker",
             alias="speed",
+            curved=True,
         ),
         Fault(
             "speed-common",

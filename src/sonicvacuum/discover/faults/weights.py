@@ -65,13 +65,11 @@ def without(name: str, found: Investigation, like: Judged | None) -> str:
 
 
 def part_without(found: Investigation, name: str) -> tuple[str, Fit] | None:
-    """A set that is named, one effect left out, as it was fitted; None where it was not, or where no slip
-    moves data as that effect does.
-    """
+    """A set that is named, one effect left out, as it was fitted; None where it was not."""
     rest = explanations.key(n for n in found.named if n != name)
     fits = {explanations.key([c.effect]): c.fit for c in found.candidates}
     fits |= {explanations.key(c.effects): c.fit for c in found.combinations}
-    return (rest, fits[rest]) if rest in fits and NUISANCES & acts_like(found, name) else None
+    return (rest, fits[rest]) if rest in fits else None
 
 
 def weight_beside(found: Investigation, rest: str) -> float:

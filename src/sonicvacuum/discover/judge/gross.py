@@ -18,7 +18,7 @@ from sonicvacuum.discover import policy
 from sonicvacuum.discover.fit import evidence, wide
 from sonicvacuum.discover.fit.evidence import Combination
 from sonicvacuum.discover.fit.normal import linearise
-from sonicvacuum.discover.fit.refit import Fit
+from sonicvacuum.discover.fit.refit import Fit, fit
 from sonicvacuum.discover.judge import explanations
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.search import pairs, profiles, screen, several, singles, unknown
@@ -83,7 +83,8 @@ def standing_out(
     To the best of them effects are added as long as all of its own stand out. Where that ends still far from
     the data, what stood out at first is kept: one effect more would only stand for what is left.
     """
-    found = _at_their_best(forward, null, [*found, *_profiles(forward, null, setup)])
+    found = [*found, *_crossed(forward, null, found, setup), *_profiles(forward, null, setup)]
+    found = _at_their_best(forward, null, found)
     first = None
     while True:
         ranked = sorted(weighed(forward, null, found), key=lambda c: -c.log_bayes)
@@ -126,6 +127,25 @@ def _again(forward, null, c: Combination, nu: np.ndarray) -> Combination:
     gain = null.objective - one.objective
     worth = c.log_bayes - evidence.log_bayes(c.fit, c.gain) + evidence.log_bayes(one, gain)
     return Combination(c.effects, one, gain, worth)
+
+
+def _crossed(forward, null, found: list[Combination], setup: Setup) -> list[Combination]:
+    """The best effect with each of those that explain much alone, if that was not tried: so far from the
+    data slopes do not tell which second effect is asked for.
+    """
+    known = {frozenset(c.effects) for c in found}
+    alone = sorted((c for c in found if len(c.effects) == 1), key=lambda c: c.fit.objective)[:LEADING]
+    crossed = []
+    for other in alone[1:]:
+        best = alone[0].fit
+        if frozenset((*alone[0].effects, *other.effects)) in known:
+            continue
+        hypothesis = pairs.joined(best.hypothesis, other.fit.hypothesis.components[0], setup)
+        u = np.concatenate([best.u, other.fit.u])
+        nu = np.array([best.nu, other.fit.nu])
+        one = fit(forward, hypothesis, np.array([u, u]), nu, iterations=pairs.ITERATIONS)
+        crossed.append(pairs.combination(null, one, setup))
+    return [c for c in crossed if np.isfinite(c.fit.objective)]
 
 
 def _profiles(forward, null, setup) -> list[Combination]:
