@@ -9,9 +9,9 @@ import pytest
 from made_records import BEADS, made
 
 from sonicvacuum.discover.faults import changes, policy
-from sonicvacuum.discover.faults.competition import Search, obvious
+from sonicvacuum.discover.faults.competition import Search
 from sonicvacuum.discover.faults.found import Bench
-from sonicvacuum.discover.faults.judging import Judge, Model, suspicious
+from sonicvacuum.discover.faults.judging import Judge, Model, obvious, suspicious
 from sonicvacuum.discover.faults.slips import hypotheses
 from sonicvacuum.discover.rounds import investigate
 from sonicvacuum.effects import CATALOGUE

@@ -8,8 +8,8 @@ from made_records import SIGMA, made
 from made_slips import altered
 
 from sonicvacuum.discover.faults import traces
-from sonicvacuum.discover.faults.competition import predicted
 from sonicvacuum.discover.faults.examine import examine
+from sonicvacuum.discover.faults.expected import predicted
 from sonicvacuum.discover.model.masks import cut, spikes
 from sonicvacuum.discover.model.problem import together
 

@@ -16,8 +16,18 @@ import numpy as np
 from sonicvacuum import stages
 from sonicvacuum.discover.faults import policy
 from sonicvacuum.discover.faults.examine import examine
+from sonicvacuum.discover.faults.expected import predicted
 from sonicvacuum.discover.faults.found import Bench, Finding
-from sonicvacuum.discover.faults.judging import Judge, Judged, Model, excess, noise_volume, occam, suspicious
+from sonicvacuum.discover.faults.judging import (
+    Judge,
+    Judged,
+    Model,
+    excess,
+    noise_volume,
+    obvious,
+    occam,
+    suspicious,
+)
 from sonicvacuum.discover.faults.slips import Slip, hypotheses
 from sonicvacuum.discover.faults.table import FAULTS
 from sonicvacuum.discover.faults.timing import time_zero, with_starts
@@ -27,6 +37,7 @@ from sonicvacuum.discover.faults.weights import (
     acts_like,
     alias,
     part_without,
+    parts,
     unexplained,
     weight_beside,
     weight_of,
@@ -38,12 +49,14 @@ from sonicvacuum.discover.fit.wide import nominal
 from sonicvacuum.discover.judge import explanations
 from sonicvacuum.discover.model.experiment import Experiment
 from sonicvacuum.discover.model.forward import Forward
-from sonicvacuum.discover.model.hypothesis import Hypothesis
 from sonicvacuum.discover.model.problem import together
 from sonicvacuum.discover.rounds import Investigation, investigate
 from sonicvacuum.discover.search import directions, screen, singles
 from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.records import Record
+
+# A slip with more of the probability than this is not shared with an effect that is like another: it is told.
+LIKELIER = 0.5
 
 
 @dataclass(frozen=True)
@@ -61,22 +74,6 @@ class Outcome:
     findings: tuple[Finding, ...]
     record: Record
     simulations: int = 0
-
-
-def predicted(experiment: Experiment, threads: int = 1) -> dict[str, dict[str, np.ndarray]]:
-    """Run → gauge → (T,) reading of the nominal model at the recorded numbers, for the gauges of each run."""
-    bare = tuple(replace(r, present=None, scalars=()) for r in experiment.runs)
-    forward = Forward(replace(experiment, runs=bare, correlation=np.zeros(len(experiment.gauges))), threads)
-    found = forward.sampled(Hypothesis(), np.zeros((1, 0)), np.zeros((1, forward.layout.size)))
-    result = {}
-    for run, (value, _) in zip(experiment.runs, found, strict=True):
-        rows = value[0].reshape(len(experiment.gauges), -1) * experiment.sigma[:, None]
-        result[run.id] = {
-            g.id: row
-            for s, (g, row) in enumerate(zip(experiment.gauges, rows, strict=True))
-            if run.has_signals and (run.present is None or run.present[s].any())
-        }
-    return {k: v for k, v in result.items() if v}
 
 
 def discover(records: Sequence[Record], catalogue: Catalogue = CATALOGUE, threads: int = 1) -> Outcome:
@@ -276,8 +273,9 @@ class Search:
     def weighed(self, found, rivals, left):
         """The investigation of the record with the best rival put right, None where that is no better."""
         same = [j for j in rivals if alias(j, found)]
-        if same and rivals[0].log_odds - same[0].log_odds < 0.5 * ALIKE:
-            self._share(found, [j for j in rivals if j.gain > same[0].gain - ALIKE], same[0])
+        near = [j for j in rivals if same and j.gain > same[0].gain - ALIKE]
+        if same and parts(near, same[0]).max() <= LIKELIER:
+            self._share(found, near, same[0])
             return None
         best, as_is = rivals[0], weight_of(found)
         put_right = best.log_odds + math.log(evidence.PRIOR_NONE)
@@ -321,9 +319,7 @@ class Search:
 
         With `like`, the slip among them that moves the data exactly as one effect: both weigh the same.
         """
-        odds = np.array([j.log_odds for j in rivals] + ([like.log_odds] if like else []))
-        weights = np.exp(odds - odds.max())
-        weights *= p / weights.sum()
+        weights = p * parts(rivals, like)
         for judged, weight in zip(rivals, weights, strict=False):
             if weight >= policy.SHOWN:
                 self.findings.append(judged.slip.finding(judged.size, float(weight)))
@@ -347,12 +343,3 @@ def _both_off(worth: list[Judged]) -> set[str]:
     """Pairs of runs, as `runs-swapped` names them, that both look struck at another speed."""
     off = [j.slip.run for j in worth if j.slip.fault == "run-off"]
     return {f"{a} and {b}" for a in off for b in off if a != b}
-
-
-def obvious(judged: Judged, model: Model) -> bool:
-    """Whether a slip takes away nearly all misfit by itself."""
-    return (
-        judged.gain > policy.SURE_GAIN
-        and judged.gain > policy.SHARE * excess(model)
-        and not FAULTS[judged.slip.fault].alias
-    )

@@ -13,6 +13,7 @@ import numpy as np
 from sonicvacuum.discover.faults import policy
 from sonicvacuum.discover.faults.found import Bench
 from sonicvacuum.discover.faults.slips import Slip
+from sonicvacuum.discover.faults.table import FAULTS
 from sonicvacuum.discover.fit import tails
 from sonicvacuum.discover.fit.refit import Fit, fit
 from sonicvacuum.discover.model.experiment import Experiment
@@ -21,6 +22,8 @@ from sonicvacuum.records import Record
 
 # Steps of the search for a size, and the Δχ² below which a step is the last.
 STEPS, LAST = 6, 0.3
+# Tries of a search for a size without slopes, and how near it comes, in prior widths.
+TRIES, ROUGHLY = 8, 0.02
 # Farthest size from where the search starts, in prior widths.
 LONGEST = 5.0
 
@@ -67,6 +70,15 @@ def excess(model: Model) -> float:
     """χ² of a nominal fit, its nuisances' included, above the number of data."""
     e = model.forward.experiment
     return model.fit.objective - sum(e.size(r) for r in range(len(e.runs)))
+
+
+def obvious(judged: Judged, model: Model) -> bool:
+    """Whether a slip takes away nearly all misfit by itself."""
+    return (
+        judged.gain > policy.SURE_GAIN
+        and judged.gain > policy.SHARE * excess(model)
+        and not FAULTS[judged.slip.fault].alias
+    )
 
 
 def suspicious(model: Model) -> bool:
@@ -203,13 +215,32 @@ class Judge:
         for side in (-1.0, 1.0):
             last = None
             for widths in (1.0, 2.0):
-                size, model = self._fitted(slip, slip.start + side * widths * slip.width, last, True)
-                last = model.fit
-                gain = self._value(slip, self.model) - self._value(slip, model)
-                if gain <= best.gain:
+                found = self._at(slip, slip.start + side * widths * slip.width, last)
+                last = found.model.fit
+                if found.gain <= best.gain:
                     break
-                best = Judged(slip, size, gain, 0.5 * gain + occam(slip, size, gain), model)
-        return best
+                best = found
+        return best if best is judged else self._around(best)
+
+    def _at(self, slip: Slip, size: float, last: Fit | None) -> Judged:
+        """The slip at one size, fitted from the last fit as well."""
+        size, model = self._fitted(slip, size, last, True)
+        gain = self._value(slip, self.model) - self._value(slip, model)
+        return Judged(slip, size, gain, 0.5 * gain + occam(slip, size, gain), model)
+
+    def _around(self, best: Judged) -> Judged:
+        """The same where it fits best within a prior width, by a search that needs no slopes."""
+        from scipy.optimize import minimize_scalar  # takes long to load, and few records need it
+
+        slip, tried = best.slip, [best]
+
+        def loss(size):
+            tried.append(self._at(slip, float(size), max(tried, key=lambda j: j.gain).model.fit))
+            return -tried[-1].gain
+
+        near, rough = (best.size - slip.width, best.size + slip.width), ROUGHLY * slip.width
+        minimize_scalar(loss, bounds=near, method="bounded", options={"maxiter": TRIES, "xatol": rough})
+        return max(tried, key=lambda j: j.gain)
 
     def _step(self, slip):
         """Step of a slip's size from a record that is changed already; sizes add up."""

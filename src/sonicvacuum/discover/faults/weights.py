@@ -1,6 +1,7 @@
 """What explanations of a record weigh, and which effects a slip stands for."""
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -75,3 +76,10 @@ def part_without(found: Investigation, name: str) -> tuple[str, Fit] | None:
 def weight_beside(found: Investigation, rest: str) -> float:
     """Log of prior times evidence of an explanation, against the nominal model's of none."""
     return logs_of(found)[rest] - math.log(evidence.PRIOR_NONE)
+
+
+def parts(rivals: Sequence[Judged], like: Judged | None) -> np.ndarray:
+    """Parts of the probability that slips have, and last an effect that is `like` one of them."""
+    odds = np.array([j.log_odds for j in rivals] + ([like.log_odds] if like else []))
+    weights = np.exp(odds - odds.max())
+    return weights / weights.sum()
