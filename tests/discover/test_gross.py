@@ -11,7 +11,7 @@ from sonicvacuum.discover.compare import compare
 from sonicvacuum.discover.fit import refit, wide
 from sonicvacuum.discover.fit.evidence import Combination, log_bayes
 from sonicvacuum.discover.fit.wide import nominal
-from sonicvacuum.discover.judge import gross
+from sonicvacuum.discover.judge import decision, gross
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, variants
 from sonicvacuum.discover.model.problem import experiment
@@ -178,10 +178,18 @@ def test_pieces_are_the_independent_values_of_a_variance(rho, samples):
 
 def test_explanations_with_more_count_as_what_is_named_and_unknown():
     weights = {"none": 0.0, "a": 1.0, "a + b": 2.0, "c": 0.5}
-    merged = gross._merged(weights, ["a"])
+    merged = gross.merged(weights, ["a"])
     assert merged == {"none": 0.0, "c": 0.5, "a": pytest.approx(np.logaddexp(1.0, 2.0))}
     shares = gross.shares(weights)
     assert shares["a"] == pytest.approx((np.exp(1) + np.exp(2)) / (1 + np.exp(1) + np.exp(2) + np.exp(0.5)))
+
+
+def test_what_every_explanation_has_is_clear_though_none_of_them_is():
+    """An offset of 20 % with 1 % of something smooth was called unknown: each explanation had one effect more."""
+    weights = {"none": 0.0, "a": 90.0, "a + b": 100.0, "a + c": 100.0, "b": 20.0}
+    assert not decision._clear(weights, ["a"])
+    assert decision._clear(gross.merged(weights, ["a"]), ["a"])
+    assert not decision._clear(gross.merged(weights, ["b"]), ["b"])
 
 
 def test_noise_is_no_gross_misfit(empty):

@@ -6,7 +6,7 @@ folders that discover is given. Simpler rules see the same cases; two of them ne
 
 
 wildcard_constraints:
-    study="small|training|laws|full",
+    study="small|training|laws|full|again",
     batch="[0-9]+",
     picture="|".join(PICTURES),
     choice="|".join(CHOICES),
@@ -368,6 +368,29 @@ rule blind_resolved:
 rule blind_laws:
     input:
         "results/blind/laws/fresh.csv",
+
+
+# A later method on a fresh seed: a part of the list of the full study. Run on purpose, as publish_study is.
+rule publish_again:
+    input:
+        tables=expand(
+            "results/blind/again/{table}.csv",
+            table=["score", "parameters", "summary", "resolved_summary", "fresh"],
+        ),
+    log:
+        "results/logs/publish_again.log",
+    localrule: True
+    conda:
+        ENVIRONMENT
+    params:
+        page="docs/again.md",
+        keep=home("workflow/resources/reference/blind_again"),
+        again="results/blind/again/again",
+    message:
+        "Keeping the fresh sample of the study in git and in docs/again.md"
+    shell:
+        "mkdir -p {params.keep:q} && cp {input.tables:q} {params.keep:q}"
+        " && sonicvacuum blind tables {params.keep:q} --out {params.again:q} --page {params.page:q} > {log:q} 2>&1"
 
 
 # Run on purpose, as publish_study is.

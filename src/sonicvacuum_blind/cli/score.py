@@ -34,7 +34,8 @@ def score(truth, verdicts, out, summary, ideal, tables):
 @verb("sonicvacuum blind tables scored --out tables")
 @click.argument("folder", type=PRESENT)
 @click.option("--out", required=True, type=FOLDER, help="Folder for the tables.")
-def tables(folder, out):
+@click.option("--page", type=existing(), help="Page (Markdown) whose table is written anew.")
+def tables(folder, out, page):
     """Make the tables of a study of FOLDER's score.csv and parameters.csv again."""
     from sonicvacuum_blind import score as scoring
     from sonicvacuum_blind.stated import Parameter
@@ -42,7 +43,11 @@ def tables(folder, out):
     check_apart([Path(out) / "summary.csv", *_paths(out).values()], [folder])
     rows = scoring.read_table(scoring.Row, Path(folder) / "score.csv")
     intervals = scoring.read_table(Parameter, Path(folder) / "parameters.csv")
-    _tabulate(rows, intervals, Path(out) / "summary.csv", out)
+    lines = _tabulate(rows, intervals, Path(out) / "summary.csv", out)
+    if page:
+        from sonicvacuum_blind import table_page
+
+        table_page.write(lines, page)
 
 
 def _paths(folder):
@@ -54,7 +59,7 @@ def _paths(folder):
 
 
 def _tabulate(rows, intervals, summary, folder):
-    """Write and say what the rows and the stated intervals come to."""
+    """Write and say what the rows and the stated intervals come to; the lines of the summary."""
     from sonicvacuum_blind import breakdown
     from sonicvacuum_blind import score as scoring
     from sonicvacuum_blind.stated import Parameter
@@ -71,3 +76,4 @@ def _tabulate(rows, intervals, summary, folder):
             if folder:
                 scoring.write_table(table(given), kind, paths[name])
     say(lines)
+    return lines

@@ -22,13 +22,15 @@ from sonicvacuum.discover.faults.judging import (
     Judge,
     Judged,
     Model,
+    both_off,
     excess,
     noise_volume,
     obvious,
     occam,
+    of_the_chain,
     suspicious,
 )
-from sonicvacuum.discover.faults.slips import Slip, hypotheses
+from sonicvacuum.discover.faults.slips import hypotheses
 from sonicvacuum.discover.faults.table import FAULTS
 from sonicvacuum.discover.faults.timing import time_zero, with_starts
 from sonicvacuum.discover.faults.weights import (
@@ -181,7 +183,7 @@ class Search:
         slips = [s for s in slips if (s.fault, s.run, s.sensor) not in done]
         if any(c.effect.places in ("bead", "contact") for c in model.fit.hypothesis.components):
             # In a chain of another length its place would be another one, or none.
-            slips = [s for s in slips if not _of_the_chain(s)]
+            slips = [s for s in slips if not of_the_chain(s)]
         shifted = [] if any(f.fault == "time-zero" for f in self.findings) else time_zero(record, seen)
         stages.begin("slips of the laboratory")
         far = excess(model) > policy.SURE_GAIN
@@ -193,8 +195,8 @@ class Search:
         if far:
             # A pulse that comes a bead earlier, or with another run's speed, overlaps none of what was
             # measured: slopes know nothing of it.
-            pairs = _both_off(worth)
-            worth += [j for j in looked if (_of_the_chain(j.slip) or j.slip.run in pairs) and j not in worth]
+            pairs = both_off(worth)
+            worth += [j for j in looked if (of_the_chain(j.slip) or j.slip.run in pairs) and j not in worth]
         whole = [judge.look(s) for s in shifted]
         followed = [judge.follow(j) for j in [*worth, *whole]]
         self.simulations += judge.simulations
@@ -254,10 +256,13 @@ class Search:
         return [j for j in judged if j.gain - own > least]
 
     def _in_place(self, found: Investigation) -> list[Judged]:
-        """Slips in place of one effect of a set that moves data as some slip does, beside the others."""
+        """Slips in place of one effect of a set that moves data as some slip does, or of all that do, beside
+        the others.
+        """
+        like = [name for name in found.named if self._like_slips(found, name)]
         judged = []
-        for name in found.named if len(found.named) > 1 else ():
-            if self._like_slips(found, name) and (part := part_without(found, name)):
+        for names in [[name] for name in like] + ([like] if len(like) > 1 else []):
+            if len(found.named) > len(names) and (part := part_without(found, names)):
                 rest, fit = part
                 judged += self._included(found, fit, weight_beside(found, rest))
         return judged
@@ -279,7 +284,8 @@ class Search:
             return None
         best, as_is = rivals[0], weight_of(found)
         put_right = best.log_odds + math.log(evidence.PRIOR_NONE)
-        if not left and put_right < as_is - math.log(1.0 / policy.SHOWN):
+        hopeless = put_right < as_is - math.log(1.0 / policy.SHOWN)
+        if not left and hopeless and not self._nearly_all(best, found):
             return None
         bench = self.bench
         before = list(self.findings)
@@ -298,6 +304,14 @@ class Search:
         if p >= policy.SHOWN and not self._hollow(found, after):
             self._share(found, [best], None, p)
         return None
+
+    def _nearly_all(self, best: Judged, found: Investigation) -> bool:
+        """Whether a slip explains nearly all that a set does in which an effect is like some slip: with
+        another effect beside it, it may explain the rest.
+        """
+        own = found.null.objective - found.final.objective
+        like = len(found.named) > 1 and any(self._like_slips(found, name) for name in found.named)
+        return like and best.gain > policy.SHARE * own
 
     def _base(self, best, found, after):
         """Log odds of a slip by the nominal models of the record with and without it."""
@@ -332,14 +346,3 @@ class Search:
         found.reasons.append(
             f"a slip, {names}, explains these data as well: none is missing where it was made"
         )
-
-
-def _of_the_chain(slip: Slip) -> bool:
-    """Whether a slip has no size and moves all pulses at once: another number of beads."""
-    return not slip.continuous and FAULTS[slip.fault].stretches
-
-
-def _both_off(worth: list[Judged]) -> set[str]:
-    """Pairs of runs, as `runs-swapped` names them, that both look struck at another speed."""
-    off = [j.slip.run for j in worth if j.slip.fault == "run-off"]
-    return {f"{a} and {b}" for a in off for b in off if a != b}

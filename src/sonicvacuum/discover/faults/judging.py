@@ -81,6 +81,17 @@ def obvious(judged: Judged, model: Model) -> bool:
     )
 
 
+def of_the_chain(slip: Slip) -> bool:
+    """Whether a slip has no size and moves all pulses at once: another number of beads."""
+    return not slip.continuous and FAULTS[slip.fault].stretches
+
+
+def both_off(worth: list[Judged]) -> set[str]:
+    """Pairs of runs, as `runs-swapped` names them, that both look struck at another speed."""
+    off = [j.slip.run for j in worth if j.slip.fault == "run-off"]
+    return {f"{a} and {b}" for a in off for b in off if a != b}
+
+
 def suspicious(model: Model) -> bool:
     """Whether a nominal fit leaves more than its noise, or strains its nuisances."""
     one, e = model.fit, model.forward.experiment

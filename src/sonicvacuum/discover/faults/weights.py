@@ -65,9 +65,9 @@ def without(name: str, found: Investigation, like: Judged | None) -> str:
     return explanations.key(kept) if len(kept) < len(effects) else ""
 
 
-def part_without(found: Investigation, name: str) -> tuple[str, Fit] | None:
-    """A set that is named, one effect left out, as it was fitted; None where it was not."""
-    rest = explanations.key(n for n in found.named if n != name)
+def part_without(found: Investigation, names: Sequence[str]) -> tuple[str, Fit] | None:
+    """A set that is named, some effects left out, as it was fitted; None where it was not."""
+    rest = explanations.key(n for n in found.named if n not in names)
     fits = {explanations.key([c.effect]): c.fit for c in found.candidates}
     fits |= {explanations.key(c.effects): c.fit for c in found.combinations}
     return (rest, fits[rest]) if rest in fits else None

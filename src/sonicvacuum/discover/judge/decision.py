@@ -231,9 +231,11 @@ class Case:
             (), [*grown.tried.values(), *self._rivals(grown)], [], self.forward.experiment.prior_odds
         )
         named = list(fit_.hypothesis.ids)
-        if named and not _clear(weights, named):
+        whole = gross.merged(weights, named) if named else weights
+        if named and not _clear(whole, named):
             reasons.append(f"{' + '.join(named)}: not clearly the best beside what is left")
             named, fit_ = [], grown.null
+        weights = whole if named else weights
         final = several.moved(self.forward, fit_) if named else self.null
         view = View(grown.forward, grown.null, fit_) if grown.size.size else None
         return Decision(

@@ -95,7 +95,7 @@ def standing_out(
         fit = _told_apart(forward, null, ranked, odds, setup)
         if fit is None:
             return first or Standing(None, odds, weights)
-        now = Standing(fit, odds, _merged(weights, fit.hypothesis.ids))
+        now = Standing(fit, odds, merged(weights, fit.hypothesis.ids))
         if not gross(forward, fit):
             return now
         first = first or now
@@ -245,9 +245,9 @@ def shares(weights: dict[str, float]) -> dict[str, float]:
     }
 
 
-def _merged(weights: dict[str, float], named: Iterable[str]) -> dict[str, float]:
+def merged(weights: dict[str, float], named: Iterable[str]) -> dict[str, float]:
     """Log weights in which explanations that have all that is named, and more, count as that with something
-    unknown.
+    unknown; the others as they are.
     """
     own = set(named)
     within = [key for key in weights if own <= set(explanations.effects(key))]
