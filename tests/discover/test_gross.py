@@ -185,7 +185,7 @@ def test_explanations_with_more_count_as_what_is_named_and_unknown():
 
 
 def test_what_every_explanation_has_is_clear_though_none_of_them_is():
-    """An offset of 20 % with 1 % of something smooth was called unknown: each explanation had one effect more."""
+    """An offset of 20 % beside something smooth was called unknown: each explanation had one effect more."""
     weights = {"none": 0.0, "a": 90.0, "a + b": 100.0, "a + c": 100.0, "b": 20.0}
     assert not decision._clear(weights, ["a"])
     assert decision._clear(gross.merged(weights, ["a"]), ["a"])

@@ -15,7 +15,7 @@ from sonicvacuum.tables import read_csv, write_csv
 
 FILE = "posterior.csv"
 HEADER = ("effect", "parameter", "how", "value", "weight")
-SAMPLED, PROFILE = "sampled", "profile"
+SAMPLED, PROFILE, LINEAR = "sampled", "profile", "linearised"
 # Above this the weights have tails too heavy for an average over them (Vehtari et al., J. Mach. Learn. Res.
 # 25(72), 2024, section 3).
 TRUSTED = 0.7
@@ -28,7 +28,8 @@ class Draws:
     Attributes:
         effect, parameter: whose.
         how: "sampled": draws that all parameters have in common; "profile": a grid of values, each weighed
-            by the best that all else can do there.
+            by the best that all else can do there; "linearised": such a grid, weighed by the Gaussian of the
+            fit.
         value: (n,) in the unit of the catalogue.
         weight: (n,) summing to 1.
     """

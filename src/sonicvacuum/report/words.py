@@ -6,7 +6,7 @@ Every sentence is made from `verdict.json`, `model.json` and the tables beside t
 import math
 from collections import Counter
 
-from sonicvacuum.discover.draws import PROFILE, pareto_k
+from sonicvacuum.discover.draws import LINEAR, SAMPLED, pareto_k
 from sonicvacuum.discover.judge.explanations import key
 from sonicvacuum.discover.judge.locate import DISCOVERY_RATE
 from sonicvacuum.discover.verdict import Gap, Next, Verdict
@@ -46,10 +46,13 @@ def drawn(draws) -> str:
     one = next(iter(draws.values()), None)
     if one is None:
         return ""
-    if one.how == PROFILE:
+    if one.how != SAMPLED:
+        missed = any(d.how == LINEAR for d in draws.values())
         return (
             "The intervals are of profiles: too few draws carried the weight. Each parameter was held at a "
             "row of values, with all else at its best."
+        ) + (
+            " Where that did not hold the fit itself, the interval is that of its Gaussian." if missed else ""
         )
     return (
         f"{len(one.weight)} draws, each simulated and weighed by the data, say as much as "

@@ -40,7 +40,7 @@ FAULTS: dict[str, Fault] = {
         ),
         Fault(
             "spikes",
-            "{value} samples of {sensor} stand far off their neighbours",
+            "{sensor} has samples far off their neighbours: {value}",
             "check shielding and connectors",
         ),
         Fault(
