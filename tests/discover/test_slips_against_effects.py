@@ -76,9 +76,7 @@ def test_a_run_that_is_off_is_put_right_beside_an_effect():
 @pytest.mark.parametrize(
     ("effects", "ratio", "named"),
     [
-        ([], 0.03, []),
         ([], 0.1, []),
-        ([("sensor-droop", {"tau_us": 2000.0})], 0.1, ["sensor-droop"]),
         ([("kuwabara-kono", {"time_us": 0.6})], 0.03, ["kuwabara-kono"]),
     ],
 )

@@ -41,7 +41,8 @@ ENGINE = {
     [
         ("sonicvacuum.physics.kernel", ENGINE),
         ("sonicvacuum.effects.tsuji", ENGINE),
-        ("sonicvacuum.discover.rounds", {"discover", "page", "paper report", "paper rivals"}),
+        ("sonicvacuum.discover.rounds", {"discover", "page", "paper report"}),
+        ("sonicvacuum.discover.fit.wide", {"discover", "page", "paper report", "paper rivals"}),
         ("sonicvacuum.report.words", {"page", "paper report"}),
         ("sonicvacuum_paper.gauges", {"paper observe", "paper uncertainty", "paper rivals"}),
         ("sonicvacuum_paper.figures.fig3", {"paper draw", "paper report"}),
