@@ -231,7 +231,8 @@ class Case:
             (), [*grown.tried.values(), *self._rivals(grown)], [], self.forward.experiment.prior_odds
         )
         named = list(fit_.hypothesis.ids)
-        whole = gross.merged(weights, named) if named else weights
+        # Of sets only as they are: more beside two effects may as well be what stands for one unknown thing.
+        whole = gross.merged(weights, named) if len(named) == 1 else weights
         if named and not _clear(whole, named):
             reasons.append(f"{' + '.join(named)}: not clearly the best beside what is left")
             named, fit_ = [], grown.null
