@@ -212,6 +212,10 @@ class Judge:
                 size, model = new_size, new
             if gained < LAST:
                 break
+        return self._judged(slip, size, model)
+
+    def _judged(self, slip: Slip, size: float, model: Model) -> Judged:
+        """What a slip of a size gains whose model is fitted."""
         gain = self._value(slip, self.model) - self._value(slip, model)
         return Judged(slip, size, gain, 0.5 * gain + occam(slip, size, gain), model)
 
@@ -235,9 +239,7 @@ class Judge:
 
     def _at(self, slip: Slip, size: float, last: Fit | None) -> Judged:
         """The slip at one size, fitted from the last fit as well."""
-        size, model = self._fitted(slip, size, last, True)
-        gain = self._value(slip, self.model) - self._value(slip, model)
-        return Judged(slip, size, gain, 0.5 * gain + occam(slip, size, gain), model)
+        return self._judged(slip, *self._fitted(slip, size, last, True))
 
     def _around(self, best: Judged) -> Judged:
         """The same where it fits best within a prior width, by a search that needs no slopes."""
