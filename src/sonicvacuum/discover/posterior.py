@@ -6,8 +6,8 @@ Gauss and Newton with the slopes of the fit), and are integrated over as if they
 & Kadane, J. Am. Stat. Assoc. 81, 82, 1986). The weight of a draw is what the data make of it, over the chance
 to draw it; its prior is flat in the coordinates of the search. Where few draws carry the weight
 (`draws.pareto_k`), the profile of each parameter is told instead: all else at its best, in the same way.
-Far from the data that best may be missed: a profile whose 90 % do not hold the fit itself is not believed,
-and the Gaussian is told.
+Far from the data that best may be missed: a step that promises less than the fit leaves is not believed, nor
+is a profile whose 90 % do not hold the fit itself; there the Gaussian is told.
 """
 
 import math
@@ -27,6 +27,8 @@ FREEDOM = 5.0
 REACH, VALUES = 5.0, 61
 # What of a profile lies to one side of a fit that its 90 % do not hold.
 TAIL = 0.05
+# In χ², what a step may promise below the fit: that has settled no better.
+SETTLED = 1.0
 # So many of the draws for each coordinate are followed by so many steps.
 FEW, STEPS = 12, 3
 # The widest proposal, as a share of the range that is searched.
@@ -100,7 +102,9 @@ def log_posterior(forward: Forward, fit: Fit, values: np.ndarray, held: np.ndarr
     point[:, free] += _bent(forward, fit, point, away, free, inner)
     objective, gradient = _misfit(forward, fit, point)
     drop = np.einsum("ln,nm,lm->l", gradient[:, free], inner, gradient[:, free])
-    value = -0.5 * (objective - drop)
+    # Nothing is better than the fit: steps that promise so overreach, and what they start from is counted.
+    left = np.where(objective - drop < fit.objective - SETTLED, objective, objective - drop)
+    value = -0.5 * np.maximum(left, fit.objective)
     return np.where(np.isfinite(value), value, -np.inf)
 
 

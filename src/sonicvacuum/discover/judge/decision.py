@@ -120,7 +120,16 @@ class Case:
 
     def _more(self, needed, most, shape, alarms, seen: Left) -> Decision:
         """Name the first pair that leaves nothing and gains enough over the best single; else go on."""
-        tried = pairs.search(self.forward, self.null, self.scores, self.found)
+        of_two = pairs.Pairs(self.forward, self.null, self.scores, self.found)
+        tried = of_two.search()
+        passed, start, lowest = self._passing(tried, needed, most, alarms, seen)
+        if passed is None and not gross.gross(self.forward, start):
+            tried = of_two.again()
+            passed, start, lowest = self._passing(tried, needed, most, alarms, seen)
+        return passed or self._set(needed, most, shape, alarms, start, lowest, tried)
+
+    def _passing(self, tried, needed, most, alarms, seen: Left) -> tuple[Decision | None, Fit, Left]:
+        """The first pair that is named, or None; the fit that sets start from, and what it leaves."""
         best = self.found[0]
         single = max(c.gain for c in self.found)
         rival = best.log_bayes + seen.size.log_odds
@@ -135,10 +144,11 @@ class Case:
             if not after.failed:
                 alarms["pair"] = after.p
                 reason = "a pair leaves nothing significant"
-                return Decision(list(pair.effects), pair.fit, alarms, [reason], after.p, tried)
+                named = Decision(list(pair.effects), pair.fit, alarms, [reason], after.p, tried)
+                return named, pair.fit, after
             if start is best.fit:
                 start, lowest = pair.fit, after
-        return self._set(needed, most, shape, alarms, start, lowest, tried)
+        return None, start, lowest
 
     def _set(self, needed, most, shape, alarms, start: Fit, seen: Left, tried) -> Decision:
         """Effects added and taken away; what is found is kept, and said beside what is left."""

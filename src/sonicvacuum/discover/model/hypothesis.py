@@ -93,6 +93,11 @@ class Hypothesis:
         ]
         return [float(max(z, default=0.0)) for z in own]
 
+    def inside(self, u: np.ndarray) -> np.ndarray:
+        """(L, p) coordinates, those beyond the bounds of the search just within."""
+        low, high = np.array([(c.low + 1e-9, c.high - 1e-9) for c in self.coordinates]).T
+        return u.clip(low, high)
+
     def with_component(self, component: Component) -> "Hypothesis":
         """This hypothesis with one effect more."""
         return replace(self, components=(*self.components, component))
@@ -134,6 +139,15 @@ def is_law(effect: Effect, setup: Setup) -> bool:
         return False
     typical = {p.name: p.at(0.3, setup) for p in effect.parameters}
     return len(effect.apply(setup, **typical).chain.actions) > len(setup.chain.actions)
+
+
+def without(hypothesis: Hypothesis, u: np.ndarray, k: int, setup: Setup) -> tuple[Hypothesis, np.ndarray]:
+    """A hypothesis and its coordinates with effect k taken away."""
+    left = tuple(c for j, c in enumerate(hypothesis.components) if j != k)
+    laws = sum(is_law(c.effect, setup) for c in left)
+    return replace(hypothesis, components=left, common=hypothesis.common and laws > 1), np.delete(
+        u, np.arange(*hypothesis.columns[k].indices(len(u)))
+    )
 
 
 def with_common_laws(setup: Setup, present: tuple[str, ...]) -> Setup:

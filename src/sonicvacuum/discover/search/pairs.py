@@ -17,13 +17,17 @@ from sonicvacuum.discover.fit.evidence import Candidate, Combination, log_bayes
 from sonicvacuum.discover.fit.refit import Fit, fit, polish
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, is_law, variants
-from sonicvacuum.discover.search import directions, screen, secants, singles
+from sonicvacuum.discover.search import directions, restart, screen, secants, singles
 from sonicvacuum.effects import Setup
 
 # Singles that pairs start from.
 STARTED = 4
 # Pairs refitted from the nominal screen, from single fits, and in each round of exchanges.
 LINEAR, BESIDE, EXCHANGED, ROUNDS = 3, 3, 4, 2
+# Pairs that are started again, and what that has to gain in log evidence before others follow it.
+LEADING, WORTH = 4, 0.5
+# Trials of an effect that its start is made of.
+TRIALS = 3
 # Pairs this far behind the best one are not followed along the chain.
 BEHIND = 30.0
 ITERATIONS = 12
@@ -50,32 +54,121 @@ class Start:
         return frozenset(self.hypothesis.ids)
 
 
-def search(
-    forward: Forward, null: Fit, scores: screen.Screen, candidates: list[Candidate]
-) -> list[Combination]:
-    """The best pairs, best first; `scores` is the screen of the nominal model, `candidates` the singles."""
-    setup = singles.setup_of(forward)
-    let_go = partial(_let_go, candidates)
-    seen = [let_go(s) for s in linear(scores, setup)]
-    asked = [s for c in candidates[:STARTED] if c.gain > 0.0 for s in beside(forward, null, c.fit, setup)]
-    asked = [let_go(s) for s in asked]
-    found: dict[frozenset, Combination] = {}
-    _refit(forward, null, setup, _best(asked, found, BESIDE), found)
-    _refit(forward, null, setup, _best(seen, found, LINEAR), found)
-    tried: set[tuple] = set()
-    for _ in range(ROUNDS):
-        best = max(found.values(), key=lambda p: p.log_bayes, default=None)
-        if best is None:
-            break
-        near = [s for s in (*seen, *asked) if len(s.effects & set(best.effects)) == 1]
-        _refit(forward, null, setup, _best(near, found, EXCHANGED), found)
-        adapted = [b for s in near if (b := _adapted(s, best)) and _key(b, best) not in tried]
-        chosen = _best(adapted, {}, EXCHANGED)
-        tried |= {_key(b, best) for b in chosen}
-        _refit(forward, null, setup, chosen, found)
-        if max(found.values(), key=lambda p: p.log_bayes) is best:
-            break
-    return sorted(found.values(), key=lambda p: -p.log_bayes)
+class Pairs:
+    """The pairs of one record.
+
+    Args:
+        forward: the predictor.
+        null: the nominal model, fitted.
+        scores: its screen.
+        candidates: the singles, best first.
+    """
+
+    def __init__(self, forward: Forward, null: Fit, scores: screen.Screen, candidates: list[Candidate]):
+        self.forward, self.null, self.setup = forward, null, singles.setup_of(forward)
+        let_go = partial(_let_go, candidates)
+        self.seen = [let_go(s) for s in linear(scores, self.setup)]
+        started = [c for c in candidates[:STARTED] if c.gain > 0.0]
+        self.asked = [let_go(s) for c in started for s in beside(forward, null, c.fit, self.setup)]
+        self.found: dict[frozenset, Combination] = {}
+        self.tried: set[tuple] = set()
+
+    @property
+    def ranked(self) -> list[Combination]:
+        """Those fitted so far, best first."""
+        return sorted(self.found.values(), key=lambda p: -p.log_bayes)
+
+    def search(self) -> list[Combination]:
+        """The best pairs, best first."""
+        self._refit(_best(self.asked, self.found, BESIDE))
+        self._refit(_best(self.seen, self.found, LINEAR))
+        self._exchange()
+        return self.ranked
+
+    def again(self) -> list[Combination]:
+        """The same with the leading pairs started again, see `restart`, each effect of the best one exchanged
+        for every other at any strength, and pairs that share an effect with what that led to.
+        """
+        for _ in range(ROUNDS):
+            leading = self.ranked[:LEADING]
+            if not leading:
+                break
+            stages.begin("pairs of effects again", len(leading))
+            for pair in leading:
+                self._note(restart.restarted(self.forward, pair.fit, self.setup))
+                stages.step()
+            self._refit(_best(self._instead(self.ranked[0].fit), self.found, BESIDE))
+            if self.ranked[0].log_bayes < leading[0].log_bayes + WORTH:
+                break
+            self._exchange()
+        return self.ranked
+
+    def _instead(self, pair: Fit) -> list[Start]:
+        """Every effect of the catalogue, tried all over its range, in place of either of a pair."""
+        result = []
+        for k in range(2):
+            beside = restart.less(self.forward, pair, k, self.setup)
+            if not np.isfinite(beside.objective):
+                continue
+            gradient, hessian = beside.normal.total()
+            follows = float(gradient[0] @ np.linalg.lstsq(hessian[0], gradient[0], rcond=1e-12)[0])
+            left = self.null.objective - beside.objective + follows
+            known = (*pair.hypothesis.ids, *self.forward.experiment.excluded)
+            for effect in self.setup.catalogue.candidates(self.setup, known):
+                for free in variants(effect, self.setup):
+                    if sum(c.parameter.switches for c in free) == 1:
+                        result += self._tried(beside, Component(effect, free), left)
+        return result
+
+    def _tried(self, beside: Fit, component: Component, left: float) -> list[Start]:
+        """The start of one effect beside a single one, from its best trials."""
+        sizes = secants.coarsely(component.free[0])
+        trials = secants.tried(self.forward, beside, component, self.setup, TRIALS, sizes)
+        if not trials:
+            return []
+        (own,) = beside.hypothesis.components
+        hypothesis = joined(beside.hypothesis, component, self.setup)
+        return [
+            Start(
+                left + trials[0].gain,
+                hypothesis,
+                hypothesis.inside(np.array([[*t.beside, *t.u] for t in trials])),
+                np.array([t.nu for t in trials]),
+                np.array([[own.place or 0, t.place or 0] for t in trials]),
+            )
+        ]
+
+    def _exchange(self):
+        """Pairs that share one effect with the best one, as they started and as the best one has it."""
+        for _ in range(ROUNDS):
+            if not self.found:
+                return
+            best = self.ranked[0]
+            near = [s for s in (*self.seen, *self.asked) if len(s.effects & set(best.effects)) == 1]
+            self._refit(_best(near, self.found, EXCHANGED))
+            adapted = [b for s in near if (b := _adapted(s, best)) and _key(b, best) not in self.tried]
+            chosen = _best(adapted, {}, EXCHANGED)
+            self.tried |= {_key(b, best) for b in chosen}
+            self._refit(chosen)
+            if self.ranked[0] is best:
+                return
+
+    def _refit(self, starts: list[Start]):
+        """Fit pairs and note them."""
+        stages.begin("pairs of effects", len(starts))
+        for s in starts:
+            stages.step()
+            least = min((p.fit.objective for p in self.found.values()), default=np.inf)
+            self._note(fitted(self.forward, s, self.setup, least + BEHIND))
+
+    def _note(self, one: Fit):
+        """Keep a fit where it is the best of its effects."""
+        if not np.isfinite(one.objective):
+            return
+        new = combination(self.null, one, self.setup)
+        key = frozenset(new.effects)
+        if key not in self.found or self.found[key].gain < new.gain:
+            self.found[key] = new
 
 
 def _let_go(candidates: list[Candidate], start: Start) -> Start:
@@ -209,19 +302,6 @@ def beside(
         hypothesis = joined(first.hypothesis, Component(effect, free), setup)
         result.append(Start(gained + more, hypothesis, u, nu, places))
     return result
-
-
-def _refit(forward, null: Fit, setup: Setup, starts: list[Start], found: dict[frozenset, Combination]):
-    """Fit pairs and add them to `found`."""
-    stages.begin("pairs of effects", len(starts))
-    for s in starts:
-        stages.step()
-        least = min((p.fit.objective for p in found.values()), default=np.inf)
-        one = fitted(forward, s, setup, least + BEHIND)
-        if np.isfinite(one.objective):
-            new = combination(null, one, setup)
-            if s.effects not in found or found[s.effects].gain < new.gain:
-                found[s.effects] = new
 
 
 def fitted(forward, start: Start, setup: Setup, below: float) -> Fit:

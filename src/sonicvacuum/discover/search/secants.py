@@ -1,17 +1,19 @@
-"""Starts for effects that sit at one body: finite strengths tried everywhere, judged after projection.
+"""Starts of finite strength: an effect tried all over its range beside a model, judged after projection.
 
 In a chain without preload a slightly lighter bead does not do the opposite of a slightly heavier one, so that
-slopes at off mislead even for small strengths. A finite change Δ of the data gains 2 b − G, with b its score
-and G its squared length once the model's own columns are projected out.
+slopes at off mislead even for small strengths; of a strong effect they tell little in any chain. A finite
+change Δ of the data gains 2 b − G, with b its score and G its squared length once the model's own columns are
+projected out.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.model.forward import Forward
-from sonicvacuum.discover.model.parameters import coordinate
+from sonicvacuum.discover.model.hypothesis import Component, is_law, variants, with_common_laws
+from sonicvacuum.discover.model.parameters import Coordinate, shape_grid
 from sonicvacuum.discover.search import directions as ways
 from sonicvacuum.discover.search import screen
 from sonicvacuum.discover.search.directions import Direction, Family
@@ -19,66 +21,120 @@ from sonicvacuum.effects import Effect, Setup
 
 RATIOS = (0.01, 0.03, 0.08, 0.2, 0.5)
 STRENGTHS = (0.03, 0.1, 0.3, 1.0, 3.0, 10.0)
+# The same where what was found leaves much, and no start may be missed.
+FINE_RATIOS, FINE_STRENGTHS = np.geomspace(0.005, 0.8, 10), np.geomspace(0.01, 30.0, 16)
 PLACES = ("bead", "contact")
 
 
 def applies(effect: Effect) -> bool:
-    """Whether an effect is tried at finite strength: those at one bead or contact, and those that say so."""
+    """Whether slopes mislead at any strength: effects at one bead or contact, and those that say so."""
     return effect.places in PLACES or any(p.tried_at_once for p in effect.parameters)
 
 
 @dataclass(frozen=True)
 class Secant:
-    """One trial: place and coordinate of the strength, the χ² it should gain, and the nuisances that
-    follow.
+    """One trial.
+
+    Attributes:
+        free: names of the parameters that are free, the strength first.
+        place: where the effect sits, None where it has no place.
+        u: (free,) its coordinates.
+        gain: the χ² that it should gain.
+        beside: (p,) coordinates of the model it is tried beside, as they follow.
+        nu: (q,) nuisances, as they follow.
     """
 
+    free: tuple[str, ...]
     place: int | None
-    u: float
+    u: np.ndarray
     gain: float
+    beside: np.ndarray
     nu: np.ndarray
 
 
 def search(
     forward: Forward, fit: Fit, effect: Effect, setup: Setup, most: int = 5, sparse: bool = False
 ) -> list[Secant]:
-    """The most promising trials of an effect beside a fitted model, best first; none where none are needed.
+    """The most promising trials of an effect beside a fitted model, best first; none where slopes do.
 
     `sparse`: every other strength.
     """
     if not applies(effect):
         return []
+    options = [v for v in variants(effect, setup) if len(v) == 1]
+    free = next((v for v in options if v[0].parameter.tried_at_once), options[0])
+    return tried(forward, fit, Component(effect, free), setup, most, coarsely(free[0], sparse))
+
+
+def tried(
+    forward: Forward, fit: Fit, component: Component, setup: Setup, most: int, sizes: np.ndarray
+) -> list[Secant]:
+    """The most promising trials of any effect with one strength, its shapes and places included.
+
+    `sizes` (n,) are coordinates of the strength, see `coarsely` and `finely`.
+    """
+    effect, free = component.effect, component.free
     places = effect.candidates(setup) if effect.places else (None,)
-    c = coordinate(_strength(effect), setup)
-    ratios, strengths = RATIOS[sparse :: 1 + sparse], STRENGTHS[sparse :: 1 + sparse]
-    sizes = np.array([*ratios, *(-r for r in ratios)]) if c.two_sided else np.log(strengths)
-    trials = [(place, float(u)) for place in places for u in sizes if c.low < u < c.high]
-    if not trials:
+    rows = [
+        (place, u)
+        for place in places
+        for shape in shape_grid(effect)
+        for size in sizes
+        if _inside(free, u := np.array([size, *(c.inverse(shape[c.parameter.name]) for c in free[1:])]))
+    ]
+    if not rows:
         return []
-    seen = _screened(forward, fit, effect, c, trials)
+    seen = _screened(forward, fit, component, setup, rows)
     gain = 2.0 * seen.projected[0] - np.diag(seen.projected[1])
     order = np.argsort(-gain, kind="stable")[:most]
-    return [Secant(*trials[k], float(gain[k]), seen.moved(k, 1.0)[1]) for k in order]
+    names = tuple(c.parameter.name for c in free)
+    return [Secant(names, *rows[k], float(gain[k]), *seen.moved(k, 1.0)) for k in order]
 
 
-def _strength(effect):
-    """The parameter that is tried."""
-    switches = [p for p in effect.parameters if p.switches]
-    return next((p for p in switches if p.tried_at_once), switches[0])
+def coarsely(c: Coordinate, sparse: bool = False) -> np.ndarray:
+    """Coordinates of a strength at which it is tried."""
+    step = 1 + sparse
+    return _sizes(c, np.array(RATIOS[sparse::step]), np.array(STRENGTHS[sparse::step]))
 
 
-def _screened(forward, fit, effect, c, trials):
+def finely(c: Coordinate) -> np.ndarray:
+    """The same where no start may be missed."""
+    return _sizes(c, FINE_RATIOS, FINE_STRENGTHS)
+
+
+def _sizes(c, ratios, strengths):
+    if c.endless:
+        return np.log(strengths)
+    steps = ratios if c.kind == "ratio" else strengths
+    return np.concatenate([steps, -steps]) if c.two_sided else steps * (1.0 if c.high > 0.0 else -1.0)
+
+
+def _inside(free, u) -> bool:
+    shapes = all(c.low <= x <= c.high for c, x in zip(free[1:], u[1:], strict=True))
+    return shapes and free[0].low < u[0] < free[0].high
+
+
+def _screened(forward, fit, component, setup, rows):
     """The screen whose directions are the finite changes themselves."""
-    where = np.array([t[0] for t in trials])
-    values = np.asarray(c.value(np.array([t[1] for t in trials])))
+    effect, free = component.effect, component.free
+    where = np.array([place for place, _ in rows])
+    values = {c.parameter.name: c.value(np.array([u[k] for _, u in rows])) for k, c in enumerate(free)}
+    strength = free[0].parameter
+    present = fit.hypothesis.ids
+    # Two laws take part in the common law set, whichever is in force.
+    common = is_law(effect, setup) and any(is_law(c.effect, setup) for c in fit.hypothesis.components)
 
     def change(setup, index, strengths):
-        off = c.parameter.off_in(setup)
-        value = np.where(strengths > 0.0, values[index], off)
-        place = {effect.places: where[index]} if effect.places else {}
-        return effect.apply(setup, **{c.parameter.name: value, **place})
+        given = {name: value[index] for name, value in values.items()}
+        off = strength.off_in(setup)
+        given[strength.name] = np.where(strengths > 0.0, given[strength.name], off)
+        if effect.places:
+            given[effect.places] = where[index]
+        changed = effect.apply(setup, **given)
+        return with_common_laws(changed, (*present, effect.id)) if common else changed
 
-    family = Family(tuple(Direction(effect.id, c.parameter.name, place=p) for p, _ in trials), change)
+    family = Family(tuple(Direction(effect.id, strength.name, place=p) for p, _ in rows), change)
     base = forward.columns(fit.hypothesis, fit.u[None], fit.nu[None], precise=True)
-    columns = ways.finite(forward, fit.hypothesis, fit.u, fit.nu, family)
+    alone = replace(fit.hypothesis, common=False) if common else fit.hypothesis
+    columns = ways.finite(forward, alone, fit.u, fit.nu, family)
     return screen.from_columns(forward, fit, family.directions, base, columns)

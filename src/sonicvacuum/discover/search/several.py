@@ -7,7 +7,7 @@ against those that might stand in its place. A misfit in one direction leaves ro
 it, one that is spread over many does not: a systematic error names nothing.
 """
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -17,8 +17,8 @@ from sonicvacuum.discover.fit.evidence import Combination
 from sonicvacuum.discover.fit.normal import linearise
 from sonicvacuum.discover.fit.refit import ITERATIONS, Fit, polish
 from sonicvacuum.discover.model.forward import Forward
-from sonicvacuum.discover.model.hypothesis import Hypothesis, is_law
-from sonicvacuum.discover.search import pairs
+from sonicvacuum.discover.model.hypothesis import without
+from sonicvacuum.discover.search import pairs, restart
 from sonicvacuum.discover.search.unknown import ShapeTest
 from sonicvacuum.effects import Setup
 
@@ -54,15 +54,6 @@ def moved(forward: Forward, fit: Fit) -> Fit:
     return polish(forward, here, pairs.ITERATIONS)
 
 
-def without(hypothesis: Hypothesis, u: np.ndarray, k: int, setup: Setup) -> tuple[Hypothesis, np.ndarray]:
-    """A hypothesis and its coordinates with effect k taken away."""
-    left = tuple(c for j, c in enumerate(hypothesis.components) if j != k)
-    laws = sum(is_law(c.effect, setup) for c in left)
-    return replace(hypothesis, components=left, common=hypothesis.common and laws > 1), np.delete(
-        u, np.arange(*hypothesis.columns[k].indices(len(u)))
-    )
-
-
 def less(forward: Forward, null: Fit, fit: Fit, k: int, setup: Setup, iterations: int = ITERATIONS) -> Fit:
     """The best fit without effect k, from where a fit stands; `null` where none is left."""
     hypothesis, u = without(fit.hypothesis, fit.u, k, setup)
@@ -83,8 +74,8 @@ class Turns:
         self.size = smooth.Size(0.0, 0.0)
 
     def grow(self, null: Fit, start: Fit) -> Grown:
-        """From a start to where nothing more is added, taken away or exchanged."""
-        plain_null, fit, exchanges = null, start, 0
+        """From a start to where nothing more is added, taken away, exchanged or found from elsewhere."""
+        plain_null, fit, exchanges, again = null, start, 0, False
         for _ in range(TURNS):
             fit = self._counted(plain_null, fit)
             fit = self._pruned(fit)
@@ -92,6 +83,9 @@ class Turns:
             if more is None and exchanges < EXCHANGES:
                 exchanges += 1
                 more = self._exchanged(fit)
+            if more is None and not again:
+                again = True
+                more = self._again(fit)
             if more is None:
                 break
             fit = more
@@ -186,9 +180,16 @@ class Turns:
             starts = pairs.beside(self.forward, self.null, less, self.setup)
             enough = PROMISE * (self.null.objective - fit.objective)
             best = self._likeliest(starts, enough)
-            if best is not None and self._evidence(best) > own + 0.5:
+            if best is not None and self._evidence(best) > own + pairs.WORTH:
                 return best
         return None
+
+    def _again(self, fit):
+        """The same effects from other starts, None where that leads nowhere else."""
+        if len(fit.hypothesis.components) < 2:
+            return None
+        better = restart.restarted(self.forward, fit, self.setup)
+        return better if self._evidence(better) > self._evidence(fit) + pairs.WORTH else None
 
 
 def irreplaceable(shapes: ShapeTest, fit: Fit, needed: float) -> list[int]:

@@ -2,11 +2,13 @@
 large.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from sonicvacuum import stages
+from sonicvacuum.discover import policy
 from sonicvacuum.discover.fit import wide
 from sonicvacuum.discover.fit.evidence import Candidate, log_bayes, ranked
 from sonicvacuum.discover.fit.refit import Fit, fit
@@ -22,9 +24,13 @@ NONLINEAR = 1500.0
 # Effects whose predicted gain is this far behind the best, beyond the share by which slopes err, are not
 # refitted while slopes can be trusted.
 HOPELESS, ERR = 20.0, 0.2
+# That share where all that were refitted leave much.
+ERR_FAR = 0.75
 PLACES_TRIED = 5
 # Below this largest z² nothing can be named, and slopes suffice.
 CLEAR = 9.0
+# A nominal fit whose nuisances stand so many standard errors off does the work of what is missing with them.
+STRAINED = 5.0
 # A deviation that the screen puts beyond this many typical ones may lie where slopes do not reach.
 FAR = 0.1
 # Steps of the search; of the first one where all effects are followed and the best are polished later.
@@ -43,7 +49,7 @@ def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
     gains = {e: float(np.square(scores.z[k])) for e, k in best.items()}
     largest = max(gains.values(), default=0.0)
     traced = any(r.has_signals for r in forward.experiment.runs)
-    nonlinear = largest > NONLINEAR
+    nonlinear = largest > NONLINEAR or _strained(forward, null)
     # Few scalars with large errors leave room for large deviations, which slopes do not foresee.
     rough = nonlinear and wide.wide(forward)
     loose = nonlinear or (not traced and largest > CLEAR)
@@ -51,10 +57,10 @@ def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
     setup = setup_of(forward)
     left = list(setup.catalogue.candidates(setup, forward.experiment.excluded))
     found: list[Candidate] = []
-    best_gain = largest
+    best_gain, err = largest, ERR
     while left:
         # Places and strengths may not keep what slopes promise: others are measured against what was found.
-        enough = -np.inf if loose else max((1.0 - ERR) * best_gain - HOPELESS, 0.5)
+        enough = -np.inf if loose else max((1.0 - err) * best_gain - HOPELESS, 0.5)
         always = [e for e in left if secants.applies(e) and largest > CLEAR]
         chosen = [e for e in left if e in always or gains.get(e.id, 0.0 if loose else -np.inf) > enough]
         stages.begin("single effects", len(chosen))
@@ -69,11 +75,25 @@ def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
             stages.step()
         left = [e for e in left if e not in chosen]
         achieved = max((c.gain for c in found if c is not None), default=0.0)
-        if not chosen or achieved >= best_gain:
+        if chosen and achieved < best_gain:
+            best_gain = achieved
+        elif err == ERR and not loose and _leaves_much(forward, null, achieved):
+            err = ERR_FAR
+        else:
             break
-        best_gain = achieved
     found = [c for c in found if c is not None]
     return ranked(found, forward.experiment.prior_odds)
+
+
+def _leaves_much(forward: Forward, null: Fit, gain: float) -> bool:
+    """Whether a Δχ² leaves more than noise, whatever its shape."""
+    size = sum(forward.experiment.size(run) for run in range(len(forward.experiment.runs)))
+    return null.objective - gain - size > policy.MINIMA * math.sqrt(2.0 * size)
+
+
+def _strained(forward: Forward, null: Fit) -> bool:
+    """Whether the nominal fit strains what the record states, so that slopes are taken far from it."""
+    return not wide.wide(forward) and float(np.abs(null.nu).max(initial=0.0)) > STRAINED
 
 
 @dataclass(frozen=True)
@@ -149,7 +169,8 @@ def starts(forward, null: Fit, scores: Screen, effect: Effect, free, grid: bool,
     rows = _from_screen(scores, effect, free)
     if finite is None and _tried(effect, free) and float(np.square(scores.z).max()) > CLEAR:
         finite = secants.search(forward, null, effect, setup_of(forward))
-    rows += [([one.u], one.place, one.nu) for one in finite or () if _tried(effect, free)]
+    names = tuple(c.parameter.name for c in free)
+    rows += [(list(one.u), one.place, one.nu) for one in finite or () if one.free == names]
     if grid:
         nuisances = wide.minima(forward, null)
         rows += [(*row, nu) for row in _grid(scores, effect, free) for nu in nuisances]
@@ -203,7 +224,9 @@ def _start(c, direction, shape, size):
         # Its slope is that of the modulus as a nuisance, which is log-normal.
         return float(size * p.scale / c.unit)
     if c.kind == "ratio":
-        return float(np.log(max(1.0 + size * p.scale / c.unit, 0.05)))
+        # As far down as up: a straight line would soon meet a ratio of nothing.
+        relative = size * p.scale / c.unit
+        return float(np.copysign(np.log1p(abs(relative)), relative))
     return size if c.two_sided or c.high > 0.0 else -abs(size)
 
 

@@ -1,0 +1,51 @@
+"""Sets of effects fitted once more, from each of their effects at other strengths and places.
+
+A joint fit starts where effects alone, or slopes, have put them, and may end in a minimum from which no slope
+leads to the lower one. Here one effect of the set at a time is taken away and tried all over its range beside
+the others, as `secants` does it.
+"""
+
+import numpy as np
+
+from sonicvacuum.discover.fit.normal import linearise
+from sonicvacuum.discover.fit.refit import Fit, fit
+from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.model.hypothesis import without
+from sonicvacuum.discover.search import secants
+from sonicvacuum.effects import Setup
+
+# Trials of each effect that the joint fit starts from; starts followed to their minimum, and their steps.
+TRIALS, FOLLOWED, ITERATIONS = 4, 4, 12
+
+
+def restarted(forward: Forward, one: Fit, setup: Setup) -> Fit:
+    """The better of a fit of several effects and of one from each of them tried all over its range."""
+    rows = [row for k in range(len(one.hypothesis.components)) for row in _starts(forward, one, k, setup)]
+    if not rows:
+        return one
+    u, nu, places = (np.array([row[k] for row in rows]) for k in range(3))
+    other = fit(forward, one.hypothesis, one.hypothesis.inside(u), nu, places, FOLLOWED, ITERATIONS)
+    return min((one, other), key=lambda f: f.objective)
+
+
+def _starts(forward, one, k, setup):
+    """Coordinates, nuisances and places with effect k as trials put it, the others as they follow."""
+    component, own = one.hypothesis.components[k], one.hypothesis.columns[k]
+    if sum(c.parameter.switches for c in component.free) != 1:
+        return
+    beside = less(forward, one, k, setup)
+    if not np.isfinite(beside.objective):
+        return
+    others = np.delete(np.arange(len(one.u)), np.arange(len(one.u))[own])
+    sizes = secants.finely(component.free[0])
+    for trial in secants.tried(forward, beside, component, setup, TRIALS, sizes):
+        whole, places = one.u.copy(), [c.place or 0 for c in one.hypothesis.components]
+        whole[own], whole[others] = trial.u, trial.beside
+        places[k] = trial.place or 0
+        yield whole, trial.nu, places
+
+
+def less(forward: Forward, one: Fit, k: int, setup: Setup) -> Fit:
+    """A fit with effect k taken away and all else as it stands."""
+    hypothesis, u = without(one.hypothesis, one.u, k, setup)
+    return Fit(hypothesis, linearise(forward, hypothesis, u[None], one.nu[None]))

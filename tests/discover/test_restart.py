@@ -1,0 +1,65 @@
+"""Minima that no slope leads to: pairs started again, single effects that slopes put far behind."""
+
+import numpy as np
+import pytest
+from made_records import made
+
+from sonicvacuum.discover.fit import wide
+from sonicvacuum.discover.fit.refit import fit
+from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, variants
+from sonicvacuum.discover.model.problem import experiment
+from sonicvacuum.discover.search import pairs, restart, secants, singles
+from sonicvacuum.effects import effect
+
+GAP, MASS = ("contact-gap", {"gap_um": 0.15, "contact": 5}), ("mass-defect", {"mass_ratio": 0.95, "bead": 8})
+
+
+@pytest.fixture(scope="module")
+def stuck():
+    """Predictor, and a pair whose second effect sits at a wrong bead, from which slopes lead to
+    a minimum of its own.
+    """
+    forward = Forward(experiment(made([GAP, MASS], seed=9)[0]), 1)
+    null, setup = wide.nominal(forward), singles.setup_of(forward)
+    first, second = (
+        Component(effect(name), variants(effect(name), setup)[0], place=place)
+        for name, place in (("contact-gap", 5), ("mass-defect", 6))
+    )
+    hypothesis = pairs.joined(Hypothesis((first,)), second, setup)
+    start = [c.inverse(value) for c, value in zip(hypothesis.coordinates, (0.15, 1.02), strict=True)]
+    return forward, fit(forward, hypothesis, np.array([start]), null.nu[None])
+
+
+def test_a_pair_in_a_minimum_of_its_own_is_led_to_the_lower_one(stuck):
+    forward, one = stuck
+    found = restart.restarted(forward, one, singles.setup_of(forward))
+    assert found.objective < one.objective - 1000.0
+    assert [c.place for c in found.hypothesis.components] == [5, 8]
+    ratio, sigma = np.exp(found.u[1]), found.sigma[1]
+    assert abs(np.log(ratio / 0.95)) < 4.0 * sigma
+
+
+def test_a_pair_at_its_minimum_stays(stuck):
+    forward, one = stuck
+    setup = singles.setup_of(forward)
+    there = restart.restarted(forward, one, setup)
+    again = restart.restarted(forward, there, setup)
+    assert again.objective == pytest.approx(there.objective, abs=0.02)  # where a fit counts as settled
+
+
+def test_what_a_trial_should_gain_is_what_a_fit_gains_where_data_answer_in_proportion():
+    """A gauge's gain is linear: the best trial misses the fit's gain by its distance from the best value."""
+    hidden = [("sensor-gain", {"gain_ratio": 1.03, "sensor": 1})]
+    forward = Forward(experiment(made(hidden, seed=3)[0]), 1)
+    null, setup = wide.nominal(forward), singles.setup_of(forward)
+    free = variants(effect("sensor-gain"), setup)[0]
+    sizes = np.array([0.029, 0.0295, 0.03])
+    best = secants.tried(forward, null, Component(effect("sensor-gain"), free), setup, 1, sizes)[0]
+    one = fit(
+        forward, Hypothesis((Component(effect("sensor-gain"), free, place=1),)), best.u[None], best.nu[None]
+    )
+    assert best.place == 1
+    # The gauge's own error of 2 % takes up half; what is left answers in proportion to a few per cent.
+    assert best.gain <= (null.objective - one.objective) * 1.05
+    assert best.gain == pytest.approx(null.objective - one.objective, rel=0.2)
