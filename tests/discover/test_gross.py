@@ -6,7 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from made_records import made as damped
 
+from sonicvacuum.discover import policy
 from sonicvacuum.discover.compare import compare
 from sonicvacuum.discover.fit import refit, wide
 from sonicvacuum.discover.fit.evidence import Combination, log_bayes
@@ -16,6 +18,7 @@ from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, variants
 from sonicvacuum.discover.model.problem import experiment
 from sonicvacuum.discover.rounds import investigate
+from sonicvacuum.discover.search import several
 from sonicvacuum.discover.search.singles import setup_of
 from sonicvacuum.discover.verdict import Model
 from sonicvacuum.effects import CATALOGUE, IDS
@@ -190,6 +193,36 @@ def test_what_every_explanation_has_is_clear_though_none_of_them_is():
     assert not decision._clear(weights, ["a"])
     assert decision._clear(gross.merged(weights, ["a"]), ["a"])
     assert not decision._clear(gross.merged(weights, ["b"]), ["b"])
+
+
+def test_nuisances_relax_as_a_fit_with_wider_noise_finds_them(hidden):
+    """Damping left in the nominal fit strains its nuisances, less with noise five times as large."""
+    forward = Forward(experiment(hidden))
+    null = nominal(forward)
+    wide_view = Forward(replace(forward.experiment, sigma=5.0 * forward.experiment.sigma))
+    there = several.moved(wide_view, null)
+    chi2, penalty = gross._prior(forward, 25.0).relaxed(null)
+    # The model bends between the two points: a few per cent of what changes.
+    assert chi2 == pytest.approx(25.0 * there.normal.chi2.sum(), rel=0.03)
+    assert penalty == pytest.approx(np.square(there.nu).sum(), rel=0.1)
+
+
+def test_a_modulus_far_from_what_was_stated_is_no_explanation():
+    """Both fit alike, one by a nuisance: that costs little beside a large misfit, and counts in full."""
+    forward = Forward(experiment(damped([("dynamic-modulus", {"modulus_ratio": 0.6})], seed=5)[0]))
+    null = nominal(forward)
+    modulus = CATALOGUE.effect("dynamic-modulus")
+    (free,) = variants(modulus, setup_of(forward))
+    hypothesis = Hypothesis((Component(modulus, free),))
+    one = refit.fit(forward, hypothesis, np.array([[np.log(0.6)]]), 0.0 * null.nu)
+    prior = gross._prior(forward, 400.0)
+    assert null.normal.chi2.sum() < 2.0 * one.normal.chi2.sum()
+    assert prior.strains(null, one)
+    assert not prior.strains(one, null)
+    assert one.hypothesis.strengths(one.u, prior.sigma(one))[0] > policy.SEEN
+    gain = null.objective - one.objective
+    (weighed,) = gross.weighed(forward, null, [Combination(("dynamic-modulus",), one, gain, gain / 2.0)])
+    assert weighed.log_bayes > 10.0
 
 
 def test_noise_is_no_gross_misfit(empty):

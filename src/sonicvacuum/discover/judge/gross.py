@@ -5,8 +5,10 @@ discrepancy that is free in every run, for it takes up any slow effect. What can
 every explanation needs that explains much. Explanations are weighed as if what is left were noise of unknown
 size: with n independent pieces of it, exp(−½ n ln χ²) (the likelihood of Gaussian noise at its best standard
 deviation). n counts samples by their correlation for an estimate of a variance (Bayley & Hammersley, J. R.
-Stat. Soc. Suppl. 8, 184, 1946), and runs by how much of a systematic error they share. An effect is named
-where the explanations that have it are together clearly the likelier.
+Stat. Soc. Suppl. 8, 184, 1946), and runs by how much of a systematic error they share. What a fit strains of
+what the record knows well counts besides, as it is: one that takes a modulus known to 5 % to half of it
+explains nothing, however little that is beside χ². An effect is named where the explanations that have it are
+together clearly the likelier.
 """
 
 from collections.abc import Iterable, Mapping
@@ -171,11 +173,12 @@ def _told_apart(forward, null, ranked, odds, setup) -> Fit | None:
     one shape outside the catalogue would in their place.
     """
     fit = ranked[0].fit
-    seen = _seen(forward, fit)
+    prior = _prior(forward, _wider(forward, fit))
+    seen = [z > policy.SEEN for z in fit.hypothesis.strengths(fit.u, prior.sigma(fit))]
     for k in reversed(range(len(ranked[0].effects))):
         less = _less(forward, null, fit, k, ranked, setup)
         likely = seen[k] and odds[fit.hypothesis.ids[k]] > policy.STANDS_OUT
-        if not likely or not _ahead(forward, less, fit):
+        if not likely or not (prior.strains(less, fit) or _ahead(forward, less, fit)):
             fit = less
     return fit if fit.hypothesis.components else None
 
@@ -202,31 +205,81 @@ def widened(forward: Forward, null: Fit, fit: Fit) -> tuple[Forward, Fit, Fit]:
     independent pieces.
     """
     e = forward.experiment
-    view = Forward(replace(e, sigma=_wider(forward, fit) * e.sigma), forward.threads)
+    view = Forward(replace(e, sigma=_wider(forward, fit) ** 0.5 * e.sigma), forward.threads)
     there = Fit(fit.hypothesis, linearise(view, fit.hypothesis, fit.u[None], fit.nu[None]))
     return view, Fit(null.hypothesis, linearise(view, null.hypothesis, null.u[None], null.nu[None])), there
 
 
 def _wider(forward, fit: Fit) -> float:
-    """Errors over those that the noise alone would make."""
-    return max(1.0, float(fit.normal.chi2.sum()) / pieces(forward, fit)) ** 0.5
-
-
-def _seen(forward, fit: Fit) -> list[bool]:
-    """Whether the strength of each effect of a fit stands off from zero by a few of its errors."""
-    error = _wider(forward, fit) * np.maximum(fit.sigma, 1e-300)
-    return [strength > policy.SEEN for strength in fit.hypothesis.strengths(fit.u, error)]
+    """Variance over that of the noise alone, as what a fit leaves makes it."""
+    return max(1.0, float(fit.normal.chi2.sum()) / pieces(forward, fit))
 
 
 def weighed(forward: Forward, null: Fit, found: Iterable[Combination]) -> list[Combination]:
     """Explanations with the evidence that they have where what is left is noise of unknown size."""
     found = list(found)
-    count = pieces(forward, min((c.fit for c in found), key=lambda f: f.objective))
-    return [_weighed(c, count, null) for c in found]
+    best = min((c.fit for c in found), key=lambda f: f.objective)
+    count = pieces(forward, best)
+    prior = _prior(forward, max(1.0, float(best.normal.chi2.sum()) / count))
+    nothing = prior.misfit(null, count)
+    return [_weighed(c, nothing - prior.misfit(c.fit, count)) for c in found]
 
 
-def _weighed(c: Combination, count: float, null: Fit) -> Combination:
-    gain = count * float(np.log(null.objective / c.fit.objective))
+def _prior(forward: Forward, wider: float) -> "Prior":
+    """The prior beside noise of `wider` times the variance: of what is hardly known it widens as the noise
+    does, for such an error is a guess.
+    """
+    return Prior(wider, np.where(forward.nuisance_sigma > wide.WIDE, 1.0 / wider, 1.0))
+
+
+@dataclass(frozen=True)
+class Prior:
+    """The nuisances' prior beside what is left taken as noise.
+
+    Attributes:
+        wider: variance of that noise over the stated one.
+        weight: (q,) of the nuisances' squares.
+    """
+
+    wider: float
+    weight: np.ndarray
+
+    def misfit(self, fit: Fit, count: float) -> float:
+        """n ln χ² and the penalty, see `relaxed`."""
+        chi2, penalty = self.relaxed(fit)
+        return count * float(np.log(max(chi2, 1e-300))) + penalty
+
+    def relaxed(self, fit: Fit) -> tuple[float, float]:
+        """χ² and the penalty of the nuisances where they are best for that noise: in the linearised model,
+        coordinates at their bounds held.
+        """
+        p = fit.normal.free
+        gradient = fit.normal.gradient.sum(axis=0)[0]
+        slope = gradient / self.wider
+        slope[p:] -= self.weight * fit.nu
+        free = np.flatnonzero(np.concatenate([~fit.at_bound(), np.ones(len(fit.nu), dtype=bool)]))
+        step = np.zeros(len(slope))
+        step[free] = np.linalg.lstsq(self.hessian(fit)[np.ix_(free, free)], slope[free], rcond=1e-12)[0]
+        curved = step @ fit.normal.hessian.sum(axis=0)[0] @ step
+        chi2 = float(fit.normal.chi2.sum() - 2.0 * gradient @ step + curved)
+        return chi2, float(self.weight @ np.square(fit.nu + step[p:]))
+
+    def hessian(self, fit: Fit) -> np.ndarray:
+        """(n, n) of half the objective."""
+        own = np.concatenate([np.zeros(fit.normal.free), self.weight])
+        return fit.normal.hessian.sum(axis=0)[0] / self.wider + np.diag(own)
+
+    def sigma(self, fit: Fit) -> np.ndarray:
+        """(p,) standard errors of the coordinates."""
+        covariance = np.linalg.pinv(self.hessian(fit), hermitian=True)
+        return np.sqrt(np.maximum(np.diag(covariance)[: fit.normal.free], 1e-300))
+
+    def strains(self, less: Fit, fit: Fit) -> bool:
+        """Whether to do with less strains what is well known far more than a fit does."""
+        return self.relaxed(less)[1] - self.relaxed(fit)[1] > singles.STRAINED**2
+
+
+def _weighed(c: Combination, gain: float) -> Combination:
     # Each switch is worth what its effect gains on the average; places have their price already.
     places = c.log_bayes - evidence.log_bayes(c.fit, c.gain) if len(c.effects) > 1 else 0.0
     worth = 0.5 * gain + evidence.occam(c.fit, max(gain, 0.0), False) + min(places, 0.0)
