@@ -6,9 +6,10 @@ every explanation needs that explains much. Explanations are weighed as if what 
 size: with n independent pieces of it, exp(−½ n ln χ²) (the likelihood of Gaussian noise at its best standard
 deviation). n counts samples by their correlation for an estimate of a variance (Bayley & Hammersley, J. R.
 Stat. Soc. Suppl. 8, 184, 1946), and runs by how much of a systematic error they share. What a fit strains of
-what the record knows well counts besides, as it is: one that takes a modulus known to 5 % to half of it
-explains nothing, however little that is beside χ². An effect is named where the explanations that have it are
-together clearly the likelier.
+what the record states counts besides, as it is: one that takes a modulus known to 5 % to half of it explains
+nothing, however little that is beside χ². Only where walls or speeds are hardly known it counts as χ² does: there
+moduli and speeds make up for each other and for whatever is missing. An effect is named where the explanations
+that have it are together clearly the likelier.
 """
 
 from collections.abc import Iterable, Mapping
@@ -226,10 +227,8 @@ def weighed(forward: Forward, null: Fit, found: Iterable[Combination]) -> list[C
 
 
 def _prior(forward: Forward, wider: float) -> "Prior":
-    """The prior beside noise of `wider` times the variance: of what is hardly known it widens as the noise
-    does, for such an error is a guess.
-    """
-    return Prior(wider, np.where(forward.nuisance_sigma > wide.WIDE, 1.0 / wider, 1.0))
+    """The prior beside noise of `wider` times the variance; where much is hardly known it widens alike."""
+    return Prior(wider, 1.0 / wider if wide.wide(forward) else 1.0)
 
 
 @dataclass(frozen=True)
@@ -238,11 +237,11 @@ class Prior:
 
     Attributes:
         wider: variance of that noise over the stated one.
-        weight: (q,) of the nuisances' squares.
+        weight: of the nuisances' squares.
     """
 
     wider: float
-    weight: np.ndarray
+    weight: float
 
     def misfit(self, fit: Fit, count: float) -> float:
         """n ln χ² and the penalty, see `relaxed`."""
@@ -262,12 +261,12 @@ class Prior:
         step[free] = np.linalg.lstsq(self.hessian(fit)[np.ix_(free, free)], slope[free], rcond=1e-12)[0]
         curved = step @ fit.normal.hessian.sum(axis=0)[0] @ step
         chi2 = float(fit.normal.chi2.sum() - 2.0 * gradient @ step + curved)
-        return chi2, float(self.weight @ np.square(fit.nu + step[p:]))
+        return chi2, self.weight * float(np.square(fit.nu + step[p:]).sum())
 
     def hessian(self, fit: Fit) -> np.ndarray:
         """(n, n) of half the objective."""
-        own = np.concatenate([np.zeros(fit.normal.free), self.weight])
-        return fit.normal.hessian.sum(axis=0)[0] / self.wider + np.diag(own)
+        own = np.concatenate([np.zeros(fit.normal.free), np.ones(len(fit.nu))])
+        return fit.normal.hessian.sum(axis=0)[0] / self.wider + np.diag(self.weight * own)
 
     def sigma(self, fit: Fit) -> np.ndarray:
         """(p,) standard errors of the coordinates."""
