@@ -7,9 +7,9 @@ size: with n independent pieces of it, exp(−½ n ln χ²) (the likelihood of G
 deviation). n counts samples by their correlation for an estimate of a variance (Bayley & Hammersley, J. R.
 Stat. Soc. Suppl. 8, 184, 1946), and runs by how much of a systematic error they share. What a fit strains of
 what the record states counts besides, as it is: one that takes a modulus known to 5 % to half of it explains
-nothing, however little that is beside χ². Only where walls or speeds are hardly known it counts as χ² does: there
-moduli and speeds make up for each other and for whatever is missing. An effect is named where the explanations
-that have it are together clearly the likelier.
+nothing, however little that is beside χ². Only where walls or speeds are hardly known it counts as χ² does:
+there moduli and speeds make up for each other and for all that is missing. An effect is named where the
+explanations that have it are together clearly the likelier.
 """
 
 from collections.abc import Iterable, Mapping
