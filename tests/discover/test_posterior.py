@@ -71,6 +71,16 @@ def test_the_posterior_is_that_of_fits_with_the_parameter_held(verdict):
     assert quick - quick[2] == pytest.approx(slow - slow[2], abs=0.05)
 
 
+def test_nothing_is_better_than_the_fit_however_far_from_it(verdict):
+    """A step of Gauss and Newton with the slopes of the fit, taken far away, may promise anything."""
+    forward, fit = verdict.found.forward, verdict.found.final
+    values = fit.u + np.linspace(-3.0, 3.0, 25)[:, None]
+    found = posterior.log_posterior(forward, fit, values, np.array([0]))
+    assert found.max() == pytest.approx(-0.5 * fit.objective, abs=0.05)  # the fit's own settling
+    assert found.argmax() == 12
+    assert found.max() <= -0.5 * fit.objective
+
+
 def test_draws_lie_within_the_bounds_of_the_search(verdict):
     fit = verdict.found.final
     parts = fit.hypothesis.components[0]

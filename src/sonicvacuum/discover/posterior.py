@@ -110,7 +110,7 @@ def log_posterior(forward: Forward, fit: Fit, values: np.ndarray, held: np.ndarr
 
 def _bent(forward, fit, point, away, free, inner):
     """(n, free) by how much the best values of all else lie off the linearised ones: a quadratic of (n, h)
-    what is held, through a few points that are followed to their minima.
+    what is held, nothing at the fit, through a few points that are followed to their minima.
     """
     few = np.unique(np.linspace(0, len(point) - 1, FEW * away.shape[1]).astype(int))
     best, sound = point[few], np.ones(len(few), dtype=bool)
@@ -118,8 +118,8 @@ def _bent(forward, fit, point, away, free, inner):
         step = _misfit(forward, fit, best)[1][:, free] @ inner
         sound &= np.isfinite(step).all(axis=1)
         best[np.ix_(sound, free)] += step[sound]
-    away = away / np.abs(away).max(axis=0)
-    basis = np.concatenate([np.ones((len(away), 1)), away, np.square(away)], axis=1)
+    away = away / np.maximum(np.abs(away).max(axis=0), 1e-300)
+    basis = np.concatenate([away, np.square(away)], axis=1)
     return basis @ np.linalg.lstsq(basis[few[sound]], (best - point[few])[sound][:, free], rcond=1e-9)[0]
 
 
