@@ -33,7 +33,8 @@ def starts(forward: Forward) -> np.ndarray:
     speeds = [layout.speed(run) for run in range(layout.runs)]
     fastest = float(np.min(sigma[speeds], initial=np.inf))
     if WIDE < fastest < np.inf:
-        axes.append((speeds, [0.0, -fastest, fastest] if fastest < MOST else _offsets(fastest)))
+        several = [0.0, -fastest, fastest, -REACH * fastest, REACH * fastest]
+        axes.append((speeds, several if REACH * fastest < MOST else _offsets(fastest)))
     rows = []
     for offsets in product(*(values for _, values in axes)):
         row = np.zeros(layout.size)

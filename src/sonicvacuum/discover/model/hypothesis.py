@@ -141,6 +141,11 @@ def is_law(effect: Effect, setup: Setup) -> bool:
     return len(effect.apply(setup, **typical).chain.actions) > len(setup.chain.actions)
 
 
+def of_one_strength(free: tuple[Coordinate, ...]) -> bool:
+    """Whether one strength is free, whatever shapes are besides."""
+    return sum(c.parameter.switches for c in free) == 1
+
+
 def without(hypothesis: Hypothesis, u: np.ndarray, k: int, setup: Setup) -> tuple[Hypothesis, np.ndarray]:
     """A hypothesis and its coordinates with effect k taken away."""
     left = tuple(c for j, c in enumerate(hypothesis.components) if j != k)

@@ -16,7 +16,7 @@ from sonicvacuum.discover.fit import places
 from sonicvacuum.discover.fit.evidence import Candidate, Combination, log_bayes
 from sonicvacuum.discover.fit.refit import Fit, fit, polish
 from sonicvacuum.discover.model.forward import Forward
-from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, is_law, variants
+from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, is_law, of_one_strength, variants
 from sonicvacuum.discover.search import directions, restart, screen, secants, singles
 from sonicvacuum.effects import Setup
 
@@ -115,9 +115,8 @@ class Pairs:
             left = self.null.objective - beside.objective + follows
             known = (*pair.hypothesis.ids, *self.forward.experiment.excluded)
             for effect in self.setup.catalogue.candidates(self.setup, known):
-                for free in variants(effect, self.setup):
-                    if sum(c.parameter.switches for c in free) == 1:
-                        result += self._tried(beside, Component(effect, free), left)
+                for free in filter(of_one_strength, variants(effect, self.setup)):
+                    result += self._tried(beside, Component(effect, free), left)
         return result
 
     def _tried(self, beside: Fit, component: Component, left: float) -> list[Start]:

@@ -10,7 +10,7 @@ import numpy as np
 from sonicvacuum.discover.fit.normal import linearise
 from sonicvacuum.discover.fit.refit import Fit, fit
 from sonicvacuum.discover.model.forward import Forward
-from sonicvacuum.discover.model.hypothesis import without
+from sonicvacuum.discover.model.hypothesis import of_one_strength, without
 from sonicvacuum.discover.search import secants
 from sonicvacuum.effects import Setup
 
@@ -31,7 +31,7 @@ def restarted(forward: Forward, one: Fit, setup: Setup) -> Fit:
 def _starts(forward, one, k, setup):
     """Coordinates, nuisances and places with effect k as trials put it, the others as they follow."""
     component, own = one.hypothesis.components[k], one.hypothesis.columns[k]
-    if sum(c.parameter.switches for c in component.free) != 1:
+    if not of_one_strength(component.free):
         return
     beside = less(forward, one, k, setup)
     if not np.isfinite(beside.objective):

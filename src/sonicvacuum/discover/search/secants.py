@@ -12,7 +12,13 @@ import numpy as np
 
 from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.model.forward import Forward
-from sonicvacuum.discover.model.hypothesis import Component, is_law, variants, with_common_laws
+from sonicvacuum.discover.model.hypothesis import (
+    Component,
+    is_law,
+    of_one_strength,
+    variants,
+    with_common_laws,
+)
 from sonicvacuum.discover.model.parameters import Coordinate, shape_grid
 from sonicvacuum.discover.search import directions as ways
 from sonicvacuum.discover.search import screen
@@ -61,7 +67,7 @@ def search(
     """
     if not applies(effect):
         return []
-    options = [v for v in variants(effect, setup) if len(v) == 1]
+    options = list(filter(of_one_strength, variants(effect, setup)))
     free = next((v for v in options if v[0].parameter.tried_at_once), options[0])
     return tried(forward, fit, Component(effect, free), setup, most, coarsely(free[0], sparse))
 
