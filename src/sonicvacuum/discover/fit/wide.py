@@ -73,9 +73,9 @@ def nominal(forward: Forward, held: Hypothesis | None = None) -> Fit:
     held = held or Hypothesis()
     start = np.zeros((1, forward.layout.size))
     direct = fit(forward, held, np.zeros((1, 0)), start)
-    size = sum(forward.experiment.size(r) for r in range(len(forward.experiment.runs)))
-    if direct.objective - size < policy.MINIMA * math.sqrt(2.0 * size):
+    if not leaves_much(forward, direct.objective):
         return direct
+    size = _size(forward)
     tried = [direct, fit(forward, held, np.zeros((1, 0)), start, coarse=COARSE)]
     if direct.objective > 2.0 * size and wide(forward):
         rows = starts(forward)
@@ -83,6 +83,17 @@ def nominal(forward: Forward, held: Hypothesis | None = None) -> Fit:
     best = min(tried, key=lambda f: f.objective)
     best = best if best.objective < direct.objective - policy.SAME_MINIMUM else direct
     return replace(best, elsewhere=tried[-1].elsewhere)
+
+
+def leaves_much(forward: Forward, objective: float) -> bool:
+    """Whether a fit of this objective leaves more than noise does, whatever its shape."""
+    size = _size(forward)
+    return objective - size >= policy.MINIMA * math.sqrt(2.0 * size)
+
+
+def _size(forward):
+    """Number of data of all runs."""
+    return sum(forward.experiment.size(r) for r in range(len(forward.experiment.runs)))
 
 
 def again(forward: Forward, one: Fit, more: np.ndarray | None = None) -> Fit:

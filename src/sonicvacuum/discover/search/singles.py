@@ -2,13 +2,11 @@
 large.
 """
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from sonicvacuum import stages
-from sonicvacuum.discover import policy
 from sonicvacuum.discover.fit import wide
 from sonicvacuum.discover.fit.evidence import Candidate, log_bayes, ranked
 from sonicvacuum.discover.fit.refit import Fit, fit
@@ -77,18 +75,12 @@ def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
         achieved = max((c.gain for c in found if c is not None), default=0.0)
         if chosen and achieved < best_gain:
             best_gain = achieved
-        elif err == ERR and not loose and _leaves_much(forward, null, achieved):
+        elif err == ERR and not loose and wide.leaves_much(forward, null.objective - achieved):
             err = ERR_FAR
         else:
             break
     found = [c for c in found if c is not None]
     return ranked(found, forward.experiment.prior_odds)
-
-
-def _leaves_much(forward: Forward, null: Fit, gain: float) -> bool:
-    """Whether a Δχ² leaves more than noise, whatever its shape."""
-    size = sum(forward.experiment.size(run) for run in range(len(forward.experiment.runs)))
-    return null.objective - gain - size > policy.MINIMA * math.sqrt(2.0 * size)
 
 
 def _strained(forward: Forward, null: Fit) -> bool:
