@@ -171,7 +171,7 @@ def _more(forward, null, fit: Fit, setup: Setup, found) -> list[Combination]:
 
 def _told_apart(forward, null, ranked, odds, setup) -> Fit | None:
     """The best explanation without the effects that do not stand out, are hardly seen, or gain no more than
-    one shape outside the catalogue would in their place.
+    one shape outside the catalogue would in their place, unless to do without strains what is stated.
     """
     fit = ranked[0].fit
     prior = _prior(forward, _wider(forward, fit))
