@@ -11,6 +11,7 @@ from itertools import product
 import numpy as np
 
 from sonicvacuum.discover import policy
+from sonicvacuum.discover.fit.enough import data
 from sonicvacuum.discover.fit.refit import Fit, fit
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Hypothesis
@@ -75,9 +76,8 @@ def nominal(forward: Forward, held: Hypothesis | None = None) -> Fit:
     direct = fit(forward, held, np.zeros((1, 0)), start)
     if not leaves_much(forward, direct.objective):
         return direct
-    size = _size(forward)
     tried = [direct, fit(forward, held, np.zeros((1, 0)), start, coarse=COARSE)]
-    if direct.objective > 2.0 * size and wide(forward):
+    if direct.objective > 2.0 * data(forward) and wide(forward):
         rows = starts(forward)
         tried.append(fit(forward, held, np.zeros((len(rows), 0)), rows, keep=FOLLOWED, halved=FIRST))
     best = min(tried, key=lambda f: f.objective)
@@ -87,13 +87,8 @@ def nominal(forward: Forward, held: Hypothesis | None = None) -> Fit:
 
 def leaves_much(forward: Forward, objective: float) -> bool:
     """Whether a fit of this objective leaves more than noise does, whatever its shape."""
-    size = _size(forward)
+    size = data(forward)
     return objective - size >= policy.MINIMA * math.sqrt(2.0 * size)
-
-
-def _size(forward):
-    """Number of data of all runs."""
-    return sum(forward.experiment.size(r) for r in range(len(forward.experiment.runs)))
 
 
 def again(forward: Forward, one: Fit, more: np.ndarray | None = None) -> Fit:

@@ -124,8 +124,9 @@ class Case:
         tried = of_two.search()
         passed, start, lowest = self._passing(tried, needed, most, alarms, seen)
         if passed is None and not gross.gross(self.forward, start):
-            tried = of_two.again()
-            passed, start, lowest = self._passing(tried, needed, most, alarms, seen)
+            asked, tried = tried[:ASKED], of_two.again()
+            if [id(pair) for pair in tried[:ASKED]] != [id(pair) for pair in asked]:
+                passed, start, lowest = self._passing(tried, needed, most, alarms, seen)
         return passed or self._set(needed, most, shape, alarms, start, lowest, tried)
 
     def _passing(self, tried, needed, most, alarms, seen: Left) -> tuple[Decision | None, Fit, Left]:

@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sonicvacuum.discover import policy
-from sonicvacuum.discover.fit import evidence, wide
+from sonicvacuum.discover.fit import enough, evidence, wide
 from sonicvacuum.discover.fit.evidence import Combination
 from sonicvacuum.discover.fit.normal import linearise
 from sonicvacuum.discover.fit.refit import Fit, fit
@@ -37,8 +37,7 @@ _PROFILES = {effect.id for effect in profiles.effects()}
 
 def gross(forward: Forward, fit: Fit) -> bool:
     """Whether a fit leaves so much that the noise no longer counts."""
-    e = forward.experiment
-    return float(fit.normal.chi2.sum()) > policy.GROSS * sum(e.size(run) for run in range(len(e.runs)))
+    return float(fit.normal.chi2.sum()) > policy.GROSS * enough.data(forward)
 
 
 def pieces(forward: Forward, fit: Fit) -> float:
@@ -174,7 +173,7 @@ def _told_apart(forward, null, ranked, odds, setup) -> Fit | None:
     one shape outside the catalogue would in their place, unless to do without strains what is stated.
     """
     fit = ranked[0].fit
-    prior = _prior(forward, _wider(forward, fit))
+    prior = _prior(forward, _wider(fit, pieces(forward, fit)))
     seen = [z > policy.SEEN for z in fit.hypothesis.strengths(fit.u, prior.sigma(fit))]
     for k in reversed(range(len(ranked[0].effects))):
         less = _less(forward, null, fit, k, ranked, setup)
@@ -206,14 +205,15 @@ def widened(forward: Forward, null: Fit, fit: Fit) -> tuple[Forward, Fit, Fit]:
     independent pieces.
     """
     e = forward.experiment
-    view = Forward(replace(e, sigma=_wider(forward, fit) ** 0.5 * e.sigma), forward.threads)
+    wider = _wider(fit, pieces(forward, fit))
+    view = Forward(replace(e, sigma=wider**0.5 * e.sigma), forward.threads)
     there = Fit(fit.hypothesis, linearise(view, fit.hypothesis, fit.u[None], fit.nu[None]))
     return view, Fit(null.hypothesis, linearise(view, null.hypothesis, null.u[None], null.nu[None])), there
 
 
-def _wider(forward, fit: Fit) -> float:
-    """Variance over that of the noise alone, as what a fit leaves makes it."""
-    return max(1.0, float(fit.normal.chi2.sum()) / pieces(forward, fit))
+def _wider(fit: Fit, count: float) -> float:
+    """Variance over that of the noise alone, as what a fit leaves in so many `pieces` makes it."""
+    return max(1.0, float(fit.normal.chi2.sum()) / count)
 
 
 def weighed(forward: Forward, null: Fit, found: Iterable[Combination]) -> list[Combination]:
@@ -221,7 +221,7 @@ def weighed(forward: Forward, null: Fit, found: Iterable[Combination]) -> list[C
     found = list(found)
     best = min((c.fit for c in found), key=lambda f: f.objective)
     count = pieces(forward, best)
-    prior = _prior(forward, max(1.0, float(best.normal.chi2.sum()) / count))
+    prior = _prior(forward, _wider(best, count))
     nothing = prior.misfit(null, count)
     return [_weighed(c, nothing - prior.misfit(c.fit, count)) for c in found]
 

@@ -17,7 +17,6 @@ from sonicvacuum.discover.fit.evidence import Combination
 from sonicvacuum.discover.fit.normal import linearise
 from sonicvacuum.discover.fit.refit import ITERATIONS, Fit, polish
 from sonicvacuum.discover.model.forward import Forward
-from sonicvacuum.discover.model.hypothesis import without
 from sonicvacuum.discover.search import pairs, restart
 from sonicvacuum.discover.search.unknown import ShapeTest
 from sonicvacuum.effects import Setup
@@ -56,11 +55,9 @@ def moved(forward: Forward, fit: Fit) -> Fit:
 
 def less(forward: Forward, null: Fit, fit: Fit, k: int, setup: Setup, iterations: int = ITERATIONS) -> Fit:
     """The best fit without effect k, from where a fit stands; `null` where none is left."""
-    hypothesis, u = without(fit.hypothesis, fit.u, k, setup)
-    if not hypothesis.components:
+    if len(fit.hypothesis.components) == 1:
         return null
-    here = Fit(hypothesis, linearise(forward, hypothesis, u[None], fit.nu[None]))
-    return polish(forward, here, iterations)
+    return polish(forward, restart.less(forward, fit, k, setup), iterations)
 
 
 class Turns:
