@@ -51,6 +51,9 @@ EXCESS_STEP = 1.3
 # A systematic error tends to be the same in every run, so that runs do not average it away: of its variance
 # this share is taken as common to all.
 SMOOTH_SHARED = 0.5
+# Where it explains more than any effect, an effect has to gain so many times what else suffices: a
+# discrepancy that is twice as long as the kernel has more than twice its variance along slow effects.
+OUT_OF_SMOOTH = 3.0
 # Log prior odds of a smooth misfit against none, and its Occam factor: one size, known to a fifth, out of
 # three decades.
 SMOOTH_LOG_PRIOR = -5.0

@@ -4,25 +4,27 @@ Draws come from the Gaussian of the fit, its tails widened (Student's t), and ev
 all in one batch. At each the nuisances take their best values (a quadratic of the parameters, then a step of
 Gauss and Newton with the slopes of the fit), and are integrated over as if they were Gaussian there (Tierney
 & Kadane, J. Am. Stat. Assoc. 81, 82, 1986). The weight of a draw is what the data make of it, over the chance
-to draw it; its prior is flat in the coordinates of the search. Where few draws carry the weight
-(`draws.pareto_k`), the profile of each parameter is told instead: all else at its best, in the same way.
-Far from the data that best may be missed: a step that promises less than the fit leaves is not believed, nor
-is a profile whose 90 % do not hold the fit itself; there the Gaussian is told.
+to draw it; its prior is flat in the coordinates of the search. An effect of several parameters, of which one
+may nearly replace the other, leaves a valley that no Gaussian fills: draws come from along it
+(`fit.ridge`, `proposals`). Where few draws carry the weight (`draws.pareto_k`), the profile of each parameter
+is told instead: all else at its best, in the same way. Far from the data that best may be missed: a step that
+promises less than the fit leaves is not believed, nor is a profile whose 90 % do not hold the fit itself;
+there the Gaussian is told.
 """
 
 import math
 from itertools import chain
 
 import numpy as np
-import scipy
 
+from sonicvacuum.discover import proposals
 from sonicvacuum.discover.draws import LINEAR, PROFILE, SAMPLED, TRUSTED, Draws, pareto_k
+from sonicvacuum.discover.fit import broad, ridge
 from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.model.forward import CHUNK, Forward
 
-DRAWS, SEED = 200, 20061017
-# Degrees of freedom of Student's t: its tails are heavier than those of any likelihood that ends.
-FREEDOM = 5.0
+# So many times as many are made, for those that lie beyond the bounds.
+DRAWS, SEED, SPARE = 200, 20061017, 16
 # A profile reaches so many standard errors to either side, by so many values.
 REACH, VALUES = 5.0, 61
 # What of a profile lies to one side of a fit that its 90 % do not hold.
@@ -31,6 +33,8 @@ TAIL = 0.05
 SETTLED = 1.0
 # So many of the draws for each coordinate are followed by so many steps.
 FEW, STEPS = 12, 3
+# A valley is drawn from where it has so many points.
+SHORTEST = 5
 # The widest proposal, as a share of the range that is searched.
 WIDEST = 0.5
 
@@ -41,8 +45,11 @@ def posterior(forward: Forward, fit: Fit) -> list[Draws]:
     """
     if not len(fit.u):
         return []
-    u, log_proposal = proposed(fit)
-    log_weight = log_posterior(forward, fit, u, np.arange(len(fit.u))) - log_proposal
+    if broad.asks(fit.hypothesis) and not fit.at_bound().any():
+        u, log_weight = _along_valley(forward, fit)
+    else:
+        u, log_proposal = proposed(fit)
+        log_weight = log_posterior(forward, fit, u, np.arange(len(fit.u))) - log_proposal
     weight = _normalised(log_weight)
     if pareto_k(weight) <= TRUSTED:
         return _told(fit, [(SAMPLED, u[:, k], weight) for k in range(len(fit.u))])
@@ -52,23 +59,37 @@ def posterior(forward: Forward, fit: Fit) -> list[Draws]:
 def proposed(fit: Fit, count: int = DRAWS, seed: int = SEED) -> tuple[np.ndarray, np.ndarray]:
     """(n, p) draws within the bounds of the search, and (n,) logarithms of their density, up to a constant.
 
-    Of a Kronecker sequence (multiples of powers of 1 / φ_d, φ_d^{d+1} = φ_d + 1, shifted at random), which
-    fills space more evenly than independent draws do; at most `count`, fewer only where nearly all of the
-    Gaussian lies beyond the bounds.
+    At most `count`, fewer only where nearly all of the Gaussian lies beyond the bounds.
     """
     p = len(fit.u)
-    low, high = _bounds(fit)
     root = np.linalg.cholesky(_covariance(fit))
-    shift = np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed))).random(p + 1)
-    phi = np.real(np.roots([1.0, *np.zeros(p), -1.0, -1.0])).max()
-    steps = phi ** -np.arange(1.0, p + 2.0)
-    points = np.modf(shift + np.arange(1, 16 * count + 1)[:, None] * steps)[0]
-    wide = np.sqrt(FREEDOM / scipy.special.chdtri(FREEDOM, points[:, p]))[:, None]
-    scaled = wide * scipy.special.ndtri(points[:, :p])
+    scaled, log_density = proposals.students(proposals.even(SPARE * count, p + 1, seed))
     u = fit.u + scaled @ root.T
-    inside = np.flatnonzero(((u >= low) & (u <= high)).all(axis=1))[:count]
-    radius = np.square(scaled[inside]).sum(axis=1)
-    return u[inside], -0.5 * (FREEDOM + p) * np.log1p(radius / FREEDOM)
+    inside = _inside(fit, u, count)
+    return u[inside], log_density[inside]
+
+
+def _inside(fit, u, count=DRAWS):
+    """Places of the first draws within the bounds."""
+    low, high = _bounds(fit)
+    return np.flatnonzero(((u >= low) & (u <= high)).all(axis=1))[:count]
+
+
+def _along_valley(forward, fit):
+    """(n, p) draws from along the valley of a fit, and (n,) logarithms of their weights."""
+    columns = forward.columns(fit.hypothesis, fit.u[None], fit.nu[None])
+    p = len(fit.u)
+    found = ridge.valley(forward, fit.hypothesis, fit.normal, fit.covariance[:p, :p], columns)
+    if len(found.t) < SHORTEST:
+        u, log_proposal = proposed(fit)
+        return u, log_posterior(forward, fit, u, np.arange(p)) - log_proposal
+    u, nu, log_proposal = proposals.along(found, SPARE * DRAWS, SEED)
+    inside = _inside(fit, u)
+    free = p + np.arange(len(fit.nu))
+    inner = np.linalg.pinv(fit.normal.total()[1][0][np.ix_(free, free)], hermitian=True)
+    floor = min(fit.objective, float(found.objective.min()))
+    value = _at_best(forward, fit, np.concatenate([u, nu], axis=1)[inside], free, inner, floor)
+    return u[inside], value - log_proposal[inside]
 
 
 def _bounds(fit):
@@ -100,11 +121,18 @@ def log_posterior(forward: Forward, fit: Fit, values: np.ndarray, held: np.ndarr
     point[:, held] = values
     point[:, free] -= away @ (inner @ hessian[0][np.ix_(free, held)]).T
     point[:, free] += _bent(forward, fit, point, away, free, inner)
+    return _at_best(forward, fit, point, free, inner, fit.objective)
+
+
+def _at_best(forward, fit, point, free, inner, floor):
+    """(n,) logarithm of the posterior at (n, p + q) points, `free` by one step more at their best.
+
+    Nothing is better than `floor`: steps that promise so overreach, and what they start from is counted.
+    """
     objective, gradient = _misfit(forward, fit, point)
     drop = np.einsum("ln,nm,lm->l", gradient[:, free], inner, gradient[:, free])
-    # Nothing is better than the fit: steps that promise so overreach, and what they start from is counted.
-    left = np.where(objective - drop < fit.objective - SETTLED, objective, objective - drop)
-    value = -0.5 * np.maximum(left, fit.objective)
+    left = np.where(objective - drop < floor - SETTLED, objective, objective - drop)
+    value = -0.5 * np.maximum(left, floor)
     return np.where(np.isfinite(value), value, -np.inf)
 
 

@@ -101,11 +101,12 @@ def investigate(experiment: Experiment, threads: int = 1, null: Fit | None = Non
     stages.begin("sets of effects" if passes else "verdict")
     case = Case(forward, null, scores, found, known, setup)
     decision = case.decide() if passes else case.nothing(few)
+    found = decision.singles or found
     alike = explanations.aliases(forward, null, found) if passes else []
     odds, more = _odds(found, decision, alike, prior, tuple(experiment.present))
     reasons = [*decision.reasons, *(few if passes else ()), *more, *experiment.notes]
     given = {**vars(decision), "reasons": reasons}
-    del given["beside"], given["left"]
+    del given["beside"], given["left"], given["singles"]
     return Investigation(forward, null, scores, threshold, found, odds, alike=alike, **given)
 
 

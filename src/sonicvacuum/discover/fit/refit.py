@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sonicvacuum.discover.fit import broad
 from sonicvacuum.discover.fit.normal import Normal, linearised
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Hypothesis
@@ -149,7 +150,8 @@ def _finished(forward, hypothesis, now):
         return now
     steps = _differences(now)
     precise, columns = linearised(forward, hypothesis, now.u, now.nu, None, steps, True)
-    return descend(forward, hypothesis, precise, None, LAST, columns, precise=True)[0]
+    last = descend(forward, hypothesis, precise, None, LAST, columns, precise=True)[0]
+    return broad.broadened(forward, hypothesis, last, columns) if broad.asks(hypothesis) else last
 
 
 def _promising(forward, hypothesis, u, nu, places, keep):

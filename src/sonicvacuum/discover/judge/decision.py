@@ -1,7 +1,7 @@
 """What is named, once single effects are fitted: one, several, or unknown, by what each leaves."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.judge import explanations, gross
 from sonicvacuum.discover.judge.left import Left, left, sure
 from sonicvacuum.discover.model.forward import Forward
-from sonicvacuum.discover.search import directions, pairs, screen, several, singles, unknown
+from sonicvacuum.discover.search import directions, pairs, restart, screen, several, singles, unknown
 from sonicvacuum.effects import Setup
 
 # Pairs that are asked what they leave.
@@ -36,6 +36,7 @@ class Decision:
     Attributes:
         left: p-value of what the best explanation without anything unknown leaves.
         beside: explanation → log weight with a smooth discrepancy counted as noise.
+        singles: single effects, best first, where pairs led some of them to lower minima.
     """
 
     named: list[str]
@@ -47,6 +48,7 @@ class Decision:
     smooth: float = 0.0
     counted: View | None = None
     beside: dict[str, float] | None = None
+    singles: list[Candidate] | None = None
 
 
 @dataclass(frozen=True)
@@ -91,11 +93,11 @@ class Case:
         shape, most = unknown.simplest(self.forward, self.null)
         seen = left(self.forward, best.fit, self.known, scores, _behind(best.gain, most))
         alarms = {"single": seen.p}
-        instead = self._smooth_instead(best, seen)
-        if instead is not None and not gross.gross(self.forward, best.fit):
-            return instead
+        needed = scores.threshold(policy.FALSE_ALARM)
+        if self._smooth_instead(best, seen) and not gross.gross(self.forward, best.fit):
+            return self._out_of_smooth(best, needed, most, alarms)
         if seen.shapes.failed or seen.fit.failed or seen.size.found:
-            return self._more(scores.threshold(policy.FALSE_ALARM), most, shape, alarms, seen)
+            return self._more(needed, most, shape, alarms, seen)
         if seen.behind > 0.0:
             return self._unknown(alarms, [f"{shape} explains more than {best.effect}"], seen)
         if heldout.better(self.null, best.fit):
@@ -104,24 +106,37 @@ class Case:
         reason = f"{best.effect} does not predict unseen runs better"
         return Decision([], self.null, alarms, [reason], seen.p)
 
-    def _smooth_instead(self, best: Candidate, seen: Left) -> Decision | None:
-        """Unknown where a smooth misfit of the nominal model is the better explanation than any effect."""
+    def _smooth_instead(self, best: Candidate, seen: Left) -> bool:
+        """Whether a smooth misfit of the nominal model is the better explanation than any effect."""
         if self.known is None:
-            return None
+            return False
         alone = smooth.infer(self.forward, self.null, self.known)
-        if alone.log_odds <= best.log_bayes + seen.size.log_odds:
-            return None
-        reason = (
-            f"a smooth misfit of {100.0 * alone.size:.2g} % of the peak explains the data better than "
-            f"{best.effect}"
-        )
+        return alone.log_odds > best.log_bayes + seen.size.log_odds
+
+    def _out_of_smooth(self, best: Candidate, needed, most, alarms) -> Decision:
+        """Effects that earn their evidence with a smooth misfit of the nominal model counted as noise; else
+        unknown.
+        """
+        asked = policy.OUT_OF_SMOOTH * needed
+        grown = several.Turns(self.forward, self.known, asked, self.setup).grow(self.null, self.null)
         without = left(self.forward, self.null, self.known)
-        return self._unknown({"none": without.p, "single": seen.p}, [reason], without)
+        size = 100.0 * without.size.size
+        reason = f"a smooth misfit of {size:.2g} % of the peak explains more than {best.effect}"
+        if not grown.best.effects:
+            return self._unknown({"none": without.p, **alarms}, [reason], without)
+        final = several.moved(self.forward, grown.best.fit)
+        behind = _behind(self.null.objective - final.objective, most)
+        after = left(self.forward, final, self.known, behind=behind)
+        return self._beside(grown, asked, {**alarms, "set": after.p}, after, [])
 
     def _more(self, needed, most, shape, alarms, seen: Left) -> Decision:
         """Name the first pair that leaves nothing and gains enough over the best single; else go on."""
         of_two = pairs.Pairs(self.forward, self.null, self.scores, self.found)
         tried = of_two.search()
+        lower = restart.lower(self.forward, self.null, tried[:ASKED], self.found, self.setup)
+        if lower is not None:
+            better = evidence.ranked(lower, self.forward.experiment.prior_odds)
+            return replace(replace(self, found=better).decide(), singles=better)
         passed, start, lowest = self._passing(tried, needed, most, alarms, seen)
         if passed is None and not gross.gross(self.forward, start):
             asked, tried = tried[:ASKED], of_two.again()

@@ -110,9 +110,7 @@ class Pairs:
             beside = restart.less(self.forward, pair, k, self.setup)
             if not np.isfinite(beside.objective):
                 continue
-            gradient, hessian = beside.normal.total()
-            follows = float(gradient[0] @ np.linalg.lstsq(hessian[0], gradient[0], rcond=1e-12)[0])
-            left = self.null.objective - beside.objective + follows
+            left = self.null.objective - restart.promised(beside)
             known = (*pair.hypothesis.ids, *self.forward.experiment.excluded)
             for effect in self.setup.catalogue.candidates(self.setup, known):
                 for free in filter(of_one_strength, variants(effect, self.setup)):

@@ -2,13 +2,14 @@
 
 A joint fit starts where effects alone, or slopes, have put them, and may end in a minimum from which no slope
 leads to the lower one. Here one effect of the set at a time is taken away and tried all over its range beside
-the others, as `secants` does it.
+the others, as `secants` does it. Single effects start again from pairs, less their other effect.
 """
 
 import numpy as np
 
+from sonicvacuum.discover.fit.evidence import Candidate, Combination
 from sonicvacuum.discover.fit.normal import linearise
-from sonicvacuum.discover.fit.refit import Fit, fit
+from sonicvacuum.discover.fit.refit import Fit, fit, polish
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import of_one_strength, without
 from sonicvacuum.discover.search import secants
@@ -16,6 +17,8 @@ from sonicvacuum.effects import Setup
 
 # Trials of each effect that the joint fit starts from; starts followed to their minimum, and their steps.
 TRIALS, FOLLOWED, ITERATIONS = 4, 4, 12
+# A single effect is fitted anew where a pair leads it to a minimum that is lower by more than this.
+LOWER = 6.0
 
 
 def restarted(forward: Forward, one: Fit, setup: Setup) -> Fit:
@@ -49,3 +52,36 @@ def less(forward: Forward, one: Fit, k: int, setup: Setup) -> Fit:
     """A fit with effect k taken away and all else as it stands."""
     hypothesis, u = without(one.hypothesis, one.u, k, setup)
     return Fit(hypothesis, linearise(forward, hypothesis, u[None], one.nu[None]))
+
+
+def promised(one: Fit) -> float:
+    """The objective that slopes promise at the minimum."""
+    gradient, hessian = one.normal.total()
+    return one.objective - float(gradient[0] @ np.linalg.lstsq(hessian[0], gradient[0], rcond=1e-12)[0])
+
+
+def lower(
+    forward: Forward, null: Fit, found: list[Combination], singles: list[Candidate], setup: Setup
+) -> list[Candidate] | None:
+    """Single effects with those fitted anew that pairs, less their other effect, lead to lower minima; None
+    where there are none.
+    """
+    known = {c.effect: c for c in singles}
+    better: dict[str, Candidate] = {}
+    for pair in found:
+        for k, name in enumerate(reversed(pair.fit.hypothesis.ids)):
+            own = better.get(name, known.get(name))
+            if own is None or np.isinf(own.fit.objective):
+                continue
+            one = less(forward, pair.fit, k, setup)
+            if not one.normal.has_slopes[0] or promised(one) > own.fit.objective - LOWER:
+                continue
+            one = polish(forward, one)
+            if one.objective < own.fit.objective - LOWER:
+                gain = null.objective - one.objective
+                log_bayes = own.log_bayes + 0.5 * (gain - own.gain)
+                place = one.hypothesis.components[0].place
+                where = own.places if place is None else ((place, 1.0),)
+                flags = ("bound",) * bool(one.at_bound().any()) + ("unsettled",) * (not one.settled)
+                better[name] = Candidate(name, one, gain, log_bayes, where, flags)
+    return [better.get(c.effect, c) for c in singles] if better else None

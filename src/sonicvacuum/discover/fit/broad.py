@@ -1,0 +1,91 @@
+"""Slopes over standard errors, for effects of several parameters.
+
+Two parameters may nearly replace one another: strength and time of a contact that relaxes slowly. Data then
+tell between them by a hair, and predictions jump by more than that, since a contact that opens for a moment
+forgets. Differences of short steps take such jumps for slopes, and errors come out far too small. Here slopes
+are lines through points up to a standard error to both sides, along the principal axes of the errors that the
+fit tells itself; where errors come out other than these, the valley is followed (`ridge`) and slopes are
+taken once more at its lowest point.
+"""
+
+import numpy as np
+
+from sonicvacuum.discover.fit import ridge
+from sonicvacuum.discover.fit.normal import Normal, from_slopes
+from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.model.hypothesis import Hypothesis
+
+ROUNDS = 4
+# Points along each axis, in standard errors, none further than this in a coordinate.
+POINTS, FARTHEST = (-1.0, -0.5, 0.5, 1.0), 0.5
+# Errors that differ by less than this factor are the same.
+ALIKE = 1.5
+
+
+def asks(hypothesis: Hypothesis) -> bool:
+    """Whether an effect has several parameters, of which one may replace the other."""
+    return any(len(c.free) > 1 for c in hypothesis.components)
+
+
+def broadened(forward: Forward, hypothesis: Hypothesis, now: Normal, columns: list[np.ndarray]) -> Normal:
+    """A fit, one lane, with slopes over its own standard errors, at the lowest point of its valley; as it is
+    where its errors stay what they were.
+
+    `columns` are those of a point nearby (`Forward.columns`), whose slopes to the nuisances are held.
+    """
+    for turn in range(ROUNDS):
+        wide = sloped(forward, hypothesis, now, columns)
+        if wide is None or _alike(now, wide):
+            return now if turn == 0 or wide is None else wide
+        now = wide
+        if turn == 0:
+            found = ridge.valley(forward, hypothesis, wide, covariance(wide), columns)
+            best = found.lowest
+            if found.objective[best] < wide.objective[0]:
+                at = slice(best, best + 1)
+                now = Normal(found.u[at], found.nu[at], wide.chi2, wide.gradient, wide.hessian)
+    return now
+
+
+def covariance(now: Normal) -> np.ndarray:
+    """(p, p) covariance of the coordinates, nuisances fitted."""
+    return np.linalg.pinv(now.total()[1][0], hermitian=True)[: now.free, : now.free]
+
+
+def _alike(one, other):
+    one, other = (np.maximum(np.diag(covariance(x)), 1e-24) for x in (one, other))
+    return np.abs(np.log(other / one)).max() < 2.0 * np.log(ALIKE)
+
+
+def _axes(now):
+    """(p, p) principal axes of the errors, one in each row, a standard error long."""
+    own = covariance(now)
+    error = np.sqrt(np.maximum(np.diag(own), 1e-24))
+    size, axes = np.linalg.eigh(own / np.outer(error, error))
+    rows = (error[:, None] * axes * np.sqrt(np.maximum(size, 1e-12))).T
+    return rows * np.minimum(1.0, FARTHEST / np.abs(rows).max(axis=1))[:, None]
+
+
+def sloped(forward: Forward, hypothesis: Hypothesis, now: Normal, columns: list[np.ndarray]) -> Normal | None:
+    """The normal equations with slopes over the axes; None where too few points can be simulated."""
+    axes = _axes(now)
+    moves = np.concatenate([np.zeros((1, now.free)), *(x * axes for x in POINTS)])
+    u = hypothesis.inside(now.u + moves)
+    u[0] = now.u[0]
+    found = [value for value, _ in forward.sampled(hypothesis, u, np.repeat(now.nu, len(u), axis=0))]
+    sound = np.isfinite(sum(value.sum(axis=1) for value in found))
+    # In units of the axes, so that the shortest counts like the longest.
+    along = np.linalg.solve(axes.T, (u - now.u).T).T[sound]
+    lines = np.column_stack([along, np.ones(len(along))])
+    if not sound[0] or np.linalg.matrix_rank(lines) <= now.free:
+        return None
+    to_slopes = np.linalg.solve(axes, np.linalg.pinv(lines)[:-1])
+    own = [k for k, c in enumerate(hypothesis.coordinates) if not c.parameter.acts_like]
+    parts = []
+    for run, value in enumerate(found):
+        part = columns[run].copy()
+        slopes = to_slopes @ (value[sound] - value[0])
+        slopes[:, forward.counts(run)] = 0.0
+        part[0, 0], part[0, [1 + k for k in own]] = value[0], slopes[own]
+        parts.append(part)
+    return from_slopes(forward, now.free, now.u, now.nu, parts)

@@ -1,0 +1,176 @@
+"""A valley of the misfit followed from end to end: all else at its best along the axis that data tell least.
+
+From a fit, both ways along the longest axis of its errors, in steps that grow while the misfit hardly does.
+Each starts where the last two point to, and everything but the place along the axis goes to its best by a
+few steps of Gauss and Newton, slopes to the nuisances that take simulations held.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sonicvacuum.discover.fit.normal import Normal, from_slopes
+from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.model.hypothesis import Hypothesis
+
+# Steps to either side at most; of Gauss and Newton at each.
+MOST, STEPS = 16, 4
+# The valley ends where χ² is this much above its lowest; steps double below the one, halve above the other.
+END, CALM, STEEP = 25.0, 1.0, 6.0
+# First step, in standard errors; the longest, in a coordinate.
+FIRST, LONGEST = 0.5, 0.5
+# Finite differences across it: in standard errors of a coordinate known by itself, none longer.
+ACROSS, FARTHEST = 1.0, 0.05
+
+
+@dataclass(frozen=True)
+class Valley:
+    """Points of a valley, in order along it.
+
+    Attributes:
+        axis: (p,) unit vector along it, in coordinates of the search.
+        across: (p, p − 1) orthonormal vectors across it.
+        t: (m,) places along the axis, 0 at the fit, ascending.
+        u, nu: (m, p) and (m, q) coordinates and nuisances.
+        objective: (m,) χ² and penalty.
+        root: (m, p − 1, p − 1) lower triangular, of the covariance across, nuisances fitted.
+        follow: (m, q, p − 1) changes of the best nuisances with places across.
+    """
+
+    axis: np.ndarray
+    across: np.ndarray
+    t: np.ndarray
+    u: np.ndarray
+    nu: np.ndarray
+    objective: np.ndarray
+    root: np.ndarray
+    follow: np.ndarray
+
+    @property
+    def lowest(self) -> int:
+        """The place of the lowest point."""
+        return int(np.argmin(self.objective))
+
+
+def valley(
+    forward: Forward, hypothesis: Hypothesis, now: Normal, covariance: np.ndarray, columns: list[np.ndarray]
+) -> Valley:
+    """The valley through a point, one lane.
+
+    Args:
+        forward: the predictor.
+        hypothesis: of two coordinates or more.
+        now: the point.
+        covariance: (p, p) of its coordinates; its longest axis, in standard errors, is followed.
+        columns: of a point nearby (`Forward.columns`); slopes to the nuisances are held.
+    """
+    error = np.sqrt(np.diag(covariance))
+    size, axes = np.linalg.eigh(covariance / np.outer(error, error))
+    axis = error * axes[:, -1]
+    length = float(np.linalg.norm(axis)) * np.sqrt(size[-1])
+    axis = axis / np.linalg.norm(axis)
+    across = np.linalg.svd(axis[None])[2][1:].T
+    walk = _Walk(forward, hypothesis, axis, across, columns)
+    start = walk.settled(now.u[0], now.nu[0])
+    lowest, sides = start.objective, []
+    for sign in (-1.0, 1.0):
+        side, step = [start], sign * min(FIRST * length, LONGEST)
+        for _ in range(MOST):
+            new = walk.beyond(side, step)
+            if new is None:
+                break
+            rise = abs(new.objective - side[-1].objective)
+            if rise > END and abs(step) > 1e-3 * length:
+                step *= 0.25
+                continue
+            side.append(new)
+            lowest = min(lowest, new.objective)
+            if new.objective > lowest + END:
+                break
+            step *= 2.0 if rise < CALM else 0.5 if rise > STEEP else 1.0
+            step = float(np.clip(step, -LONGEST, LONGEST))
+        sides.append(side[1:])
+    points = [*reversed(sides[0]), start, *sides[1]]
+    stacked = (np.array([getattr(p, name) for p in points]) for name in _Point.__annotations__)
+    return Valley(axis, across, *stacked)
+
+
+@dataclass(frozen=True)
+class _Point:
+    """One point of a valley; see `Valley`."""
+
+    t: float
+    u: np.ndarray
+    nu: np.ndarray
+    objective: float
+    root: np.ndarray
+    follow: np.ndarray
+
+
+@dataclass
+class _Walk:
+    """What does not change along a valley."""
+
+    forward: Forward
+    hypothesis: Hypothesis
+    axis: np.ndarray
+    across: np.ndarray
+    columns: list[np.ndarray]
+    origin: np.ndarray | None = None
+
+    def beyond(self, side: list[_Point], step: float) -> _Point | None:
+        """The next point of a side; None beyond the bounds, or where nothing can be simulated."""
+        last = side[-1]
+        u, nu = last.u + step * self.axis, last.nu
+        if len(side) > 1:
+            share = step / (last.t - side[-2].t)
+            u, nu = last.u + share * (last.u - side[-2].u), last.nu + share * (last.nu - side[-2].nu)
+        if np.any(u != self.hypothesis.inside(u)):
+            return None
+        return self.settled(u, nu)
+
+    def settled(self, u: np.ndarray, nu: np.ndarray) -> _Point | None:
+        """The best point at the same place along the axis."""
+        self.origin = u if self.origin is None else self.origin
+        best = None
+        for _ in range(STEPS):
+            normal = self._normal(u, nu)
+            if not normal.has_slopes[0] or not np.isfinite(normal.objective[0]):
+                break
+            gradient, hessian = normal.total()
+            turn = np.eye(len(u) + len(nu))[:, 1:]
+            turn[: len(u), : len(u) - 1] = self.across
+            matrix = turn.T @ hessian[0] @ turn
+            inverse = np.linalg.pinv(matrix, hermitian=True)
+            if best is None or normal.objective[0] < best.objective:
+                best = self._point(u, nu, float(normal.objective[0]), matrix, inverse)
+            move = turn @ (inverse @ (turn.T @ gradient[0]))
+            u, nu = self.hypothesis.inside((u + move[: len(u)])[None])[0], nu + move[len(u) :]
+        return best
+
+    def _point(self, u, nu, objective, matrix, inverse):
+        p = self.across.shape[1]
+        root = np.linalg.cholesky(inverse[:p, :p] + 1e-20 * np.eye(p))
+        follow = -np.linalg.lstsq(matrix[p:, p:], matrix[p:, :p], rcond=1e-12)[0]
+        return _Point(float((u - self.origin) @ self.axis), u, nu, objective, root, follow)
+
+    def _normal(self, u, nu):
+        """Normal equations with slopes by differences to both sides of every coordinate."""
+        p = len(u)
+        steps = np.diag(self._steps())
+        many = np.concatenate([u[None], u + steps, u - steps])
+        found = self.forward.sampled(self.hypothesis, many, np.repeat(nu[None], len(many), axis=0))
+        parts = []
+        for run, (value, _) in enumerate(found):
+            part = self.columns[run].copy()
+            part[0, 0] = value[0]
+            part[0, 1 : 1 + p] = (value[1 : 1 + p] - value[1 + p :]) / (2.0 * np.diag(steps)[:, None])
+            part[0, 1 : 1 + p, self.forward.counts(run)] = 0.0
+            parts.append(part)
+        return from_slopes(self.forward, p, u[None], nu[None], parts)
+
+    def _steps(self):
+        """(p,) steps of the coordinates, by the slopes at the start."""
+        p = len(self.axis)
+        length = np.sqrt(sum(np.square(c[0, 1 : 1 + p]).sum(axis=1) for c in self.columns))
+        return np.clip(ACROSS / np.maximum(length, 1e-9), 1e-5, FARTHEST)

@@ -1,0 +1,135 @@
+"""Two parameters that nearly replace one another: a bent valley with walls known in closed form, and jumps
+that differences of short steps take for slopes.
+"""
+
+import numpy as np
+import pytest
+
+from sonicvacuum.discover import posterior
+from sonicvacuum.discover.fit import broad, ridge
+from sonicvacuum.discover.fit.normal import from_slopes
+from sonicvacuum.discover.fit.refit import Fit
+from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, variants
+from sonicvacuum.discover.model.nuisances import Layout
+from sonicvacuum.effects import effect
+
+WIDE, NARROW, BEND = 0.6, 0.01, 0.15
+
+
+class Valley:
+    """Data of one run whose misfit is a valley: a + b over WIDE along it, b − a − BEND (a + b)² over NARROW
+    across, a and b in coordinates off the middle; one nuisance adds a third of itself to the first.
+
+    `jumps`: data that jump as the coordinates pass multiples of short distances.
+    """
+
+    simulations = 0
+
+    def __init__(self, middle, jumps=0):
+        self.middle, self.layout = np.asarray(middle), Layout(1, 0, ())
+        random = np.random.default_rng(np.random.SeedSequence(11))
+        self.period = random.uniform(0.009, 0.013, (jumps, 2))
+        self.phase = random.uniform(0.0, 1.0, (jumps, 2))
+
+    def counts(self, run):
+        return np.zeros(0, dtype=int)
+
+    def data(self, run):
+        return np.zeros(2 + len(self.period))
+
+    def values(self, u, nu):
+        a, b = (u - self.middle).T
+        along, across = (a + b + 0.3 * WIDE * nu[:, 0]) / WIDE, (b - a - BEND * (a + b) ** 2) / NARROW
+        place = (u - self.middle)[:, None] / self.period + self.phase
+        jumps = 0.02 * np.sign(np.sin(2.0 * np.pi * place)).sum(axis=2)
+        return np.column_stack([along, across, jumps])
+
+    def sampled(self, hypothesis, u, nu, places=None):
+        return [(self.values(np.asarray(u), np.asarray(nu)), None)]
+
+    def columns(self, hypothesis, u, nu, places=None, precise=False, steps=None, held=None, step=0.02):
+        moves = np.concatenate([np.zeros((1, 2)), step * np.eye(2)])
+        value = self.values(u + moves, np.repeat(nu, 3, axis=0))
+        own = np.concatenate([value[:1], (value[1:] - value[0]) / step])
+        rest = np.zeros((self.layout.size, value.shape[1]))
+        rest[list(self.layout.local(0)).index(0), 0] = 0.3
+        return [np.concatenate([own, rest])[None]]
+
+    def fit(self, hypothesis, u):
+        u, nu = np.asarray(u, dtype=float)[None], np.zeros((1, self.layout.size))
+        return Fit(hypothesis, from_slopes(self, 2, u, nu, self.columns(hypothesis, u, nu)))
+
+
+@pytest.fixture
+def two():
+    own = effect("relaxing-contact")
+    (free,) = variants(own, None)
+    return Hypothesis((Component(own, free),))
+
+
+def test_an_effect_of_several_parameters_asks_for_it(two):
+    assert broad.asks(two)
+    assert not broad.asks(Hypothesis())
+
+
+def test_a_bent_valley_is_followed_along_its_bottom(two):
+    middle = np.array([-2.0, 0.5])
+    forward = Valley(middle)
+    fit = forward.fit(two, middle)
+    columns = forward.columns(two, fit.u[None], fit.nu[None])
+    found = ridge.valley(forward, two, fit.normal, broad.covariance(fit.normal), columns)
+    assert found.objective[0] > 20.0
+    assert found.objective[-1] > 20.0
+    assert np.all(np.diff(found.t) > 0.0)
+    a, b = (found.u - middle).T
+    # Within a fifth of the width across, which χ² shows as 0.04.
+    assert b - a == pytest.approx(BEND * (a + b) ** 2, abs=0.2 * NARROW)
+    # Best over the nuisance with its prior: the first datum has the variance 1 + 0.3².
+    assert found.objective == pytest.approx((a + b) ** 2 / WIDE**2 / 1.09, abs=0.1)
+    # An error of b − a is √½ of it along the unit vector (1, −1) / √2; the bend tilts it by a hair.
+    assert found.root[:, 0, 0] == pytest.approx(NARROW / np.sqrt(2.0), rel=0.1)
+
+
+def test_draws_along_a_bent_valley_have_its_moments(two):
+    """Against sums over a fine grid of the posterior itself."""
+    middle = np.array([-2.0, 0.5])
+    forward = Valley(middle)
+    fit = forward.fit(two, middle)
+    one, other = posterior.posterior(forward, fit)
+    assert {one.how, other.how} == {"sampled"}
+    assert one.effective > 0.4 * posterior.DRAWS
+    along, across = np.meshgrid(np.linspace(-4.0, 4.0, 801) * WIDE, np.linspace(-5.0, 5.0, 201) * NARROW)
+    weight = np.exp(-0.5 * (along**2 / WIDE**2 / 1.09 + across**2 / NARROW**2))
+    difference = across + BEND * along**2
+    for drawn, u in ((one, 0.5 * (along - difference)), (other, 0.5 * (along + difference))):
+        k = 0 if drawn is one else 1
+        value = np.array([two.coordinates[k].inverse(x) for x in drawn.value]) - middle[k]
+        mean, truth = drawn.weight @ value, float((weight * u).sum() / weight.sum())
+        spread = np.sqrt(drawn.weight @ np.square(value - mean))
+        wide = np.sqrt(float((weight * np.square(u - truth)).sum() / weight.sum()))
+        # Draws worth a hundred equal ones err by a tenth of the spread, and by 7 % of it.
+        assert mean == pytest.approx(truth, abs=0.2 * wide)
+        assert spread == pytest.approx(wide, rel=0.15)
+
+
+def test_jumps_are_not_taken_for_slopes(two):
+    """The bend left aside, errors are known: NARROW and WIDE, and the jumps of 40 data tell nothing."""
+    middle = np.array([-2.0, 0.5])
+    forward = Valley(middle, jumps=40)
+    fit = forward.fit(two, middle + 0.05 * np.array([1.0, 1.0 + 0.2 * BEND]))
+    truth = WIDE * np.sqrt(1.09) / 2.0
+    assert np.sqrt(np.diag(broad.covariance(fit.normal))).max() < 0.3 * truth
+    columns = forward.columns(two, fit.u[None], fit.nu[None])
+    better = broad.broadened(forward, two, fit.normal, columns)
+    error = np.sqrt(np.diag(broad.covariance(better)))
+    # Slopes through four points of jumping data err: a factor of two either way is what intervals bear.
+    assert error == pytest.approx([truth, truth], rel=0.5)
+    assert better.objective[0] <= fit.objective
+
+
+def test_slopes_that_hold_over_the_errors_are_kept_to_the_byte(two):
+    forward = Valley([-2.0, 0.5])
+    fit = forward.fit(two, [-2.0, 0.5])
+    columns = forward.columns(two, fit.u[None], fit.nu[None])
+    forward_bend = broad.broadened(forward, two, fit.normal, columns)
+    assert forward_bend is fit.normal
