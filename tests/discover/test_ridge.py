@@ -45,7 +45,11 @@ class Valley:
         return np.column_stack([along, across, jumps])
 
     def sampled(self, hypothesis, u, nu, places=None):
-        return [(self.values(np.asarray(u), np.asarray(nu)), None)]
+        u = np.asarray(u)
+        assert all(
+            c.low <= x.min() and x.max() <= c.high for c, x in zip(hypothesis.coordinates, u.T, strict=True)
+        )
+        return [(self.values(u, np.asarray(nu)), None)]
 
     def columns(self, hypothesis, u, nu, places=None, precise=False, steps=None, held=None, step=0.02):
         moves = np.concatenate([np.zeros((1, 2)), step * np.eye(2)])
@@ -88,6 +92,19 @@ def test_a_bent_valley_is_followed_along_its_bottom(two):
     assert found.objective == pytest.approx((a + b) ** 2 / WIDE**2 / 1.09, abs=0.1)
     # An error of b − a is √½ of it along the unit vector (1, −1) / √2; the bend tilts it by a hair.
     assert found.root[:, 0, 0] == pytest.approx(NARROW / np.sqrt(2.0), rel=0.1)
+
+
+@pytest.mark.parametrize("room", [0.0, 0.003, 0.3])
+def test_no_valley_leads_beyond_the_bounds(two, room):
+    """The stand-in for the predictor refuses what lies beyond."""
+    middle = np.array([c.high - room for c in two.coordinates])
+    forward = Valley(middle)
+    fit = forward.fit(two, middle)
+    columns = forward.columns(two, fit.u[None], fit.nu[None])
+    found = ridge.valley(forward, two, fit.normal, broad.covariance(fit.normal), columns)
+    assert found.objective[0] > 20.0
+    assert found.t[-1] <= 1.5 * room
+    assert np.isfinite(found.u).all()
 
 
 def test_draws_along_a_bent_valley_have_its_moments(two):

@@ -155,16 +155,17 @@ class _Walk:
         return _Point(float((u - self.origin) @ self.axis), u, nu, objective, root, follow)
 
     def _normal(self, u, nu):
-        """Normal equations with slopes by differences to both sides of every coordinate."""
+        """Normal equations with slopes by differences to both sides of every coordinate, within bounds."""
         p = len(u)
         steps = np.diag(self._steps())
-        many = np.concatenate([u[None], u + steps, u - steps])
+        many = np.concatenate([u[None], *(self.hypothesis.inside(u + s) for s in (steps, -steps))])
+        apart = np.diag(many[1 : 1 + p] - many[1 + p :])
         found = self.forward.sampled(self.hypothesis, many, np.repeat(nu[None], len(many), axis=0))
         parts = []
         for run, (value, _) in enumerate(found):
             part = self.columns[run].copy()
             part[0, 0] = value[0]
-            part[0, 1 : 1 + p] = (value[1 : 1 + p] - value[1 + p :]) / (2.0 * np.diag(steps)[:, None])
+            part[0, 1 : 1 + p] = (value[1 : 1 + p] - value[1 + p :]) / apart[:, None]
             part[0, 1 : 1 + p, self.forward.counts(run)] = 0.0
             parts.append(part)
         return from_slopes(self.forward, p, u[None], nu[None], parts)
