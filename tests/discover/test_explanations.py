@@ -38,7 +38,16 @@ def test_probabilities_of_sets_add_up_to_one(one, two, p):
 def test_a_set_has_a_probability_of_its_own():
     logs = explanations.log_weights([single("tsuji", 80.0)], [several(("tsuji", "gravity"), 200.0)], [])
     found = explanations.probabilities(logs, 0.5)
-    assert found["gravity + tsuji"] > 0.95
+    assert found["gravity + tsuji"] > 0.85
+
+
+def test_a_set_may_stand_for_something_unknown_where_one_effect_hardly_does():
+    """Of 46 sets of two fresh samples 32 were right and 5 stood for something outside the catalogue."""
+    one = explanations.log_weights([single("tsuji", 80.0)], [], [])
+    two = explanations.log_weights([single("tsuji", 80.0)], [several(("tsuji", "gravity"), 200.0)], [])
+    alone, together = (explanations.probabilities(logs, 0.5)["unknown"] for logs in (one, two))
+    assert alone < 0.01
+    assert 0.05 < together < 0.25
 
 
 def test_something_left_goes_to_the_set_that_stands_beside_it():

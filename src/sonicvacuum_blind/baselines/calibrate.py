@@ -13,7 +13,7 @@ import numpy as np
 import scipy
 
 from sonicvacuum.blas import one_thread
-from sonicvacuum.discover.fit.calibration import Calibration
+from sonicvacuum.discover.fit.calibration import Calibration, of_package
 from sonicvacuum.discover.fit.evidence import log_weights, unknown_odds
 from sonicvacuum.files import InputError, replacing
 from sonicvacuum.tables import read_csv
@@ -66,7 +66,7 @@ def _outcome(truth, verdict, table: Path):
 
 @one_thread
 def calibrate(cases: list[Outcome]) -> Calibration:
-    """The calibration under which what is true is most probable."""
+    """The calibration under which what is true is most probable; what is said of sets stays as it is."""
 
     def loss(numbers):
         calibration = Calibration(
@@ -79,9 +79,8 @@ def calibrate(cases: list[Outcome]) -> Calibration:
         loss, np.zeros(4), method="Nelder-Mead", options={"xatol": 1e-4, "fatol": 1e-4}
     )
     temper, none, unknown, slope = (float(n) for n in found.x)
-    return Calibration(
-        round(math.exp(temper), 4), round(none, 4), round(unknown, 4), round(math.exp(slope), 4), len(cases)
-    )
+    rounded = (round(x, 4) for x in (math.exp(temper), none, unknown, math.exp(slope)))
+    return Calibration(*rounded, len(cases), of_package().unknown_set)
 
 
 def write(calibration: Calibration, path) -> None:

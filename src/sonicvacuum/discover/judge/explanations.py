@@ -99,7 +99,8 @@ def probabilities(
         calibration: that of the package where not given.
     """
     calibration = calibration or of_package()
-    found = calibration.probabilities(logs, math.log(evidence.unknown_odds(left)))
+    of_set = len(effects(max(logs, key=logs.get))) > 1
+    found = calibration.probabilities(logs, math.log(evidence.unknown_odds(left)), of_set)
     share = found.pop(UNKNOWN)
     result = {
         name: found.get(name, 0.0) for name in (NONE, UNKNOWN, *IDS) if name in found or name == UNKNOWN
