@@ -4,9 +4,10 @@ from pathlib import Path
 
 import click
 
+from sonicvacuum import stages
 from sonicvacuum.cli.helped import FOLDER, verb
 from sonicvacuum.cli.own_effects import catalogue, own_effects
-from sonicvacuum.cli.stage_lines import stages_shown
+from sonicvacuum.cli.stage_lines import compiling_told, stages_shown
 from sonicvacuum.files import in_one_line
 
 
@@ -38,12 +39,11 @@ from sonicvacuum.files import in_one_line
 def discover(records, out, together, figures, threads, own, quiet, no_limits):
     """Find what is missing from the nominal model of measured data in the folders RECORDS.
 
-    One record is written to OUT; of several each has its own folder OUT/<folder name>. All of them are read
-    before the first is searched. On a terminal, a line shows how far the search is.
+    One record is written to OUT; of several each has its own folder OUT/<folder name>, and as many are
+    searched at a time as there are threads. All of them are read before the first is searched. On a terminal,
+    a line shows how far the search is.
     """
-    from sonicvacuum.cli.page import illustrate, page_files
     from sonicvacuum.discover.model import window
-    from sonicvacuum.outputs import renewed
     from sonicvacuum.records import read
     from sonicvacuum.records.extent import check_extent
     from sonicvacuum.records.guard import check_out
@@ -60,26 +60,54 @@ def discover(records, out, together, figures, threads, own, quiet, no_limits):
         elif not no_limits:
             check_extent(window.fitted(record)[0])
     # Long to load: what is wrong with a record is said before.
-    from sonicvacuum.discover import session
     from sonicvacuum.physics.run import available_threads
 
-    for folder, paths in groups.items():
-        with stages_shown(", ".join(paths), quiet):
-            result = session.discover(
-                *(kept.get(p) or read(p) for p in paths),
-                threads=threads or available_threads(),
-                catalogue=known,
-                limits=not no_limits,
-            )
-        stale = (*page_files(), "law.csv", "posterior.csv")
-        with renewed(folder, last="verdict.json", stale=stale) as fresh:
-            session.write(result, fresh)
-            if figures:
-                illustrate(fresh, known)
-        if not quiet:
-            for note in result.notes:
-                click.echo(in_one_line(f"{', '.join(paths)}: {note}"))
-        click.echo(in_one_line(f"{', '.join(paths)}: {_sentence(result.verdict)}"))
+    threads = threads or available_threads()
+    processes = min(threads, len(groups))
+    if processes == 1:
+        for folder, paths in groups.items():
+            given = [kept.get(p) or read(p) for p in paths]
+            with stages_shown(", ".join(paths), quiet):
+                told = _search(given, folder, known, figures, threads, not no_limits)
+            _tell(paths, *told, quiet)
+        return
+    from sonicvacuum.cli.many import side_by_side
+
+    tasks = [
+        (paths, folder, own, figures, threads // processes, not no_limits) for folder, paths in groups.items()
+    ]
+    with stages_shown(f"{len(groups)} records", quiet):
+        stages.begin("search", len(groups))
+        for paths, told in zip(groups.values(), side_by_side(_alone, tasks, processes), strict=True):
+            _tell(paths, *told, quiet)
+
+
+def _alone(paths, folder, own, figures, threads, limits):
+    """One search in a process of its own."""
+    from sonicvacuum.records import read
+
+    with compiling_told():
+        return _search([read(p) for p in paths], folder, catalogue(own), figures, threads, limits)
+
+
+def _search(records, folder, known, figures, threads, limits):
+    """Search records, write what is found; notes and verdict in words."""
+    from sonicvacuum.cli.page import illustrate, page_files
+    from sonicvacuum.discover import session
+    from sonicvacuum.outputs import renewed
+
+    result = session.discover(*records, threads=threads, catalogue=known, limits=limits)
+    stale = (*page_files(), "law.csv", "posterior.csv")
+    with renewed(folder, last="verdict.json", stale=stale) as fresh:
+        session.write(result, fresh)
+        if figures:
+            illustrate(fresh, known)
+    return result.notes, _sentence(result.verdict)
+
+
+def _tell(paths, notes, sentence, quiet):
+    for line in (*(() if quiet else notes), sentence):
+        click.echo(in_one_line(f"{', '.join(paths)}: {line}"))
 
 
 def _folders(records, out):

@@ -7,7 +7,7 @@ hidden-effect data of a study of its own (`sonicvacuum blind calibrate`) and are
 
 Two effects together imitate what lies outside the catalogue far more often than one does. Of 46 sets that two
 fresh samples named, and that left nothing, 32 were right and 5 stood for something else (docs/again.md): a
-sixth of those that were right, where the four numbers say one in a thousand. `unknown_set` makes up for that.
+sixth of those that were right, where the four numbers say one in a thousand. `unknown_set` adds such odds.
 """
 
 import math
@@ -16,6 +16,7 @@ from functools import cache
 from importlib import resources
 
 import msgspec
+import numpy as np
 from msgspec import Struct
 
 
@@ -28,7 +29,7 @@ class Calibration(Struct, frozen=True, forbid_unknown_fields=True):
         unknown, unknown_slope: log odds of `unknown` against the best of the rest are shift + slope × those
             of the evidence.
         cases: on how many cases the numbers above were found.
-        unknown_set: added to the log odds of `unknown` where the best of the rest is a set of effects.
+        unknown_set: added to the odds of `unknown` where the best of the rest is a set of effects.
     """
 
     temper: float = 1.0
@@ -47,8 +48,10 @@ class Calibration(Struct, frozen=True, forbid_unknown_fields=True):
         """
         tempered = {name: self.temper * value for name, value in logs.items()}
         tempered["none"] += self.none
-        shift = self.unknown + (self.unknown_set if of_set else 0.0)
-        tempered["unknown"] = max(tempered.values()) + shift + self.unknown_slope * unknown
+        odds = self.unknown + self.unknown_slope * unknown
+        if of_set and self.unknown_set > 0.0:
+            odds = float(np.logaddexp(odds, math.log(self.unknown_set)))
+        tempered["unknown"] = max(tempered.values()) + odds
         top = max(tempered.values())
         weights = {name: math.exp(value - top) for name, value in tempered.items()}
         total = sum(weights.values())

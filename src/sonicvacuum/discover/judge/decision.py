@@ -183,8 +183,12 @@ class Case:
         grown = turns.grow(self.null, start)
         effects = list(grown.best.effects)
         final = several.moved(self.forward, grown.best.fit) if grown.size.size else grown.best.fit
-        gain = self.null.objective - final.objective
-        behind = _behind(gain, most)
+        behind = _behind(self.null.objective - final.objective, most)
+        if behind > 0.0 and effects and grown.size.size:
+            # Slow shapes take up the smooth misfit itself: they and effects are held against each other with
+            # that counted as noise.
+            most = unknown.simplest(grown.forward, grown.null)[1]
+            behind = _behind(grown.null.objective - grown.best.fit.objective, most)
         after = left(self.forward, final, self.known, behind=behind) if effects else seen
         alarms["set"] = after.p
         if len(effects) > 1:

@@ -1,0 +1,50 @@
+"""Many records searched side by side, each in a process of its own.
+
+A search gains little from a second thread: its calls are too short. Records have nothing in common, so that
+each processor takes one; what is found does not depend on how many there are.
+"""
+
+import multiprocessing
+import signal
+import sys
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+
+from sonicvacuum import stages
+from sonicvacuum.files import InputError
+
+
+def side_by_side(work: Callable, tasks: Iterable[tuple], processes: int) -> Iterator:
+    """work(*task) for each task, in their order; of each that is done a step of the present stage is told.
+
+    Args:
+        work: a function of a module; its arguments and results can be pickled.
+        tasks: arguments of each call.
+        processes: so many at a time.
+
+    Raises:
+        InputError: where a process was ended from outside, as for want of memory.
+        Exception: what a call raises; calls after it are given up.
+    """
+    context = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(processes, context, _deaf) as pool:
+        try:
+            for call in [pool.submit(work, *task) for task in tasks]:
+                yield call.result()
+                stages.step()
+        except BrokenProcessPool:
+            raise InputError(
+                "a search was ended from outside, perhaps for want of memory; give --threads 1"
+            ) from None
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            for process in multiprocessing.active_children():
+                process.terminate()
+            raise
+
+
+def _deaf():
+    """An interruption is the first process's affair; ended by that, this one leaves nothing half-written."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
