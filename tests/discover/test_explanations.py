@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sonicvacuum.discover.fit.calibration import Calibration
-from sonicvacuum.discover.judge import explanations
+from sonicvacuum.discover.judge import degenerate, explanations
 
 
 def single(name, log_bayes):
@@ -95,3 +95,23 @@ def test_what_failed_a_test_is_not_left_the_likeliest():
         {"none": 0.1, "tsuji": 0.9},
         "",
     )
+
+
+def test_beside_something_unknown_what_is_confusable_goes_by_probabilities():
+    """Evidence on noise alone says nothing there: it counts what the smooth misfit does."""
+    odds = {
+        "tsuji + unknown": 0.6,
+        "kuwabara-kono + unknown": 0.3,
+        "gravity + unknown": 0.003,
+        "unknown": 0.05,
+    }
+    named = ["tsuji", "unknown"]
+    on_noise = [single("tsuji", 90.0), single("sensor-droop", 89.0), single("kuwabara-kono", 50.0)]
+    assert degenerate.confusable(named, on_noise, [], (), odds) == [["tsuji", "kuwabara-kono"]]
+    assert degenerate.confusable(named, on_noise, [], ()) == [["tsuji", "sensor-droop"]]
+
+
+def test_of_a_set_beside_something_unknown_one_effect_at_a_time_is_exchanged():
+    odds = {"gravity + tsuji + unknown": 0.5, "tsuji + static-preload + unknown": 0.4, "unknown": 0.1}
+    found = degenerate.confusable(["gravity", "tsuji", "unknown"], [], [], (), odds)
+    assert found == [["gravity", "static-preload"]]

@@ -100,7 +100,9 @@ def discover(
     clock.mark("locate")
     fits = [goodness.goodness(forward, found.null), goodness.goodness(model, final)]
     limits, untestable, wider = upper.limits(found, fits[1])
-    alike = degenerate.confusable(found.named, found.candidates, found.combinations, found.alike)
+    alike = degenerate.confusable(
+        found.named, found.candidates, found.combinations, found.alike, found.probabilities
+    )
     before = heldout.held_out(found.null, found.sizes)
     left = (
         heldout.HeldOut(free.held_out, found.sizes) if free else heldout.held_out(final, found.sizes, before)

@@ -1,9 +1,10 @@
 """What this data cannot tell from what was named, and how large every other effect could be.
 
-Two effects are confusable where their evidences differ by less than a χ² of 9 would make (three standard
-deviations). Limits come from the screen at the final model, the largest strength over places and shapes, and
-from every other explanation that has the effect, each with its probability: beyond a limit lie 5 % of all.
-Where it lies beyond the bounds of the search the effect is not testable with this data.
+Two effects are confusable where their evidences, beside something unknown their probabilities, differ by less
+than a χ² of 9 would make (three standard deviations). Limits come from the screen at the final model, the
+largest strength over places and shapes, and from every other explanation that has the effect, each with its
+probability: beyond a limit lie 5 % of all. Where it lies beyond the bounds of the search the effect is not
+testable with this data.
 """
 
 import math
@@ -15,6 +16,7 @@ import numpy as np
 from sonicvacuum.discover import policy
 from sonicvacuum.discover.fit import tails
 from sonicvacuum.discover.fit.evidence import Candidate, Combination
+from sonicvacuum.discover.judge import explanations
 from sonicvacuum.discover.search.screen import Screen
 from sonicvacuum.effects import Setup
 
@@ -46,12 +48,21 @@ class Limit:
 
 
 def confusable(
-    named: list[str], candidates: list[Candidate], tried: list[Combination], alike: Sequence[str] = ()
+    named: list[str],
+    candidates: list[Candidate],
+    tried: list[Combination],
+    alike: Sequence[str] = (),
+    probabilities: Mapping[str, float] | None = None,
 ) -> list[list[str]]:
-    """Sets of effects, the named one first, between which the data do not decide; `alike` act as one."""
-    found = [n for n in named if n != "unknown"]
+    """Sets of effects, the named one first, between which the data do not decide; `alike` act as one.
+
+    Beside something unknown the `probabilities` of explanations count, where what is named is among them.
+    """
+    found = [n for n in named if n != explanations.UNKNOWN]
     if not found:
         return []
+    if len(found) < len(named) and explanations.key(named) in (probabilities or {}):
+        return _instead(named, found, probabilities)
     sets = {name: [name] for name in found}
     if len(found) == 1:
         own = next((c.log_bayes for c in candidates if c.effect == found[0]), math.inf)
@@ -65,6 +76,18 @@ def confusable(
         if len(lost) == len(other) == 1 and 2.0 * (own - one.log_bayes) < ALIKE:
             members = sets[lost.pop()]
             members.extend(other - set(members))
+    return [members for members in sets.values() if len(members) > 1]
+
+
+def _instead(named, found, probabilities):
+    """The same by explanations with one effect exchanged for another."""
+    sets = {name: [name] for name in found}
+    least = math.exp(-0.5 * ALIKE) * probabilities[explanations.key(named)]
+    for other, probability in sorted(probabilities.items(), key=lambda x: -x[1]):
+        effects = explanations.effects(other)
+        lost, more = set(named) - set(effects), set(effects) - set(named)
+        if probability > least and len(lost) == len(more) == 1 and lost <= set(found):
+            sets[lost.pop()] += more
     return [members for members in sets.values() if len(members) > 1]
 
 
