@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sonicvacuum.discover.fit.calibration import Calibration
-from sonicvacuum.discover.judge import degenerate, explanations
+from sonicvacuum.discover.judge import decision, degenerate, explanations
 
 
 def single(name, log_bayes):
@@ -115,3 +115,15 @@ def test_of_a_set_beside_something_unknown_one_effect_at_a_time_is_exchanged():
     odds = {"gravity + tsuji + unknown": 0.5, "tsuji + static-preload + unknown": 0.4, "unknown": 0.1}
     found = degenerate.confusable(["gravity", "tsuji", "unknown"], [], [], (), odds)
     assert found == [["gravity", "static-preload"]]
+
+
+def test_what_was_tried_while_a_set_grew_competes_with_it():
+    """Gravity for a preload in a set of four: a twentieth of its probability, which had not been counted."""
+    pairs = [several(("tsuji", "gravity"), 10.0), several(("tsuji", "static-preload"), 9.0)]
+    rival = several(("tsuji", "gravity", "sensor-droop"), 40.0)
+    grown = [single("tsuji", 5.0), rival, several(("gravity", "tsuji"), 8.0)]
+    for one in grown[:1]:
+        one.effects = (one.effect,)
+    own = several(("tsuji", "static-preload", "sensor-droop"), 42.0)
+    found = decision._together(pairs, grown, own)
+    assert [c.log_bayes for c in found] == [42.0, 40.0, 9.0, 8.0]

@@ -193,8 +193,7 @@ class Case:
         alarms["set"] = after.p
         if len(effects) > 1:
             own = pairs.combination(self.null, final, self.setup)
-            tried = [own, *(c for c in tried if set(c.effects) != set(effects))]
-            tried = sorted(tried, key=lambda c: -c.log_bayes)
+            tried = _together(tried, () if grown.size.size else grown.tried.values(), own)
         if effects and not after.failed:
             reason = f"{len(effects)} effects together leave nothing significant"
             return Decision(effects, final, alarms, [reason], after.p, tried)
@@ -219,9 +218,8 @@ class Case:
         after = left(self.forward, best.fit, self.known, behind=_behind(best.gain, most))
         if after.failed:
             return None
-        others = [c for c in tried if set(c.effects) != set(best.effects)]
         reason = f"{len(best.effects)} effects together leave nothing significant"
-        ranked = sorted([best, *others], key=lambda c: -c.log_bayes)
+        ranked = _together(tried, grown.tried.values(), best)
         found = {**alarms, "set": after.p}
         return Decision(list(best.effects), best.fit, found, [reason], after.p, ranked)
 
@@ -300,6 +298,12 @@ class Case:
         near = [c for c in self.found if c.gain > 0.5 * most and frozenset((c.effect,)) not in grown.tried]
         fits = [several.moved(grown.forward, c.fit) for c in near[:4]]
         return [pairs.combination(grown.null, f, self.setup) for f in fits]
+
+
+def _together(tried, grown, own: Combination) -> list[Combination]:
+    """All sets that were fitted on noise as it is, each once, best first; of its effects `own` alone."""
+    sets = {frozenset(c.effects): c for c in (*tried, *grown, own) if len(c.effects) > 1}
+    return sorted(sets.values(), key=lambda c: -c.log_bayes)
 
 
 def _clear(weights, named) -> bool:
