@@ -126,4 +126,4 @@ def test_what_was_tried_while_a_set_grew_competes_with_it():
         one.effects = (one.effect,)
     own = several(("tsuji", "static-preload", "sensor-droop"), 42.0)
     found = decision._together(pairs, grown, own)
-    assert [c.log_bayes for c in found] == [42.0, 40.0, 9.0, 8.0]
+    assert [c.log_bayes for c in found] == [42.0, 40.0, 10.0, 9.0]

@@ -301,8 +301,9 @@ class Case:
 
 
 def _together(tried, grown, own: Combination) -> list[Combination]:
-    """All sets that were fitted on noise as it is, each once, best first; of its effects `own` alone."""
-    sets = {frozenset(c.effects): c for c in (*tried, *grown, own) if len(c.effects) > 1}
+    """All sets that were fitted on noise as it is, each at its best, best first; of its effects `own` alone."""
+    found = [*sorted((*tried, *grown), key=lambda c: c.log_bayes), own]
+    sets = {frozenset(c.effects): c for c in found if len(c.effects) > 1}
     return sorted(sets.values(), key=lambda c: -c.log_bayes)
 
 
