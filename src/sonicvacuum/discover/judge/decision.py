@@ -301,7 +301,7 @@ class Case:
 
 
 def _together(tried, grown, own: Combination) -> list[Combination]:
-    """All sets that were fitted on noise as it is, each at its best, best first; of its effects `own` alone."""
+    """All sets that were fitted on noise as it is, each as it is best, the best first; `own` in any case."""
     found = [*sorted((*tried, *grown), key=lambda c: c.log_bayes), own]
     sets = {frozenset(c.effects): c for c in found if len(c.effects) > 1}
     return sorted(sets.values(), key=lambda c: -c.log_bayes)
