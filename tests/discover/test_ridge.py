@@ -150,3 +150,21 @@ def test_slopes_that_hold_over_the_errors_are_kept_to_the_byte(two):
     columns = forward.columns(two, fit.u[None], fit.nu[None])
     forward_bend = broad.broadened(forward, two, fit.normal, columns)
     assert forward_bend is fit.normal
+
+
+class Nowhere(Valley):
+    """Nothing beside the point itself can be simulated."""
+
+    def values(self, u, nu):
+        value = super().values(u, nu)
+        value[np.abs(u - self.middle).max(axis=1) > 0.0] = np.nan
+        return value
+
+
+def test_where_nothing_can_be_simulated_the_fit_stays_as_it_is(two):
+    middle = [-2.0, 0.5]
+    fit = Valley(middle).fit(two, middle)
+    columns = Valley(middle).columns(two, fit.u[None], fit.nu[None])
+    forward = Nowhere(middle)
+    assert broad.broadened(forward, two, fit.normal, columns) is fit.normal
+    assert ridge.valley(forward, two, fit.normal, broad.covariance(fit.normal), columns) is None

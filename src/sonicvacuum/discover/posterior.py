@@ -80,7 +80,7 @@ def _along_valley(forward, fit):
     columns = forward.columns(fit.hypothesis, fit.u[None], fit.nu[None])
     p = len(fit.u)
     found = ridge.valley(forward, fit.hypothesis, fit.normal, fit.covariance[:p, :p], columns)
-    if len(found.t) < SHORTEST:
+    if found is None or len(found.t) < SHORTEST:
         u, log_proposal = proposed(fit)
         return u, log_posterior(forward, fit, u, np.arange(p)) - log_proposal
     u, nu, log_proposal = proposals.along(found, SPARE * DRAWS, SEED)

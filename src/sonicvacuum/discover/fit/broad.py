@@ -8,6 +8,8 @@ fit tells itself; where errors come out other than these, the valley is followed
 taken once more at its lowest point.
 """
 
+from dataclasses import replace
+
 import numpy as np
 
 from sonicvacuum.discover.fit import ridge
@@ -15,7 +17,7 @@ from sonicvacuum.discover.fit.normal import Normal, from_slopes
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Hypothesis
 
-ROUNDS = 4
+ROUNDS = 3
 # Points along each axis, in standard errors, none further than this in a coordinate.
 POINTS, FARTHEST = (-1.0, -0.5, 0.5, 1.0), 0.5
 # Errors that differ by less than this factor are the same.
@@ -33,18 +35,27 @@ def broadened(forward: Forward, hypothesis: Hypothesis, now: Normal, columns: li
 
     `columns` are those of a point nearby (`Forward.columns`), whose slopes to the nuisances are held.
     """
-    for turn in range(ROUNDS):
-        wide = sloped(forward, hypothesis, now, columns)
-        if wide is None or _alike(now, wide):
-            return now if turn == 0 or wide is None else wide
-        now = wide
-        if turn == 0:
-            found = ridge.valley(forward, hypothesis, wide, covariance(wide), columns)
-            best = found.lowest
-            if found.objective[best] < wide.objective[0]:
-                at = slice(best, best + 1)
-                now = Normal(found.u[at], found.nu[at], wide.chi2, wide.gradient, wide.hessian)
-    return now
+    wide = sloped(forward, hypothesis, now, columns)
+    if wide is None or _alike(now, wide):
+        return now
+    here = _lowest(forward, hypothesis, wide, columns)
+    for _ in range(ROUNDS):
+        before, better = wide, sloped(forward, hypothesis, here, columns)
+        if better is None:
+            break
+        wide = here = better
+        if _alike(before, wide):
+            break
+    return wide
+
+
+def _lowest(forward, hypothesis, wide, columns):
+    """The lowest point of the valley; χ² and products of slopes are still those of where it was entered."""
+    found = ridge.valley(forward, hypothesis, wide, covariance(wide), columns)
+    if found is None or not found.objective[found.lowest] < wide.objective[0]:
+        return wide
+    at = slice(found.lowest, found.lowest + 1)
+    return replace(wide, u=found.u[at], nu=found.nu[at])
 
 
 def covariance(now: Normal) -> np.ndarray:

@@ -19,6 +19,8 @@ MOST, STEPS = 16, 4
 END, CALM, STEEP = 25.0, 1.0, 6.0
 # First step, in standard errors; the longest, in a coordinate.
 FIRST, LONGEST = 0.5, 0.5
+# The shortest step, of the first one; the least variance of a coordinate, where slopes say none.
+SHORTEST, LEAST = 2e-3, 1e-24
 # Finite differences across it: in standard errors of a coordinate known by itself, none longer.
 ACROSS, FARTHEST = 1.0, 0.05
 
@@ -54,8 +56,8 @@ class Valley:
 
 def valley(
     forward: Forward, hypothesis: Hypothesis, now: Normal, covariance: np.ndarray, columns: list[np.ndarray]
-) -> Valley:
-    """The valley through a point, one lane.
+) -> Valley | None:
+    """The valley through a point, one lane; None where that cannot be simulated, or has no slopes.
 
     Args:
         forward: the predictor.
@@ -64,7 +66,7 @@ def valley(
         covariance: (p, p) of its coordinates; its longest axis, in standard errors, is followed.
         columns: of a point nearby (`Forward.columns`); slopes to the nuisances are held.
     """
-    error = np.sqrt(np.diag(covariance))
+    error = np.sqrt(np.maximum(np.diag(covariance), LEAST))
     size, axes = np.linalg.eigh(covariance / np.outer(error, error))
     axis = error * axes[:, -1]
     length = float(np.linalg.norm(axis)) * np.sqrt(size[-1])
@@ -72,25 +74,10 @@ def valley(
     across = np.linalg.svd(axis[None])[2][1:].T
     walk = _Walk(forward, hypothesis, axis, across, columns)
     start = walk.settled(now.u[0], now.nu[0])
-    lowest, sides = start.objective, []
-    for sign in (-1.0, 1.0):
-        side, step = [start], sign * min(FIRST * length, LONGEST)
-        for _ in range(MOST):
-            new = walk.beyond(side, step)
-            if new is None:
-                break
-            rise = abs(new.objective - side[-1].objective)
-            if rise > END and abs(step) > 1e-3 * length:
-                step *= 0.25
-                continue
-            side.append(new)
-            lowest = min(lowest, new.objective)
-            if new.objective > lowest + END:
-                break
-            step *= 2.0 if rise < CALM else 0.5 if rise > STEEP else 1.0
-            step = float(np.clip(step, -LONGEST, LONGEST))
-        sides.append(side[1:])
-    points = [*reversed(sides[0]), start, *sides[1]]
+    if start is None:
+        return None
+    before, behind = (walk.side(start, sign * min(FIRST * length, LONGEST)) for sign in (-1.0, 1.0))
+    points = [*reversed(before), start, *behind]
     stacked = (np.array([getattr(p, name) for p in points]) for name in _Point.__annotations__)
     return Valley(axis, across, *stacked)
 
@@ -118,7 +105,25 @@ class _Walk:
     columns: list[np.ndarray]
     origin: np.ndarray | None = None
 
-    def beyond(self, side: list[_Point], step: float) -> _Point | None:
+    def side(self, start: _Point, step: float) -> list[_Point]:
+        """Points to one side of the start, in order from it."""
+        points, shortest = [start], SHORTEST * abs(step)
+        for _ in range(MOST):
+            new = self._beyond(points, step)
+            if new is None or not (new.t - points[-1].t) * step > 0.0:
+                break
+            rise = abs(new.objective - points[-1].objective)
+            if rise > END and abs(step) > shortest:
+                step *= 0.25
+                continue
+            points.append(new)
+            if new.objective > min(p.objective for p in points) + END:
+                break
+            step *= 2.0 if rise < CALM else 0.5 if rise > STEEP else 1.0
+            step = float(np.clip(step, -LONGEST, LONGEST))
+        return points[1:]
+
+    def _beyond(self, side, step):
         """The next point of a side; None beyond the bounds, or where nothing can be simulated."""
         last = side[-1]
         u, nu = last.u + step * self.axis, last.nu
@@ -150,7 +155,8 @@ class _Walk:
 
     def _point(self, u, nu, objective, matrix, inverse):
         p = self.across.shape[1]
-        root = np.linalg.cholesky(inverse[:p, :p] + 1e-20 * np.eye(p))
+        size, axes = np.linalg.eigh(inverse[:p, :p])
+        root = np.linalg.cholesky((axes * np.maximum(size, LEAST + 1e-12 * size[-1])) @ axes.T)
         follow = -np.linalg.lstsq(matrix[p:, p:], matrix[p:, :p], rcond=1e-12)[0]
         return _Point(float((u - self.origin) @ self.axis), u, nu, objective, root, follow)
 
