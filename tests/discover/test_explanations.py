@@ -42,7 +42,7 @@ def test_a_set_has_a_probability_of_its_own():
 
 
 def test_a_set_may_stand_for_something_unknown_where_one_effect_hardly_does():
-    """Of 46 sets of two fresh samples 32 were right and 5 stood for something outside the catalogue."""
+    """Of 48 sets of two fresh samples 32 were right and 5 stood for something outside the catalogue."""
     one = explanations.log_weights([single("tsuji", 80.0)], [], [])
     two = explanations.log_weights([single("tsuji", 80.0)], [several(("tsuji", "gravity"), 200.0)], [])
     alone, together = (explanations.probabilities(logs, 0.5)["unknown"] for logs in (one, two))
