@@ -73,20 +73,19 @@ def discover(records, out, together, figures, threads, own, quiet, no_limits):
         return
     from sonicvacuum.cli.many import side_by_side
 
-    tasks = [
-        (paths, folder, own, figures, threads // processes, not no_limits) for folder, paths in groups.items()
-    ]
+    how = (own, figures, threads // processes, not no_limits, quiet)
+    tasks = [(paths, folder, *how) for folder, paths in groups.items()]
     with stages_shown(f"{len(groups)} records", quiet):
         stages.begin("search", len(groups))
         for paths, told in zip(groups.values(), side_by_side(_alone, tasks, processes), strict=True):
             _tell(paths, *told, quiet)
 
 
-def _alone(paths, folder, own, figures, threads, limits):
-    """One search in a process of its own."""
+def _alone(paths, folder, own, figures, threads, limits, quiet):
+    """One search in a process of its own, which tells of no stages."""
     from sonicvacuum.records import read
 
-    with compiling_told():
+    with stages_shown("", quiet=True) if quiet else compiling_told():
         return _search([read(p) for p in paths], folder, catalogue(own), figures, threads, limits)
 
 

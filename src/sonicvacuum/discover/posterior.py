@@ -23,7 +23,7 @@ from sonicvacuum.discover.fit import broad, ridge
 from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.model.forward import CHUNK, Forward
 
-# So many times as many are made, for those that lie beyond the bounds.
+# Draws, and their seed; SPARE times as many are proposed, for those that lie beyond the bounds.
 DRAWS, SEED, SPARE = 200, 20061017, 16
 # A profile reaches so many standard errors to either side, by so many values.
 REACH, VALUES = 5.0, 61

@@ -93,11 +93,10 @@ class Case:
         shape, most = unknown.simplest(self.forward, self.null)
         seen = left(self.forward, best.fit, self.known, scores, _behind(best.gain, most))
         alarms = {"single": seen.p}
-        needed = scores.threshold(policy.FALSE_ALARM)
         if self._smooth_instead(best, seen) and not gross.gross(self.forward, best.fit):
-            return self._out_of_smooth(best, needed, most, alarms)
+            return self._out_of_smooth(best, scores.threshold(policy.FALSE_ALARM), most, alarms)
         if seen.shapes.failed or seen.fit.failed or seen.size.found:
-            return self._more(needed, most, shape, alarms, seen)
+            return self._more(scores.threshold(policy.FALSE_ALARM), most, shape, alarms, seen)
         if seen.behind > 0.0:
             return self._unknown(alarms, [f"{shape} explains more than {best.effect}"], seen)
         if heldout.better(self.null, best.fit):
@@ -303,7 +302,7 @@ class Case:
 def _together(tried, grown, own: Combination) -> list[Combination]:
     """All sets that were fitted on noise as it is, each as it is best, the best first; `own` in any case."""
     found = [*sorted((*tried, *grown), key=lambda c: c.log_bayes), own]
-    sets = {frozenset(c.effects): c for c in found if len(c.effects) > 1}
+    sets = {frozenset(c.effects): c for c in found if len(c.effects) > 1 and np.isfinite(c.log_bayes)}
     return sorted(sets.values(), key=lambda c: -c.log_bayes)
 
 
