@@ -1,9 +1,11 @@
 """Records searched side by side: the same files as one by one, in their order, and a clean end."""
 
 import json
+import multiprocessing
 import os
 import signal
 import time
+from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
@@ -28,11 +30,21 @@ def killed(x):
 
 
 def leave_a_file(folder, wait):
+    (folder / "process").write_text(str(os.getpid()))
     (folder / "begun").touch()
     try:
         time.sleep(wait)
     finally:
         (folder / "ended").touch()
+
+
+def wait_for(path, gone=False):
+    """A process begins or ends within seconds on any machine; a minute tells that it never does."""
+    for _ in range(600):
+        if path.exists() != gone:
+            return
+        time.sleep(0.1)
+    pytest.fail(f"{path}: never {'went' if gone else 'came'}")
 
 
 def test_results_come_in_the_order_of_the_tasks():
@@ -57,14 +69,23 @@ def test_who_stops_asking_ends_the_processes_and_lets_them_clean_up(tmp_path):
         folder.mkdir()
     found = side_by_side(leave_a_file, [(folders[0], 0.0), (folders[1], 600.0)], 2)
     next(found)
-    while not (folders[1] / "begun").exists():
-        time.sleep(0.05)
+    wait_for(folders[1] / "begun")
     found.close()
-    for _ in range(200):  # ten seconds for a process to end
-        if (folders[1] / "ended").exists():
-            break
-        time.sleep(0.05)
-    assert (folders[1] / "ended").exists()
+    wait_for(folders[1] / "ended")
+
+
+def begin_and_wait(folder):
+    list(side_by_side(leave_a_file, [(folder, 600.0)], 2))
+
+
+def test_no_process_outlives_the_first_one_when_that_is_killed(tmp_path):
+    first = multiprocessing.get_context("spawn").Process(target=begin_and_wait, args=(tmp_path,))
+    first.start()
+    wait_for(tmp_path / "begun")
+    process = int((tmp_path / "process").read_text())
+    first.kill()
+    wait_for(tmp_path / "ended")
+    wait_for(Path(f"/proc/{process}"), gone=True)
 
 
 def test_records_side_by_side_give_the_files_of_one_at_a_time(hidden, empty, tmp_path):

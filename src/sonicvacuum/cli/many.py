@@ -5,14 +5,20 @@ each processor takes one; what is found does not depend on how many there are.
 """
 
 import multiprocessing
+import os
 import signal
 import sys
+import time
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
+from threading import Thread
 
 from sonicvacuum import stages
 from sonicvacuum.files import InputError
+
+# Time in s in which a search whose first process is gone puts away what it has half written.
+GRACE = 5.0
 
 
 def side_by_side(work: Callable, tasks: Iterable[tuple], processes: int) -> Iterator:
@@ -48,3 +54,15 @@ def _deaf():
     """An interruption is the first process's affair; ended by that, this one leaves nothing half-written."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
+    Thread(target=_end_with_the_first, daemon=True).start()
+
+
+def _end_with_the_first():
+    """However the first process ends, killed for instance, none that it began goes on without it.
+
+    The pool takes the exit for the result of its call, and would wait for another one.
+    """
+    multiprocessing.parent_process().join()
+    os.kill(os.getpid(), signal.SIGTERM)
+    time.sleep(GRACE)
+    os._exit(143)
