@@ -35,13 +35,13 @@ def broadened(forward: Forward, hypothesis: Hypothesis, now: Normal, columns: li
 
     `columns` are those of a point nearby (`Forward.columns`), whose slopes to the nuisances are held.
     """
-    wide = sloped(forward, hypothesis, now, columns)
-    if wide is None or _alike(now, wide):
+    wide = sloped(forward, hypothesis, now, columns) if now.has_slopes[0] else None
+    if wide is None or not wide.has_slopes[0] or _alike(now, wide):
         return now
     here = _lowest(forward, hypothesis, wide, columns)
     for _ in range(ROUNDS):
         before, better = wide, sloped(forward, hypothesis, here, columns)
-        if better is None:
+        if better is None or not better.has_slopes[0]:
             break
         wide = here = better
         if _alike(before, wide):
