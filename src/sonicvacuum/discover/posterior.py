@@ -45,11 +45,9 @@ def posterior(forward: Forward, fit: Fit) -> list[Draws]:
     """
     if not len(fit.u):
         return []
-    if broad.asks(fit.hypothesis) and not fit.at_bound().any():
-        u, log_weight = _along_valley(forward, fit)
-    else:
-        u, log_proposal = proposed(fit)
-        log_weight = log_posterior(forward, fit, u, np.arange(len(fit.u))) - log_proposal
+    bent = broad.asks(fit.hypothesis) and not fit.at_bound().any()
+    found = _valley(forward, fit) if bent else None
+    u, log_weight = _along(forward, fit, found) if found else _straight(forward, fit)
     weight = _normalised(log_weight)
     if pareto_k(weight) <= TRUSTED:
         return _told(fit, [(SAMPLED, u[:, k], weight) for k in range(len(fit.u))])
@@ -75,14 +73,22 @@ def _inside(fit, u, count=DRAWS):
     return np.flatnonzero(((u >= low) & (u <= high)).all(axis=1))[:count]
 
 
-def _along_valley(forward, fit):
-    """(n, p) draws from along the valley of a fit, and (n,) logarithms of their weights."""
+def _straight(forward, fit):
+    """(n, p) draws from the Gaussian of a fit, and (n,) logarithms of their weights."""
+    u, log_proposal = proposed(fit)
+    return u, log_posterior(forward, fit, u, np.arange(len(fit.u))) - log_proposal
+
+
+def _valley(forward, fit):
+    """The valley of a fit; None where that is too short to draw from."""
     columns = forward.columns(fit.hypothesis, fit.u[None], fit.nu[None])
+    found = ridge.valley(forward, fit.hypothesis, fit.normal, broad.covariance(fit.normal), columns)
+    return found if found and len(found.t) >= SHORTEST else None
+
+
+def _along(forward, fit, found):
+    """The same from along its valley."""
     p = len(fit.u)
-    found = ridge.valley(forward, fit.hypothesis, fit.normal, fit.covariance[:p, :p], columns)
-    if found is None or len(found.t) < SHORTEST:
-        u, log_proposal = proposed(fit)
-        return u, log_posterior(forward, fit, u, np.arange(p)) - log_proposal
     u, nu, log_proposal = proposals.along(found, SPARE * DRAWS, SEED)
     inside = _inside(fit, u)
     free = p + np.arange(len(fit.nu))

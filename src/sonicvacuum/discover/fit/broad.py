@@ -64,16 +64,13 @@ def covariance(now: Normal) -> np.ndarray:
 
 
 def _alike(one, other):
-    one, other = (np.maximum(np.diag(covariance(x)), 1e-24) for x in (one, other))
+    one, other = (np.maximum(np.diag(covariance(x)), ridge.LEAST) for x in (one, other))
     return np.abs(np.log(other / one)).max() < 2.0 * np.log(ALIKE)
 
 
 def _axes(now):
-    """(p, p) principal axes of the errors, one in each row, a standard error long."""
-    own = covariance(now)
-    error = np.sqrt(np.maximum(np.diag(own), 1e-24))
-    size, axes = np.linalg.eigh(own / np.outer(error, error))
-    rows = (error[:, None] * axes * np.sqrt(np.maximum(size, 1e-12))).T
+    """(p, p) principal axes of the errors, one in each row, none longer than what is allowed."""
+    rows = ridge.principal_axes(covariance(now))
     return rows * np.minimum(1.0, FARTHEST / np.abs(rows).max(axis=1))[:, None]
 
 

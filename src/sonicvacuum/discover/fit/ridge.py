@@ -66,13 +66,11 @@ def valley(
         covariance: (p, p) of its coordinates; its longest axis, in standard errors, is followed.
         columns: of a point nearby (`Forward.columns`); slopes to the nuisances are held.
     """
-    error = np.sqrt(np.maximum(np.diag(covariance), LEAST))
-    size, axes = np.linalg.eigh(covariance / np.outer(error, error))
-    axis = error * axes[:, -1]
-    length = float(np.linalg.norm(axis)) * np.sqrt(size[-1])
-    axis = axis / np.linalg.norm(axis)
+    longest = principal_axes(covariance)[-1]
+    length = float(np.linalg.norm(longest))
+    axis = longest / length
     across = np.linalg.svd(axis[None])[2][1:].T
-    walk = _Walk(forward, hypothesis, axis, across, columns)
+    walk = _Walk(forward, hypothesis, axis, across, columns, now.u[0], _steps(now.free, columns))
     start = walk.settled(now.u[0], now.nu[0])
     if start is None:
         return None
@@ -80,6 +78,21 @@ def valley(
     points = [*reversed(before), start, *behind]
     stacked = (np.array([getattr(p, name) for p in points]) for name in _Point.__annotations__)
     return Valley(axis, across, *stacked)
+
+
+def principal_axes(covariance: np.ndarray) -> np.ndarray:
+    """(p, p) axes of errors, of coordinates each in its own error, the longest last; one in each row, a
+    standard error long.
+    """
+    error = np.sqrt(np.maximum(np.diag(covariance), LEAST))
+    size, axes = np.linalg.eigh(covariance / np.outer(error, error))
+    return (error[:, None] * axes * np.sqrt(np.maximum(size, 1e-12))).T
+
+
+def _steps(free, columns):
+    """(p,) steps of the coordinates, by their slopes."""
+    length = np.sqrt(sum(np.square(c[0, 1 : 1 + free]).sum(axis=1) for c in columns))
+    return np.clip(ACROSS / np.maximum(length, 1e-9), 1e-5, FARTHEST)
 
 
 @dataclass(frozen=True)
@@ -94,7 +107,7 @@ class _Point:
     follow: np.ndarray
 
 
-@dataclass
+@dataclass(frozen=True)
 class _Walk:
     """What does not change along a valley."""
 
@@ -103,7 +116,8 @@ class _Walk:
     axis: np.ndarray
     across: np.ndarray
     columns: list[np.ndarray]
-    origin: np.ndarray | None = None
+    origin: np.ndarray
+    steps: np.ndarray
 
     def side(self, start: _Point, step: float) -> list[_Point]:
         """Points to one side of the start, in order from it."""
@@ -136,7 +150,6 @@ class _Walk:
 
     def settled(self, u: np.ndarray, nu: np.ndarray) -> _Point | None:
         """The best point at the same place along the axis."""
-        self.origin = u if self.origin is None else self.origin
         best = None
         for _ in range(STEPS):
             normal = self._normal(u, nu)
@@ -163,7 +176,7 @@ class _Walk:
     def _normal(self, u, nu):
         """Normal equations with slopes by differences to both sides of every coordinate, within bounds."""
         p = len(u)
-        steps = np.diag(self._steps())
+        steps = np.diag(self.steps)
         many = np.concatenate([u[None], *(self.hypothesis.inside(u + s) for s in (steps, -steps))])
         apart = np.diag(many[1 : 1 + p] - many[1 + p :])
         found = self.forward.sampled(self.hypothesis, many, np.repeat(nu[None], len(many), axis=0))
@@ -175,9 +188,3 @@ class _Walk:
             part[0, 1 : 1 + p, self.forward.counts(run)] = 0.0
             parts.append(part)
         return from_slopes(self.forward, p, u[None], nu[None], parts)
-
-    def _steps(self):
-        """(p,) steps of the coordinates, by the slopes at the start."""
-        p = len(self.axis)
-        length = np.sqrt(sum(np.square(c[0, 1 : 1 + p]).sum(axis=1) for c in self.columns))
-        return np.clip(ACROSS / np.maximum(length, 1e-9), 1e-5, FARTHEST)
