@@ -79,8 +79,8 @@ def make(case: SlipCase) -> tuple[records.Record, dict]:
     design = own.design
 
     def truly(plan):
-        plan = own.case.change(plan)
-        return slip.plan(plan) if slip.plan else plan
+        # The slip first: an effect at the last contact is at that of the chain as it truly is.
+        return own.case.change(slip.plan(plan) if slip.plan else plan)
 
     clean = predict(design, truly, own.errors, TOLERANCE)
     # The noise is the set-up's own, whatever the slip: records of one set-up differ in the slip alone.

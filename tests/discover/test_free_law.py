@@ -6,13 +6,14 @@ import pytest
 from made_records import made
 
 from sonicvacuum.discover import law as telling
-from sonicvacuum.discover import verdict
+from sonicvacuum.discover import policy, verdict
 from sonicvacuum.discover.compare import compare, read_model
 from sonicvacuum.discover.fit.wide import nominal
 from sonicvacuum.discover.judge.law import formula, surface
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.free_law import of_some
 from sonicvacuum.discover.model.problem import experiment
+from sonicvacuum.discover.search import free_law as module
 from sonicvacuum.discover.search.free_law import free_law
 from sonicvacuum.effects import CATALOGUE, Setup
 from sonicvacuum.figures import force_law
@@ -69,6 +70,14 @@ def test_its_formula_has_the_powers_of_the_hidden_law(found):
 def test_nothing_is_fitted_to_noise(empty):
     forward = Forward(experiment(empty))
     assert free_law(forward, nominal(forward)) is None
+
+
+def test_a_law_with_evidence_that_explains_nothing_more_is_none(empty, monkeypatch):
+    """Nuisances that are hardly known can be worth evidence alone; a search of slips ended in an error."""
+    forward = Forward(experiment(empty))
+    base = nominal(forward)
+    monkeypatch.setattr(module, "_fitted", lambda *_: (policy.LAW_LOG_BAYES + 1.0, 1.0, base, forward))
+    assert free_law(forward, base) is None
 
 
 def test_off_is_absent():

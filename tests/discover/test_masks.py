@@ -25,11 +25,18 @@ def test_a_pulse_is_neither_spike_nor_cut(width):
         assert not spikes(trace, SIGMA).any() and not cut(trace, SIGMA).any()
 
 
-@pytest.mark.parametrize("at", [[20], [20, 21], [20, 180, 390]])
+@pytest.mark.parametrize("at", [[20], [20, 21], [20, 180, 390], [0], [1], [2], [397], [398], [399], [0, 399]])
 def test_spikes_are_found_and_nothing_else(at):
     trace = pulse(20.0)
     trace[at] += 30.0 * SIGMA * np.array([1.0, -1.0, 1.0])[: len(at)]
     np.testing.assert_array_equal(np.flatnonzero(spikes(trace, SIGMA)), at)
+
+
+@pytest.mark.parametrize("width", [4.0, 10.0, 40.0])
+def test_a_record_may_begin_or_end_within_a_pulse(width):
+    for seed, cut_at in enumerate(range(80, 130)):
+        trace = pulse(width, seed=seed)
+        assert not spikes(trace[:cut_at], SIGMA).any() and not spikes(trace[cut_at:], SIGMA).any()
 
 
 def test_a_cut_peak_is_found_and_a_coarse_one_is_left():

@@ -1,11 +1,13 @@
 """Slips in competition with effects: what is put right, what shares its probability, what an effect keeps."""
 
+import dataclasses
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from made_records import SIGMA, made
 from made_slips import altered
+from msgspec.structs import replace
 
 from sonicvacuum.discover import session
 from sonicvacuum.discover.faults import changes
@@ -14,7 +16,10 @@ from sonicvacuum.discover.faults.found import Bench
 from sonicvacuum.discover.faults.judging import Judged
 from sonicvacuum.discover.faults.slips import hypotheses
 from sonicvacuum.discover.faults.weights import parts
+from sonicvacuum.discover.rounds import investigate
 from sonicvacuum.effects import CATALOGUE
+
+RANDOM = np.random.default_rng(np.random.SeedSequence(77))
 
 
 def judged(record, fault, gain=100.0):
@@ -54,6 +59,27 @@ def test_swapped_gauges_are_put_right_and_the_damping_is_named(hidden):
     assert slip.probability > 0.9
     assert v.named == ["kuwabara-kono"]
     assert any("record put right: gauges-swapped" in reason for reason in v.reasons)
+
+
+def test_noise_is_not_called_misstated_where_gauges_were_swapped(hidden):
+    """Each gauge has the noise that is stated for the other."""
+    loud = altered(hidden, "g7", lambda y: y + 4.0 * SIGMA * RANDOM.normal(size=y.shape))
+    sensors = [s if s.id != "g7" else replace(s, sigma_N=np.sqrt(17.0) * SIGMA) for s in loud.block.sensors]
+    stated = dataclasses.replace(loud, block=replace(loud.block, sensors=sensors))
+    v = session.discover(changes.gauges_swapped(stated, "g4", "g7")).verdict
+    assert [f.fault for f in v.faults] == ["gauges-swapped"]
+    assert v.named == ["kuwabara-kono"]
+
+
+def test_a_slip_is_looked_for_beside_the_likeliest_effect_where_none_was_named():
+    """Neither alone explains the record, and another profile along the chain may explain more than either."""
+    record, _ = made([("viscous-drag", {"rate_per_s": 150.0})], seed=5, speeds=(0.2, 0.45, 0.95))
+    one = Search(Bench(changes.strikers(record, "speed_m_s", -0.13, ("v0",))), CATALOGUE, 1, [])
+    seen = investigate(one.make(one.bench), 1, one.nominal().fit)
+    assert seen.candidates[0].effect == "viscous-drag"
+    after = one._instead(dataclasses.replace(seen, named=["unknown"], final=seen.null), [])
+    assert after.named == ["viscous-drag"]
+    assert [(f.fault, f.run, f.corrected) for f in one.findings] == [("run-off", "v0", True)]
 
 
 def test_exchanged_runs_are_put_right_beside_an_effect_of_speed():

@@ -6,15 +6,18 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from made_records import BEADS, made
+from made_records import BEADS, SIGMA, made
+from made_slips import altered
 
 from sonicvacuum.discover.faults import changes, policy
 from sonicvacuum.discover.faults.competition import Search
 from sonicvacuum.discover.faults.found import Bench
 from sonicvacuum.discover.faults.judging import Judge, Model, obvious, suspicious
 from sonicvacuum.discover.faults.slips import hypotheses
+from sonicvacuum.discover.fit.enough import data
 from sonicvacuum.discover.rounds import investigate
 from sonicvacuum.effects import CATALOGUE
+from sonicvacuum.records import Signals
 
 LATE = {"v0": 180.0, "v1": 150.0}
 # Slip → what is made of a sound record, then run, gauge and value of the likeliest hypothesis.
@@ -116,6 +119,38 @@ def test_a_delay_keeps_the_noise():
     np.testing.assert_allclose(changes.earlier(pulse, 7.5), np.exp(-((x + 0.375) ** 2)), atol=1e-9)
 
 
+def test_samples_before_which_a_late_gauge_read_nothing_are_lost(empty):
+    samples, spike = len(empty.signals["v0"].time_us), np.zeros(len(empty.signals["v0"].time_us), dtype=bool)
+    spike[100] = True
+    interval = empty.signals["v0"].interval_s * 1e6
+    lost = changes.lost_by_delay({("v0", "g7"): spike, ("v0", "g4"): spike}, empty, "g7", 12.3 * interval)
+    np.testing.assert_array_equal(np.flatnonzero(lost["v0", "g7"]), [88, *range(samples - 12, samples)])
+    np.testing.assert_array_equal(np.flatnonzero(lost["v1", "g7"]), range(samples - 12, samples))
+    assert lost["v0", "g4"] is spike and ("v1", "g4") not in lost
+
+
+def test_a_late_gauge_is_put_right_where_the_record_ends_within_its_pulse(empty):
+    """The samples that a shift leaves empty were taken for readings, and for a misfit."""
+    one = empty.signals["v0"]
+    late = round(15.0 / (one.interval_s * 1e6))
+    end = int(np.argmax(one.readings["g7"])) + 5 * late
+    noise = SIGMA * np.random.default_rng(np.random.SeedSequence(3)).normal(size=late)
+    short = {
+        k: Signals(s.time_us[:end], {g: r[:end] for g, r in s.readings.items()})
+        for k, s in empty.signals.items()
+    }
+    ended = altered(
+        replace(empty, signals=short), "g7", lambda y: np.concatenate([noise, y[: len(y) - late]])
+    )
+    _, model, ranked = search(ended)
+    best = ranked[0]
+    assert (best.slip.fault, best.slip.sensor) == ("gauge-delayed", "g7")
+    assert best.size == pytest.approx(late * one.interval_s * 1e6, abs=0.1)
+    size = data(best.model.forward)
+    assert size == pytest.approx(data(model.forward) - 2 * late, abs=2)  # a run each
+    assert abs(best.model.fit.objective - size) < 5.0 * np.sqrt(2.0 * size)  # 5 standard deviations of χ²
+
+
 def test_nulls_are_not_suspicious():
     # Twelve nulls: were the rate of false alarms 0.3, all would pass with probability 0.7¹² = 1.4 %; that it
     # is below 1 % follows from the thresholds (χ² above three standard deviations; nuisances, 0.1 %), and
@@ -132,17 +167,20 @@ def test_what_a_slip_has_to_gain_is_beyond_chance():
     assert 50.0 * np.exp(-0.5 * policy.LEAST_GAIN) < 0.01
 
 
-def test_another_number_of_beads_is_tried_where_slopes_promise_nothing(empty, monkeypatch):
+@pytest.mark.parametrize("fault", ["bead-count", "gauge-misplaced", "gauges-swapped", "runs-swapped"])
+def test_slips_without_size_are_tried_where_slopes_promise_nothing(empty, monkeypatch, fault):
     """In long chains a pulse that comes a bead earlier does not overlap the one that was measured."""
     look = Judge.look
 
     def blind(judge, slip):
         found = look(judge, slip)
-        return replace(found, gain=-1.0, log_bayes=-10.0) if slip.fault == "bead-count" else found
+        return replace(found, gain=-1.0, log_bayes=-10.0) if slip.fault == fault else found
 
     monkeypatch.setattr(Judge, "look", blind)
-    _, _, ranked = search(changes.bead_count(empty, 1))
-    assert (ranked[0].slip.fault, ranked[0].slip.value(ranked[0].size)) == ("bead-count", 10.0)
+    change, run, gauge, value = OBVIOUS[fault]
+    _, _, ranked = search(change(empty))
+    found = ranked[0].slip.finding(ranked[0].size)
+    assert (found.fault, found.run, found.sensor, found.value) == (fault, run, gauge, value)
 
 
 def test_a_bead_less_is_not_looked_for_beside_an_effect_at_the_last():

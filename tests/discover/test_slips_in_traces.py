@@ -193,6 +193,18 @@ def test_pick_up_of_few_periods_before_the_pulse_is_taken_off(empty, model):
         assert np.linalg.norm(data.whiten(k, alone, np.zeros((1, 0)))) < 2.0
 
 
+def test_where_a_known_line_hides_the_beginning_of_a_pulse_that_is_told_without_it():
+    """Half a period passes for a weak pulse; the line is known from other runs."""
+    noise = 0.2 * np.random.default_rng(np.random.SeedSequence(9)).normal(size=480)
+    cycles, place = 10.3 / 479.0, np.arange(480)
+    trace = 1.0 * np.sin(2.0 * np.pi * cycles * place + 2.5) + noise
+    trace[200:] += 4.0 * np.sin(np.pi * (place[200:] - 200) / 80.0) ** 2
+    assert len(traces.quiet(trace, 0.2)) < traces.FEWEST
+    stretch = traces.quiet_beside(trace, cycles, 0.2)
+    assert 120 < len(stretch) < 210  # before the pulse, and most of that
+    assert traces.is_line(stretch, cycles, 0.2)
+
+
 def test_a_level_that_differs_from_run_to_run_may_also_swing(empty, model):
     bench, _ = examine(altered(empty, "g7", lambda y: y + 0.2, "v1"), model)
     (g7,) = [s for s in bench.record.block.sensors if s.id == "g7"]

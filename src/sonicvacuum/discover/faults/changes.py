@@ -11,6 +11,9 @@ import numpy as np
 
 from sonicvacuum.records import Record, Signals
 
+# (run id, gauge id) → (T,) samples that must not be believed.
+Lost = dict[tuple[str, str], np.ndarray]
+
 
 def _block(record: Record, **given) -> Record:
     return replace(record, block=msgspec.structs.replace(record.block, **given))
@@ -141,3 +144,20 @@ def earlier(trace: np.ndarray, samples: float) -> np.ndarray:
     straight = np.linspace(moved[0], moved[-1], len(moved))
     turn = np.exp(2j * np.pi * np.fft.rfftfreq(len(moved)) * (samples - whole))
     return straight + np.fft.irfft(np.fft.rfft(moved - straight) * turn, len(moved))
+
+
+def lost_by_delay(lost: Lost, record: Record, id: str, late_us: float) -> Lost:
+    """Samples that must not be believed once a gauge's readings are put earlier: those that were not, where
+    they stand then, and the ones for which there is no reading.
+    """
+    found = dict(lost)
+    for run, signals in record.signals.items():
+        if id not in signals.readings:
+            continue
+        place = np.arange(len(signals.time_us)) + round(late_us * 1e-6 / signals.interval_s)
+        gone = (place < 0) | (place >= len(place))
+        if (run, id) in lost:
+            gone |= lost[run, id][place.clip(0, len(place) - 1)]
+        if gone.any():
+            found[run, id] = gone
+    return found

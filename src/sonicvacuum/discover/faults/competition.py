@@ -15,7 +15,7 @@ import numpy as np
 
 from sonicvacuum import stages
 from sonicvacuum.discover.faults import policy
-from sonicvacuum.discover.faults.examine import examine
+from sonicvacuum.discover.faults.examine import examine, with_noise_of
 from sonicvacuum.discover.faults.expected import predicted
 from sonicvacuum.discover.faults.found import Bench, Finding
 from sonicvacuum.discover.faults.judging import (
@@ -24,9 +24,7 @@ from sonicvacuum.discover.faults.judging import (
     Model,
     both_off,
     excess,
-    noise_volume,
     obvious,
-    occam,
     of_the_chain,
     suspicious,
 )
@@ -38,6 +36,8 @@ from sonicvacuum.discover.faults.weights import (
     NUISANCES,
     acts_like,
     alias,
+    hollow,
+    odds_of,
     part_without,
     parts,
     unexplained,
@@ -199,6 +199,8 @@ class Search:
             worth += [j for j in looked if (of_the_chain(j.slip) or j.slip.run in pairs) and j not in worth]
         whole = [judge.look(s) for s in shifted]
         followed = [judge.follow(j) for j in [*worth, *whole]]
+        if far and not any(obvious(j, model) for j in followed):
+            followed += [judge.follow(j) for j in looked if not (j.slip.continuous or j in worth)]
         self.simulations += judge.simulations
         kept = [j for j in followed if j.gain > policy.LEAST_GAIN and j.log_odds > 0.0]
         return sorted(kept, key=lambda j: -j.log_odds)
@@ -231,6 +233,8 @@ class Search:
                 finding = judged.slip.finding(judged.size, p)
                 self.findings.append(replace(finding, corrected=judged is chosen))
         self.bench = chosen.model.bench
+        if chosen.slip.fault == "gauges-swapped":
+            self.findings = with_noise_of(self.findings, self.bench.record, chosen.slip.sensor)
 
     def _instead(self, found: Investigation, ranked: list[Judged]) -> Investigation | None:
         """The investigation of the record with one slip more put right, where that explains it better."""
@@ -238,6 +242,7 @@ class Search:
         if left:
             # What is left is more than a slip that explains little of it.
             rivals = [j for j in ranked if j.gain > (1.0 - policy.LEFT) * (found.null.objective - size)]
+            rivals += self._beside_the_best(found)
         else:
             rivals = [*ranked, *self._in_place(found)]
         # Runs whose stated errors are strained may be all that betrays a slip beside the right effect.
@@ -254,6 +259,18 @@ class Search:
         judged = self._included(found, found.final, weight_of(found) - math.log(evidence.PRIOR_NONE))
         least = (1.0 - policy.LEFT) * misfit if unexplained(found) else 0.0
         return [j for j in judged if j.gain - own > least]
+
+    def _beside_the_best(self, found: Investigation) -> list[Judged]:
+        """Slips beside the likeliest effect where it was not named, though it explains most of the misfit."""
+        if found.final is not found.null or not found.candidates:
+            return []
+        best, size = found.candidates[0], float(found.sizes.sum())
+        if best.gain < (1.0 - policy.LEFT) * (found.null.objective - size):
+            return []
+        judged = self._included(found, best.fit, weight_beside(found, best.effect))
+        # Of what it leaves a part is noise.
+        least = (1.0 - policy.LEFT) * (best.fit.objective - size - policy.SUSPICIOUS * math.sqrt(2.0 * size))
+        return [j for j in judged if j.gain - best.gain > least]
 
     def _in_place(self, found: Investigation) -> list[Judged]:
         """Slips in place of one effect of a set that moves data as some slip does, or of all that do, beside
@@ -291,17 +308,17 @@ class Search:
         before = list(self.findings)
         self._accept(rivals, best)
         after = self._investigate()
-        base = best.log_odds if best.model.fit.hypothesis.components == () else self._base(best, found, after)
+        base = best.log_odds if best.model.fit.hypothesis.components == () else odds_of(best, found, after)
         odds = base + weight_of(after) - as_is
         p = 1.0 / (1.0 + math.exp(-max(min(odds, 700.0), -700.0)))
-        if p > 0.5 and not self._hollow(found, after):
+        if p > 0.5 and not hollow(found, after):
             self.findings = [
                 f if f in before else replace(f, probability=min(f.probability * p, policy.PLAIN))
                 for f in self.findings
             ]
             return after
         self.bench, self.findings = bench, before
-        if p >= policy.SHOWN and not self._hollow(found, after):
+        if p >= policy.SHOWN and not hollow(found, after):
             self._share(found, [best], None, p)
         return None
 
@@ -312,21 +329,6 @@ class Search:
         own = found.null.objective - found.final.objective
         like = len(found.named) > 1 and any(self._like_slips(found, name) for name in found.named)
         return like and best.gain > policy.SHARE * own
-
-    def _base(self, best, found, after):
-        """Log odds of a slip by the nominal models of the record with and without it."""
-        gain = found.null.objective - after.null.objective
-        if not best.slip.continuous:
-            gain += noise_volume(found.forward.experiment) - noise_volume(after.forward.experiment)
-        return 0.5 * gain + occam(best.slip, best.size, gain) + policy.log_prior(best.slip.alternatives)
-
-    def _hollow(self, found, after):
-        """Whether what is left after a slip is nearly all that was left before."""
-        if not unexplained(after):
-            return False
-        size = float(found.sizes.sum())
-        before, now = (max(f.final.objective - size, 1.0) for f in (found, after))
-        return now > policy.LEFT * before
 
     def _share(self, found: Investigation, rivals: list[Judged], like: Judged | None, p: float = 1.0):
         """Say slips that explain as well as the effects named, and take their share from these.

@@ -1,6 +1,7 @@
 """A record looked through trace by trace: what its traces show by themselves is put right and said."""
 
 from collections import defaultdict
+from collections.abc import Sequence
 from dataclasses import replace
 
 import msgspec
@@ -35,6 +36,14 @@ def examine(record: Record, predicted: dict[str, dict[str, np.ndarray]] | None =
     for run in runs:
         look.quiet(run)
     return look.bench(), look.findings()
+
+
+def with_noise_of(findings: list[Finding], record: Record, gauges: Sequence[str]) -> list[Finding]:
+    """Findings in which the noise of some gauges is that of another record: those whose names were mixed up
+    had each other's stated noise.
+    """
+    kept = [f for f in findings if f.fault != "noise-misstated" or f.sensor not in gauges]
+    return kept + [f for f in examine(record)[1] if f.fault == "noise-misstated" and f.sensor in gauges]
 
 
 # Share of a level that differs from run to run by which it may change within a run.
@@ -86,12 +95,11 @@ class _Look:
             return
         frequency = traces.shared_line(list(shown.values()))
         for run, (stretch, interval) in hidden.items():
-            cycles = frequency * interval
-            if run in shown:
-                stretch = shown[run][0]
-            elif not traces.is_line(stretch, cycles, gauge.sigma):
+            cycles, trace = frequency * interval, self.readings[run][gauge.id]
+            longer = traces.quiet_beside(trace, cycles, gauge.sigma)
+            stretch = shown[run][0] if run in shown else max(stretch, longer, key=len)
+            if run not in shown and not traces.is_line(stretch, cycles, gauge.sigma):
                 continue
-            trace = self.readings[run][gauge.id]
             wave, _ = traces.wave(stretch, cycles)
             angle = 2.0 * np.pi * cycles * np.arange(len(trace))
             self.readings[run][gauge.id] = trace - wave @ [np.cos(angle), np.sin(angle)]

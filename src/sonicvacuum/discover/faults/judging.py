@@ -15,6 +15,7 @@ from sonicvacuum.discover.faults.found import Bench
 from sonicvacuum.discover.faults.slips import Slip
 from sonicvacuum.discover.faults.table import FAULTS
 from sonicvacuum.discover.fit import tails
+from sonicvacuum.discover.fit.enough import data
 from sonicvacuum.discover.fit.refit import Fit, fit
 from sonicvacuum.discover.model.experiment import Experiment
 from sonicvacuum.discover.model.forward import Forward
@@ -22,6 +23,8 @@ from sonicvacuum.records import Record
 
 # Steps of the search for a size, and the Δχ² below which a step is the last.
 STEPS, LAST = 6, 0.3
+# A step by slopes is made longer by no more than this.
+FARTHER = 8.0
 # Tries of a search for a size without slopes, and how near it comes, in prior widths.
 TRIES, ROUGHLY = 8, 0.02
 # Farthest size from where the search starts, in prior widths.
@@ -68,8 +71,7 @@ class Judged:
 
 def excess(model: Model) -> float:
     """χ² of a nominal fit, its nuisances' included, above the number of data."""
-    e = model.forward.experiment
-    return model.fit.objective - sum(e.size(r) for r in range(len(e.runs)))
+    return model.fit.objective - data(model.forward)
 
 
 def obvious(judged: Judged, model: Model) -> bool:
@@ -94,8 +96,7 @@ def both_off(worth: list[Judged]) -> set[str]:
 
 def suspicious(model: Model) -> bool:
     """Whether a nominal fit leaves more than its noise, or strains its nuisances."""
-    one, e = model.fit, model.forward.experiment
-    size = sum(e.size(r) for r in range(len(e.runs)))
+    one, size = model.fit, data(model.forward)
     misfit = float(one.normal.chi2.sum()) - size
     strained = float(one.nu @ one.nu)
     return misfit > policy.SUSPICIOUS * math.sqrt(2.0 * size) or strained > tails.chi_squared_at(
@@ -203,11 +204,13 @@ class Judge:
         """The slip fitted: its size with all else, the record changed with it."""
         slip = judged.slip
         size, model = (judged.size, judged.model) if judged.model else self._fitted(slip, judged.size)
+        before = None
         for _ in range(STEPS if slip.continuous else 0):
             inner = Judge(model, self.make)
-            new_size, new = self._fitted(slip, size + inner._step(slip), model.fit)
+            step = inner._step(slip)
             self.simulations += inner.simulations
-            gained = model.fit.objective - new.fit.objective
+            new_size, new = self._fitted(slip, size + _farther(before, size, step), model.fit)
+            gained, before = self._value(slip, model) - self._value(slip, new), (size, step)
             if gained > 0.0:
                 size, model = new_size, new
             if gained < LAST:
@@ -270,8 +273,11 @@ class Judge:
         return [(b[0] - a[0]) / (2.0 * slip.step) for a, b in zip(*sides, strict=True)]
 
     def _value(self, slip, model):
-        """−2 log L; without the volume of the noise for a change that only rescales."""
-        return model.fit.objective if slip.continuous else model.objective
+        """−2 log L; without the volume of the noise for a change that only rescales. What is lost counts as
+        noise does.
+        """
+        lost = data(self.model.forward) - data(model.forward)
+        return model.fit.objective + lost if slip.continuous else model.objective
 
     def _fitted(self, slip, size, start: Fit | None = None, afresh: bool = False):
         """The record changed by a size and its model, fitted from a start, or from the model as it is and
@@ -279,7 +285,8 @@ class Judge:
         """
         far = LONGEST * slip.width
         size = float(np.clip(size, slip.start - far, slip.start + far)) if slip.continuous else 0.0
-        bench = self._bench(slip.change(self.model.bench.record, size))
+        record, lost = self.model.bench.record, self.model.bench.lost
+        bench = replace(self._bench(slip.change(record, size)), lost=slip.lost(lost, record, size))
         forward = Forward(self.make(bench), self.model.forward.threads)
         one = self.model.fit
         nu = ([start.nu] if start else []) + ([one.nu, 0.0 * one.nu] if afresh or not start else [])
@@ -287,6 +294,17 @@ class Judge:
         found = fit(forward, one.hypothesis, np.repeat(one.u[None], len(nu), axis=0), np.stack(nu))
         self.simulations += forward.chains
         return size, Model(bench, forward, found)
+
+
+def _farther(before: tuple[float, float] | None, size: float, step: float) -> float:
+    """The step to where steps vanish, by those at two sizes (secant).
+
+    The slope of a trace to its own delay is that of its noise as well, which makes steps too short.
+    """
+    if before is None or size == before[0]:
+        return step
+    shrinks = (before[1] - step) / (size - before[0])
+    return step / min(max(shrinks, 1.0 / FARTHER), 1.0)
 
 
 def _ridged(hessian):

@@ -38,6 +38,7 @@ class Slip:
         value: size → value that is said.
         occam: log of the prior's price for what the change itself took from the data.
         start: size from which the search starts.
+        lost: (samples lost before, record, size) → those that are lost in the record put right.
     """
 
     fault: str
@@ -50,6 +51,7 @@ class Slip:
     value: Callable[[float], float | None] = math.exp
     occam: float = 0.0
     start: float = 0.0
+    lost: Callable[[changes.Lost, Record, float], changes.Lost] = lambda lost, _record, _size: lost
 
     @property
     def continuous(self) -> bool:
@@ -133,7 +135,8 @@ def _sizes(record):
         yield one("clock", changes.clock, step=1e-3)
     ids = [g.id for g in record.gauges] if record.signals else []
     for id in ids if len(ids) > 1 else []:
-        yield one("gauge-delayed", partial(_late, id), len(ids), sensor=id, step=0.05, value=float)
+        given = {"sensor": id, "step": 0.05, "value": float, "lost": partial(_lost_late, id)}
+        yield one("gauge-delayed", partial(_late, id), len(ids), **given)
 
 
 def _ignoring(change, *given):
@@ -152,6 +155,10 @@ def _one_speed(run, record, size):
 
 def _late(id, record, size):
     return changes.delayed(record, id, size)
+
+
+def _lost_late(id, lost, record, size):
+    return changes.lost_by_delay(lost, record, id, size)
 
 
 def _constant(value, _):

@@ -42,6 +42,17 @@ def quiet(trace: np.ndarray, sigma: float, swinging: bool = False) -> np.ndarray
     return trace[: int(QUIET_SHARE * first)]
 
 
+def quiet_beside(trace: np.ndarray, cycles: float, sigma: float) -> np.ndarray:
+    """(n,) samples before the pulse arrives of a trace that may hold a line of so many cycles per sample.
+
+    The line is taken from the first period, off which the pulse is told.
+    """
+    first = trace[: max(FEWEST, math.ceil(1.0 / cycles))]
+    angle = 2.0 * np.pi * cycles * np.arange(len(trace))
+    bare = trace - wave(first, cycles)[0] @ [np.cos(angle), np.sin(angle)]
+    return trace[: len(quiet(bare, sigma))]
+
+
 def without_spikes(trace: np.ndarray, at: np.ndarray) -> np.ndarray:
     """The trace with its spikes drawn over straight."""
     place = np.arange(len(trace))

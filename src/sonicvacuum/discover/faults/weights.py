@@ -5,7 +5,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from sonicvacuum.discover.faults.judging import Judged
+from sonicvacuum.discover.faults import policy
+from sonicvacuum.discover.faults.judging import Judged, noise_volume, occam
 from sonicvacuum.discover.faults.table import FAULTS
 from sonicvacuum.discover.fit import evidence
 from sonicvacuum.discover.fit.refit import Fit
@@ -76,6 +77,24 @@ def part_without(found: Investigation, names: Sequence[str]) -> tuple[str, Fit] 
 def weight_beside(found: Investigation, rest: str) -> float:
     """Log of prior times evidence of an explanation, against the nominal model's of none."""
     return logs_of(found)[rest] - math.log(evidence.PRIOR_NONE)
+
+
+def odds_of(slip: Judged, found: Investigation, after: Investigation) -> float:
+    """Log odds of a slip by the nominal models of the record as it is and with it put right."""
+    gain = found.null.objective - after.null.objective
+    if slip.slip.continuous:
+        gain -= float(found.sizes.sum() - after.sizes.sum())
+    else:
+        gain += noise_volume(found.forward.experiment) - noise_volume(after.forward.experiment)
+    return 0.5 * gain + occam(slip.slip, slip.size, gain) + policy.log_prior(slip.slip.alternatives)
+
+
+def hollow(found: Investigation, after: Investigation) -> bool:
+    """Whether what is left after a slip is nearly all that was left before."""
+    if not unexplained(after):
+        return False
+    before, now = (max(f.final.objective - float(f.sizes.sum()), 1.0) for f in (found, after))
+    return now > policy.LEFT * before
 
 
 def parts(rivals: Sequence[Judged], like: Judged | None) -> np.ndarray:

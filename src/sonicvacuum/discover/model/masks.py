@@ -14,6 +14,8 @@ SPIKE_RANGE = 1.0
 _SPREAD = np.sqrt(1.0 + 34.0 / 36.0)
 # A pair of spikes side by side is found in two passes.
 PASSES = 3
+# Traces shorter than this are left as they are.
+FEWEST_WITH_SPIKES = 8
 # Fewest equal samples at an extreme that are taken for a cut.
 FEWEST_CUT = 3
 # A cut hides a peak that overshoots it by more than so many steps of the recorder, or standard deviations; a
@@ -24,10 +26,10 @@ CUT_STEPS, CUT_SIGMAS = 5.0, 6.0
 def spikes(trace: np.ndarray, sigma: float) -> np.ndarray:
     """(T,) whether each sample of a trace (T,) is a spike, the noise of a sample being sigma."""
     found = np.zeros(len(trace), dtype=bool)
-    if len(trace) < 8:
-        return found
     for _ in range(PASSES):
         kept = np.flatnonzero(~found)
+        if len(kept) < FEWEST_WITH_SPIKES:
+            break
         new = kept[_standing_out(trace[kept], sigma)]
         if not len(new):
             break
@@ -36,7 +38,26 @@ def spikes(trace: np.ndarray, sigma: float) -> np.ndarray:
 
 
 def _standing_out(trace, sigma):
-    """Places where a trace departs from its neighbours, the farthest of any that touch."""
+    """Places where a trace departs from its neighbours."""
+    last = len(trace) - 1 - _at_start(trace[::-1], sigma)
+    return np.unique(np.concatenate([_at_start(trace, sigma), _within(trace, sigma), last]))
+
+
+def _at_start(trace, sigma):
+    """The first sample or the second, where it departs from the line through the two after it, or from the
+    parabola through its neighbours: a cubic has too few there.
+    """
+    first = abs(trace[0] - 2.0 * trace[1] + trace[2])
+    second = abs(trace[1] - trace[2] - (trace[0] - trace[3]) / 3.0)
+    spread = SPIKE_SIGMAS * sigma
+    if first > np.sqrt(6.0) * spread + 2.0 * SPIKE_RANGE * np.ptp(trace[1:5]):
+        return np.array([0])
+    around = np.ptp(trace[[0, 2, 3, 4]])
+    return np.flatnonzero([False, second > np.sqrt(20.0 / 9.0) * spread + SPIKE_RANGE * around])
+
+
+def _within(trace, sigma):
+    """Places with two neighbours on either side, the farthest of any that touch."""
     one, two, three, four = trace[:-4], trace[1:-3], trace[3:-1], trace[4:]
     far = np.abs(trace[2:-2] - (4.0 * (two + three) - one - four) / 6.0)
     around = np.stack([one, two, three, four])

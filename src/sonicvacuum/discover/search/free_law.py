@@ -99,6 +99,8 @@ def free_law(forward: Forward, base: Fit) -> FreeLaw | None:
     if best is None or best[0] < policy.LAW_LOG_BAYES:
         return None
     most = base.objective - best[2].objective
+    if most <= 0.0:  # nuisances that are hardly known can carry evidence where nothing is gained
+        return None
     evidence_, width, found, model = next(
         t for t in tried if base.objective - t[2].objective >= policy.LAW_SHARE * most
     )
