@@ -9,6 +9,7 @@ import pytest
 from made_records import BEADS, SIGMA, made
 from made_slips import altered
 
+from sonicvacuum.discover import session
 from sonicvacuum.discover.faults import changes, policy
 from sonicvacuum.discover.faults.competition import Search
 from sonicvacuum.discover.faults.found import Bench
@@ -117,6 +118,29 @@ def test_a_delay_keeps_the_noise():
     pulse = np.exp(-(x**2))
     # 401 samples, 0.05 apart: a delay of 7.5 samples is 0.375; a smooth pulse at rest at both ends.
     np.testing.assert_allclose(changes.earlier(pulse, 7.5), np.exp(-((x + 0.375) ** 2)), atol=1e-9)
+
+
+def drifting(record):
+    """Gauge g4 drifts by seven standard deviations of its noise over a record that begins at the impact."""
+    return altered(record, "g4", lambda y: y + 7.0 * SIGMA * np.linspace(0.0, 1.0, len(y)))
+
+
+def test_a_drift_is_told_between_and_after_pulses(empty):
+    """Before the pulse hardly a sample is left of it; what is left afterwards is noise."""
+    _, _, ranked = search(drifting(empty))
+    best = ranked[0]
+    assert (best.slip.fault, best.slip.sensor) == ("drift", "g4")
+    # Two lines through a hundred samples and more know their ends to a fifth of a sample's noise; twice that.
+    assert best.slip.value(0.0) == pytest.approx(7.0 * SIGMA, abs=0.4 * SIGMA)
+    size = data(best.model.forward)
+    assert abs(best.model.fit.objective - size) < 5.0 * np.sqrt(2.0 * size)  # 5 standard deviations of χ²
+
+
+@pytest.mark.parametrize("tau_us", [200.0, 1000.0, 5000.0])
+def test_what_a_gauge_that_decays_leaves_behind_its_pulses_is_no_drift(tau_us):
+    found = session.discover(made([("sensor-droop", {"tau_us": tau_us})], seed=21)[0]).verdict
+    assert found.faults == []
+    assert found.named == ["sensor-droop"]
 
 
 def test_samples_before_which_a_late_gauge_read_nothing_are_lost(empty):

@@ -4,11 +4,13 @@ Sizes are logarithms of ratios; numbers of beads, ids and shifts in microseconds
 """
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
 
 import msgspec
 import numpy as np
 
+from sonicvacuum.gauges import KINDS
 from sonicvacuum.records import Record, Signals
 
 # (run id, gauge id) → (T,) samples that must not be believed.
@@ -131,6 +133,36 @@ def delayed(record: Record, id: str, late_us: float) -> Record:
         return Signals(signals.time_us, {**signals.readings, id: earlier(signals.readings[id], samples)})
 
     return replace(record, signals={k: shifted(s) for k, s in record.signals.items()})
+
+
+def looser(record: Record, errors: Mapping[str, Mapping[str, float]]) -> Record:
+    """The record whose gauges may rest elsewhere, or drift, by at least so much.
+
+    Args:
+        record: as it is.
+        errors: gauge id → "baseline" or "drift" → standard error in the gauge's unit.
+    """
+
+    def looser_one(sensor):
+        given = errors.get(sensor.id, {})
+        keys = {f"{what}_sigma_{KINDS[sensor.kind].suffix}": error for what, error in given.items()}
+        wider = {key: max(getattr(sensor, key) or 0.0, error) for key, error in keys.items()}
+        return msgspec.structs.replace(sensor, **wider)
+
+    return _block(record, sensors=[looser_one(s) for s in record.block.sensors])
+
+
+def straightened(record: Record, id: str, lines: dict[str, tuple[float, float]]) -> Record:
+    """One gauge's readings without a straight line in each run: level at the first sample, slope a sample."""
+
+    def without(run, signals):
+        if run not in lines or id not in signals.readings:
+            return signals
+        (level, slope), trace = lines[run], signals.readings[id]
+        line = level + slope * np.arange(len(trace))
+        return Signals(signals.time_us, {**signals.readings, id: trace - line})
+
+    return replace(record, signals={k: without(k, s) for k, s in record.signals.items()})
 
 
 def earlier(trace: np.ndarray, samples: float) -> np.ndarray:

@@ -28,6 +28,7 @@ from sonicvacuum.discover.faults.judging import (
     of_the_chain,
     suspicious,
 )
+from sonicvacuum.discover.faults.lines import drifts
 from sonicvacuum.discover.faults.slips import hypotheses
 from sonicvacuum.discover.faults.table import FAULTS
 from sonicvacuum.discover.faults.timing import time_zero, with_starts
@@ -179,12 +180,12 @@ class Search:
         judge, record = Judge(model, self.judged), model.bench.record
         seen = predicted(self.make(model.bench), self.threads)
         done = {(f.fault, f.run, f.sensor) for f in self.findings}
-        slips = [s for s in with_starts(hypotheses(record), record, seen)]
+        slips = with_starts(hypotheses(record), record, seen)
         slips = [s for s in slips if (s.fault, s.run, s.sensor) not in done]
         if any(c.effect.places in ("bead", "contact") for c in model.fit.hypothesis.components):
             # In a chain of another length its place would be another one, or none.
             slips = [s for s in slips if not of_the_chain(s)]
-        shifted = [] if any(f.fault == "time-zero" for f in self.findings) else time_zero(record, seen)
+        shown = [*time_zero(record, seen), *drifts(record, seen)]
         stages.begin("slips of the laboratory")
         far = excess(model) > policy.SURE_GAIN
         looked = [judge.look(s) for s in slips]
@@ -197,7 +198,7 @@ class Search:
             # measured: slopes know nothing of it.
             pairs = both_off(worth)
             worth += [j for j in looked if (of_the_chain(j.slip) or j.slip.run in pairs) and j not in worth]
-        whole = [judge.look(s) for s in shifted]
+        whole = [judge.look(s) for s in shown if (s.fault, s.run, s.sensor) not in done]
         followed = [judge.follow(j) for j in [*worth, *whole]]
         if far and not any(obvious(j, model) for j in followed):
             followed += [judge.follow(j) for j in looked if not (j.slip.continuous or j in worth)]
@@ -261,14 +262,13 @@ class Search:
         return [j for j in judged if j.gain - own > least]
 
     def _beside_the_best(self, found: Investigation) -> list[Judged]:
-        """Slips beside the likeliest effect where it was not named, though it explains most of the misfit."""
+        """Slips beside the likeliest effect, which was not named though it leaves noise or a little more."""
         if found.final is not found.null or not found.candidates:
             return []
         best, size = found.candidates[0], float(found.sizes.sum())
         if best.gain < (1.0 - policy.LEFT) * (found.null.objective - size):
             return []
         judged = self._included(found, best.fit, weight_beside(found, best.effect))
-        # Of what it leaves a part is noise.
         least = (1.0 - policy.LEFT) * (best.fit.objective - size - policy.SUSPICIOUS * math.sqrt(2.0 * size))
         return [j for j in judged if j.gain - best.gain > least]
 

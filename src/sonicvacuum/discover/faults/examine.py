@@ -7,12 +7,11 @@ from dataclasses import replace
 import msgspec
 import numpy as np
 
-from sonicvacuum.discover.faults import expected, policy, traces
+from sonicvacuum.discover.faults import changes, expected, policy, traces
 from sonicvacuum.discover.faults.found import Bench, Finding
 from sonicvacuum.discover.faults.table import FAULTS
 from sonicvacuum.discover.model.masks import cut, spikes
 from sonicvacuum.discover.model.problem import flicker
-from sonicvacuum.gauges import KINDS
 from sonicvacuum.records import Record, Signals
 
 
@@ -190,7 +189,7 @@ class _Look:
         changed = bool(self.seen) or bool(gone)
         if not changed:
             return Bench(self.record, lost)
-        return Bench(_drifting(_without_runs(self.record, signals, gone), self.unsure), lost, lines)
+        return Bench(changes.looser(_without_runs(self.record, signals, gone), self.unsure), lost, lines)
 
     def _baselines(self):
         """Levels that differ from run to run; one level in all runs is no slip of a run."""
@@ -229,19 +228,6 @@ def _shared(fault, runs):
     if not values:
         return None
     return float(sum(values)) if fault == "spikes" else float(np.median(values))
-
-
-def _drifting(record, unsure):
-    """The record whose gauges may still rest elsewhere, or drift, by what a short stretch leaves open."""
-    sensors = [_looser(s, unsure[s.id]) if s.id in unsure else s for s in record.block.sensors]
-    return replace(record, block=msgspec.structs.replace(record.block, sensors=sensors))
-
-
-def _looser(sensor, errors):
-    """A sensor's block with at least these standard errors of its baseline and drift, in the gauge's unit."""
-    keys = {f"{what}_sigma_{KINDS[sensor.kind].suffix}": error for what, error in errors.items()}
-    wider = {key: max(getattr(sensor, key) or 0.0, error) for key, error in keys.items()}
-    return msgspec.structs.replace(sensor, **wider)
 
 
 def _without_runs(record, signals, gone):

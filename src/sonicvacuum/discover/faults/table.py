@@ -15,7 +15,8 @@ class Fault:
         corrected: whether the rest of the verdict is of the record put right.
         alias: nuisance such that an effect which acts like it (`Parameter.acts_like`) moves the same data in
             the same way, "" where there is none.
-        stretches: whether it moves all times or forces at once, as an effect in every contact may.
+        stretches: whether effects may do much the same: it moves all times or forces at once, or stays behind
+            after every pulse.
         curved: whether no nuisance is like it, so that beside strong pulses slopes mislead on its size.
     """
 
@@ -45,8 +46,9 @@ FAULTS: dict[str, Fault] = {
         ),
         Fault(
             "drift",
-            "{sensor} drifts by {value} over the record before the pulse",
+            "{sensor} drifts by {value} over the record",
             "check the coupling and the amplifier's time constant",
+            stretches=True,
         ),
         Fault(
             "baseline",

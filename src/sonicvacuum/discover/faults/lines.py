@@ -1,0 +1,112 @@
+"""Drift that shows only beside the model: where the stretch before the pulse is short, the readings between
+pulses and after them tell of it.
+"""
+
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from sonicvacuum.discover.faults import changes, traces
+from sonicvacuum.discover.faults.slips import Slip
+from sonicvacuum.records import Record
+
+# Nothing is read where the model has less than this share of its peak, half a pulse and more away from where
+# it has more.
+NOTHING = 0.05
+# Least gain in χ² of the lines of a gauge, and log of what a level and a slope of one run cost.
+LEAST, PRICE = 50.0, 6.0
+# What the model reads there differs from what there is: lines err by more than noise has it.
+UNSURE = 2.0
+# A run's own slope is told from so many standard errors on.
+TOLD = 4.0
+
+
+@dataclass(frozen=True)
+class _Line:
+    """A straight line in one trace: level at the first sample, slope per sample and their standard errors in
+    the gauge's unit, the middle of the samples that tell it, and its gain in χ².
+    """
+
+    level: float
+    slope: float
+    errors: np.ndarray
+    middle: float
+    gain: float
+
+
+def drifts(record: Record, predicted) -> list[Slip]:
+    """Gauges whose readings lie along straight lines where the model reads nothing.
+
+    Args:
+        record: with signals.
+        predicted: run id → gauge id → (T,) reading of the nominal model.
+    """
+    found = {g.id: _lines(record, predicted, g) for g in record.gauges}
+    return [_slip(record, id, lines) for id, lines in found.items() if lines]
+
+
+def _slip(record, id, lines):
+    samples = {run: len(record.signals[run].time_us) for run in lines}
+    drift = np.array([line.slope * samples[run] for run, line in lines.items()])
+    sigma = np.array([line.errors[0] * samples[run] for run, line in lines.items()])
+    common = float(np.average(drift, weights=sigma**-2.0))
+    # A run whose few quiet samples lie side by side does not tell of its end: the others do.
+    told = np.abs(drift) > TOLD * sigma
+    slopes = {
+        run: (line.level, line.slope) if own else (line.level + line.middle * (line.slope - other), other)
+        for (run, line), own in zip(lines.items(), told, strict=True)
+        for other in [common / samples[run]]
+    }
+    known = [error for error, own in zip(sigma, told, strict=True) if own] or [float(sigma.min())]
+    errors = {
+        "baseline": UNSURE * max(line.errors[1] for line in lines.values()),
+        "drift": UNSURE * max(known),
+    }
+    return Slip(
+        "drift",
+        partial(_straightened, id, slopes, errors),
+        sensor=id,
+        alternatives=len(record.gauges),
+        value=lambda _: common,
+        occam=-PRICE * len(lines),
+    )
+
+
+def _straightened(id, lines, errors, record, _):
+    return changes.looser(changes.straightened(record, id, lines), {id: errors})
+
+
+def _lines(record, predicted, gauge) -> dict[str, _Line]:
+    """The line of each run; none where lines leave more than noise."""
+    found = {}
+    for run, signals in record.signals.items():
+        model = predicted.get(run, {}).get(gauge.id)
+        if model is None or gauge.id not in signals.readings or not gauge.sigma:
+            continue
+        at = np.flatnonzero(_nothing(model))
+        line = _line(at, signals.readings[gauge.id][at] - model[at], gauge.sigma)
+        if line is None:
+            return {}
+        found[run] = line
+    gain = sum(line.gain for line in found.values())
+    return found if gain > LEAST * max(1, len(found)) else {}
+
+
+def _line(at, left, sigma):
+    """The line through readings at some samples, None where it leaves more than noise."""
+    if len(at) < traces.FEWEST:
+        return None
+    (slope, level), covariance = np.polyfit(at, left, 1, cov=True)
+    rest = left - level - slope * at
+    if rest.std(ddof=2) > traces.NOISE_FACTOR * sigma:
+        return None
+    gain = float(left @ left - rest @ rest) / sigma**2
+    return _Line(float(level), float(slope), np.sqrt(np.diag(covariance)), float(at.mean()), gain)
+
+
+def _nothing(model):
+    """(T,) whether the model reads nothing, nor half a pulse to either side."""
+    size = np.abs(model)
+    width = max(1, int(np.count_nonzero(size > 0.5 * size.max())))
+    return np.convolve(size > NOTHING * size.max(), np.ones(2 * width + 1), "same") == 0
