@@ -24,6 +24,7 @@ from sonicvacuum.discover.faults.judging import (
     Model,
     both_off,
     excess,
+    most_of,
     obvious,
     of_the_chain,
     suspicious,
@@ -242,7 +243,7 @@ class Search:
         left, size = unexplained(found), float(found.sizes.sum())
         if left:
             # What is left is more than a slip that explains little of it.
-            rivals = [j for j in ranked if j.gain > (1.0 - policy.LEFT) * (found.null.objective - size)]
+            rivals = [j for j in ranked if j.gain > most_of(found.null.objective, size)]
             rivals += self._beside_the_best(found)
         else:
             rivals = [*ranked, *self._in_place(found)]
@@ -256,9 +257,8 @@ class Search:
     def _beside(self, found: Investigation) -> list[Judged]:
         """Slips beside the effects that were found, as if beside the nominal model: their gain included."""
         own = found.null.objective - found.final.objective
-        misfit = found.final.objective - float(found.sizes.sum())
         judged = self._included(found, found.final, weight_of(found) - math.log(evidence.PRIOR_NONE))
-        least = (1.0 - policy.LEFT) * misfit if unexplained(found) else 0.0
+        least = most_of(found.final.objective, float(found.sizes.sum())) if unexplained(found) else 0.0
         return [j for j in judged if j.gain - own > least]
 
     def _beside_the_best(self, found: Investigation) -> list[Judged]:
@@ -266,11 +266,10 @@ class Search:
         if found.final is not found.null or not found.candidates:
             return []
         best, size = found.candidates[0], float(found.sizes.sum())
-        if best.gain < (1.0 - policy.LEFT) * (found.null.objective - size):
+        if best.gain < most_of(found.null.objective, size):
             return []
         judged = self._included(found, best.fit, weight_beside(found, best.effect))
-        least = (1.0 - policy.LEFT) * (best.fit.objective - size - policy.SUSPICIOUS * math.sqrt(2.0 * size))
-        return [j for j in judged if j.gain - best.gain > least]
+        return [j for j in judged if j.gain - best.gain > most_of(best.fit.objective, size)]
 
     def _in_place(self, found: Investigation) -> list[Judged]:
         """Slips in place of one effect of a set that moves data as some slip does, or of all that do, beside

@@ -74,6 +74,11 @@ def excess(model: Model) -> float:
     return model.fit.objective - data(model.forward)
 
 
+def most_of(objective: float, size: float) -> float:
+    """What a slip has to gain that explains a misfit: all but a share of what `size` data's noise is not."""
+    return (1.0 - policy.LEFT) * (objective - size - policy.SUSPICIOUS * math.sqrt(2.0 * size))
+
+
 def obvious(judged: Judged, model: Model) -> bool:
     """Whether a slip takes away nearly all misfit by itself."""
     return (

@@ -7,6 +7,7 @@ the others, as `secants` does it. Single effects start again from pairs, less th
 
 import numpy as np
 
+from sonicvacuum.discover.fit import bounds
 from sonicvacuum.discover.fit.evidence import Candidate, Combination
 from sonicvacuum.discover.fit.normal import linearise
 from sonicvacuum.discover.fit.refit import Fit, fit, polish
@@ -76,12 +77,14 @@ def lower(
             one = less(forward, pair.fit, k, setup)
             if not one.normal.has_slopes[0] or promised(one) > own.fit.objective - LOWER:
                 continue
-            one = polish(forward, one)
+            inside = polish(forward, one)
+            one, held = bounds.beyond(forward, inside)
             if one.objective < own.fit.objective - LOWER:
                 gain = null.objective - one.objective
                 log_bayes = own.log_bayes + 0.5 * (gain - own.gain)
                 place = one.hypothesis.components[0].place
                 where = own.places if place is None else ((place, 1.0),)
-                flags = ("bound",) * bool(one.at_bound().any()) + ("unsettled",) * (not one.settled)
+                flags = ("beyond",) * (one is not inside) + ("bound",) * held
+                flags += ("unsettled",) * (not one.settled)
                 better[name] = Candidate(name, one, gain, log_bayes, where, flags)
     return [better.get(c.effect, c) for c in singles] if better else None
