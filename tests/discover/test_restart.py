@@ -5,7 +5,9 @@ import pytest
 from made_records import made
 
 from sonicvacuum.discover.fit import wide
-from sonicvacuum.discover.fit.refit import fit
+from sonicvacuum.discover.fit.evidence import Candidate
+from sonicvacuum.discover.fit.normal import linearise
+from sonicvacuum.discover.fit.refit import Fit, fit
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, variants
 from sonicvacuum.discover.model.problem import experiment
@@ -63,3 +65,25 @@ def test_what_a_trial_should_gain_is_what_a_fit_gains_where_data_answer_in_propo
     # The gauge's own error of 2 % takes up half; what is left answers in proportion to a few per cent.
     assert best.gain <= (null.objective - one.objective) * 1.05
     assert best.gain == pytest.approx(null.objective - one.objective, rel=0.2)
+
+
+def test_a_single_effect_that_a_pair_leads_lower_is_followed_beyond_its_range():
+    """A gauge in volts, at 12.5 N/V; gains are tried from a fifth to five times."""
+    gain, setup_of = effect("sensor-gain"), singles.setup_of
+    forward = Forward(experiment(made([("sensor-gain", {"gain_ratio": 0.08, "sensor": 1})], seed=3)[0]), 1)
+    null = wide.nominal(forward)
+    setup = setup_of(forward)
+    alone, drag = (
+        Component(e, variants(e, setup)[0], place=place)
+        for e, place in ((gain, 1), (effect("viscous-drag"), None))
+    )
+    start = Fit(
+        Hypothesis((alone,)), linearise(forward, Hypothesis((alone,)), np.zeros((1, 1)), null.nu[None])
+    )
+    own = Candidate("sensor-gain", start, null.objective - start.objective, 0.0, ((1, 1.0),), ())
+    both = pairs.joined(Hypothesis((alone,)), drag, setup)
+    at = np.array([[c.inverse(0.3) if c.parameter.name == "gain_ratio" else c.low for c in both.coordinates]])
+    pair = pairs.combination(null, fit(forward, both, at, np.zeros((1, forward.layout.size))), setup)
+    (found,) = restart.lower(forward, null, [pair], [own], setup)
+    assert found.flags == ("beyond",)
+    assert np.exp(found.fit.u[0]) == pytest.approx(0.08, rel=0.1)  # each gauge's own gain is known to 2 %
