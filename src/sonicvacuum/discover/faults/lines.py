@@ -11,9 +11,9 @@ from sonicvacuum.discover.faults import changes, traces
 from sonicvacuum.discover.faults.slips import Slip
 from sonicvacuum.records import Record
 
-# Nothing is read where the model has less than this share of its peak, half a pulse and more away from where
-# it has more.
-NOTHING = 0.05
+# Nothing is read where the model has less than such a share of its peak, half a pulse and more away from
+# where it has more: the largest of them at which a line leaves noise alone.
+NOTHING = (0.05, 0.02)
 # Least gain in χ² of the lines of a gauge, and log of what a level and a slope of one run cost.
 LEAST, PRICE = 50.0, 6.0
 # What the model reads there differs from what there is: lines err by more than noise has it.
@@ -84,8 +84,9 @@ def _lines(record, predicted, gauge) -> dict[str, _Line]:
         model = predicted.get(run, {}).get(gauge.id)
         if model is None or gauge.id not in signals.readings or not gauge.sigma:
             continue
-        at = np.flatnonzero(_nothing(model))
-        line = _line(at, signals.readings[gauge.id][at] - model[at], gauge.sigma)
+        places = (np.flatnonzero(_nothing(model, share)) for share in NOTHING)
+        left = signals.readings[gauge.id] - model
+        line = next((one for at in places if (one := _line(at, left[at], gauge.sigma))), None)
         if line is None:
             return {}
         found[run] = line
@@ -105,8 +106,8 @@ def _line(at, left, sigma):
     return _Line(float(level), float(slope), np.sqrt(np.diag(covariance)), float(at.mean()), gain)
 
 
-def _nothing(model):
+def _nothing(model, share):
     """(T,) whether the model reads nothing, nor half a pulse to either side."""
     size = np.abs(model)
     width = max(1, int(np.count_nonzero(size > 0.5 * size.max())))
-    return np.convolve(size > NOTHING * size.max(), np.ones(2 * width + 1), "same") == 0
+    return np.convolve(size > share * size.max(), np.ones(2 * width + 1), "same") == 0
