@@ -127,3 +127,31 @@ def test_what_was_tried_while_a_set_grew_competes_with_it():
     own = several(("tsuji", "static-preload", "sensor-droop"), 42.0)
     found = decision._together(pairs, grown, own)
     assert [c.log_bayes for c in found] == [42.0, 40.0, 10.0, 9.0]
+
+
+@pytest.mark.parametrize(
+    ("found", "rival", "named"),
+    [(60.0, 57.0, "tsuji"), (57.0, 60.0, "kuwabara-kono"), (60.0, 60.0, None)],
+)
+def test_beside_what_is_left_the_likelier_is_named_though_another_was_found(monkeypatch, found, rival, named):
+    """The search adds what gains most; once what is left counts as noise, another may be likelier."""
+    fits = {
+        name: SimpleNamespace(hypothesis=SimpleNamespace(ids=ids, components=()))
+        for name, ids in (("tsuji", ["tsuji"]), ("kuwabara-kono", ["kuwabara-kono"]), ("none", []))
+    }
+    own, other = several(("tsuji",), found), several(("kuwabara-kono",), rival)
+    own.fit, other.fit = fits["tsuji"], fits["kuwabara-kono"]
+    grown = SimpleNamespace(
+        forward=None, null=fits["none"], best=own, size=SimpleNamespace(size=0.01), tried={frozenset(): own}
+    )
+    case = SimpleNamespace(
+        forward=SimpleNamespace(experiment=SimpleNamespace(prior_odds={})),
+        null=None,
+        _rivals=lambda _: [other],
+        _irreplaceable=lambda _grown, one, _needed, _reasons: one,
+    )
+    monkeypatch.setattr(decision.several, "moved", lambda _, one: one)
+    left = SimpleNamespace(where="a smooth misfit", p=0.0)
+    made = decision.Case._beside(case, grown, 10.0, {}, left, [])
+    assert made.named == [*([named] if named else []), "unknown"]
+    assert made.final is (fits[named] if named else None)

@@ -243,32 +243,38 @@ class Case:
 
     def _beside(self, grown: several.Grown, needed, alarms, after: Left, tried) -> Decision:
         """What stays named beside something unknown."""
-        fit_, reasons = grown.best.fit, [f"{after.where} is left"]
-        counted = unknown.shape_test(grown.forward, fit_)
-        if counted.failed and fit_.hypothesis.components:
-            kept = several.irreplaceable(counted, fit_, needed)
-            for k in reversed(range(len(fit_.hypothesis.components))):
-                if k not in kept and not self._ahead(fit_, k):
-                    name = fit_.hypothesis.ids[k]
-                    reasons.append(
-                        f"{name} may be no more than the nearest to what is left in {counted.group}"
-                    )
-                    fit_ = several.less(grown.forward, grown.null, fit_, k, self.setup)
-        weights = explanations.log_weights(
-            (), [*grown.tried.values(), *self._rivals(grown)], [], self.forward.experiment.prior_odds
-        )
-        named = list(fit_.hypothesis.ids)
-        # Of sets only as they are: more beside two effects may as well be what stands for one unknown thing.
-        whole = gross.merged(weights, named) if len(named) == 1 else weights
-        if named and not _clear(whole, named):
+        reasons = [f"{after.where} is left"]
+        rivals, prior = self._rivals(grown), self.forward.experiment.prior_odds
+        weights = explanations.log_weights((), [*grown.tried.values(), *rivals], [], prior)
+        # With what is left as noise a rival may be likelier than what the search has found.
+        rival = [c.fit for c in sorted(rivals, key=lambda c: -c.log_bayes)[:1]]
+        for one in (grown.best.fit, *rival, grown.null):
+            fit_ = self._irreplaceable(grown, one, needed, reasons)
+            named = list(fit_.hypothesis.ids)
+            # Of sets only as they are: more beside two may as well be what stands for one unknown thing.
+            whole = gross.merged(weights, named) if len(named) == 1 else weights
+            if not named or _clear(whole, named):
+                break
             reasons.append(f"{' + '.join(named)}: not clearly the best beside what is left")
-            named, fit_ = [], grown.null
         weights = whole if named else weights
         final = several.moved(self.forward, fit_) if named else self.null
         view = View(grown.forward, grown.null, fit_) if grown.size.size else None
         return Decision(
             [*named, UNKNOWN], final, alarms, reasons, after.p, tried, grown.size.size, view, weights
         )
+
+    def _irreplaceable(self, grown: several.Grown, one: Fit, needed, reasons: list[str]) -> Fit:
+        """A fit less the effects for which a shape outside the catalogue would do; said in `reasons`."""
+        counted = unknown.shape_test(grown.forward, one) if one.hypothesis.components else None
+        if counted is None or not counted.failed:
+            return one
+        kept, fit_ = several.irreplaceable(counted, one, needed), one
+        for k in reversed(range(len(one.hypothesis.components))):
+            if k not in kept and not self._ahead(fit_, k):
+                name = fit_.hypothesis.ids[k]
+                reasons.append(f"{name} may be no more than the nearest to what is left in {counted.group}")
+                fit_ = several.less(grown.forward, grown.null, fit_, k, self.setup)
+        return fit_
 
     def _ahead(self, whole: Fit, k: int) -> bool:
         """Whether effect k gains clearly more than any one shape outside the catalogue would in its place,
