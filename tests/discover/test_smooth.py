@@ -8,11 +8,15 @@ from made_records import made
 
 from sonicvacuum.discover import session
 from sonicvacuum.discover.fit import smooth
+from sonicvacuum.discover.fit.normal import linearise
+from sonicvacuum.discover.fit.refit import Fit, polish
 from sonicvacuum.discover.fit.wide import nominal
 from sonicvacuum.discover.model.experiment import Smooth
 from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.model.hypothesis import Hypothesis
 from sonicvacuum.discover.model.problem import experiment
 from sonicvacuum.discover.rounds import investigate
+from sonicvacuum.discover.search import several
 from sonicvacuum.records import Record
 
 
@@ -144,3 +148,15 @@ def test_records_of_one_laboratory_hand_on_what_was_hidden():
     change = after.readings["wall"] - before.readings["wall"]
     assert not change[: int(0.3 * before.readings["wall"].argmax())].any(), run
     assert change.std() < 0.1 * before.readings["wall"].max()
+
+
+def test_what_a_misfit_strained_does_not_stand_in_the_way_once_it_counts_as_noise(empty):
+    """From a modulus forty errors off slopes lead nowhere: pulses no longer overlap."""
+    plain = experiment(with_systematics(empty, 0.01))
+    forward = Forward(smooth.with_size(plain, 0.01, smooth.blocks(plain)), 1)
+    strained = np.zeros(forward.layout.size)
+    strained[forward.layout.modulus] = -40.0
+    nothing = Hypothesis()
+    here = Fit(nothing, linearise(forward, nothing, np.zeros((1, 0)), strained[None]))
+    assert polish(forward, here).objective > 2.0 * nominal(forward).objective
+    assert several.moved(forward, here).objective == pytest.approx(nominal(forward).objective, abs=0.1)

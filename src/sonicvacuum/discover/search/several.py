@@ -14,8 +14,7 @@ import numpy as np
 from sonicvacuum.discover import policy
 from sonicvacuum.discover.fit import enough, heldout, places, smooth
 from sonicvacuum.discover.fit.evidence import Combination
-from sonicvacuum.discover.fit.normal import linearise
-from sonicvacuum.discover.fit.refit import ITERATIONS, Fit, polish
+from sonicvacuum.discover.fit.refit import ITERATIONS, Fit, fit
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.search import pairs, restart
 from sonicvacuum.discover.search.unknown import ShapeTest
@@ -47,17 +46,25 @@ class Grown:
     tried: dict[frozenset, Combination] = field(default_factory=dict)
 
 
-def moved(forward: Forward, fit: Fit) -> Fit:
+def moved(forward: Forward, one: Fit) -> Fit:
     """A fit followed to its minimum in another view of the same data."""
-    here = Fit(fit.hypothesis, linearise(forward, fit.hypothesis, fit.u[None], fit.nu[None]))
-    return polish(forward, here, pairs.ITERATIONS)
+    return _afresh(forward, one, pairs.ITERATIONS)
 
 
-def less(forward: Forward, null: Fit, fit: Fit, k: int, setup: Setup, iterations: int = ITERATIONS) -> Fit:
+def _afresh(forward: Forward, one: Fit, iterations: int) -> Fit:
+    """The better of the minima that lead from where nuisances stand and from none.
+
+    A misfit strains them, and strained they stand in the way once it counts as noise.
+    """
+    nu = np.stack([one.nu, 0.0 * one.nu])
+    return fit(forward, one.hypothesis, np.repeat(one.u[None], 2, axis=0), nu, iterations=iterations)
+
+
+def less(forward: Forward, null: Fit, one: Fit, k: int, setup: Setup, iterations: int = ITERATIONS) -> Fit:
     """The best fit without effect k, from where a fit stands; `null` where none is left."""
-    if len(fit.hypothesis.components) == 1:
+    if len(one.hypothesis.components) == 1:
         return null
-    return polish(forward, restart.less(forward, fit, k, setup), iterations)
+    return _afresh(forward, restart.less(forward, one, k, setup), iterations)
 
 
 class Turns:
