@@ -136,7 +136,7 @@ def test_a_drift_is_told_between_and_after_pulses(empty):
     assert abs(best.model.fit.objective - size) < 5.0 * np.sqrt(2.0 * size)  # 5 standard deviations of χ²
 
 
-@pytest.mark.parametrize("tau_us", [200.0, 1000.0, 5000.0])
+@pytest.mark.parametrize("tau_us", [200.0, 5000.0])
 def test_what_a_gauge_that_decays_leaves_behind_its_pulses_is_no_drift(tau_us):
     found = session.discover(made([("sensor-droop", {"tau_us": tau_us})], seed=21)[0]).verdict
     assert found.faults == []
