@@ -95,13 +95,14 @@ class _Look:
         frequency = traces.shared_line(list(shown.values()))
         for run, (stretch, interval) in hidden.items():
             cycles, trace = frequency * interval, self.readings[run][gauge.id]
-            longer = traces.quiet_beside(trace, cycles, gauge.sigma)
-            stretch = shown[run][0] if run in shown else max(stretch, longer, key=len)
-            if run not in shown and not traces.is_line(stretch, cycles, gauge.sigma):
-                continue
+            if run in shown:
+                stretch = shown[run][0]
+            else:
+                stretch = max(stretch, traces.quiet_beside(trace, cycles, gauge.sigma), key=len)
+                if not traces.is_line(stretch, cycles, gauge.sigma):
+                    continue
             wave, _ = traces.wave(stretch, cycles)
-            angle = 2.0 * np.pi * cycles * np.arange(len(trace))
-            self.readings[run][gauge.id] = trace - wave @ [np.cos(angle), np.sin(angle)]
+            self.readings[run][gauge.id] = traces.without_wave(trace, wave, cycles)
             self.seen["pickup", gauge.id][run] = 1e-3 * frequency
             self.lines[run, gauge.id] = float(np.hypot(*wave)), frequency
 

@@ -48,8 +48,7 @@ def quiet_beside(trace: np.ndarray, cycles: float, sigma: float) -> np.ndarray:
     The line is taken from the first period, off which the pulse is told.
     """
     first = trace[: max(FEWEST, math.ceil(1.0 / cycles))]
-    angle = 2.0 * np.pi * cycles * np.arange(len(trace))
-    bare = trace - wave(first, cycles)[0] @ [np.cos(angle), np.sin(angle)]
+    bare = without_wave(trace, wave(first, cycles)[0], cycles)
     return trace[: len(quiet(bare, sigma))]
 
 
@@ -175,6 +174,12 @@ def wave(stretch: np.ndarray, cycles: float) -> tuple[np.ndarray, float]:
     """
     found, left, *_ = np.linalg.lstsq(_sinusoid(len(stretch), cycles), stretch, rcond=None)
     return found[:2], float(left.sum())
+
+
+def without_wave(trace: np.ndarray, found: np.ndarray, cycles: float) -> np.ndarray:
+    """A trace less a sinusoid of so many cycles per sample, of which `found` are cosine and sine (`wave`)."""
+    angle = 2.0 * np.pi * cycles * np.arange(len(trace))
+    return trace - found @ [np.cos(angle), np.sin(angle)]
 
 
 def _sinusoid(n, cycles):

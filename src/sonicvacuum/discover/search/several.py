@@ -46,13 +46,8 @@ class Grown:
     tried: dict[frozenset, Combination] = field(default_factory=dict)
 
 
-def moved(forward: Forward, one: Fit) -> Fit:
-    """A fit followed to its minimum in another view of the same data."""
-    return _afresh(forward, one, pairs.ITERATIONS)
-
-
-def _afresh(forward: Forward, one: Fit, iterations: int) -> Fit:
-    """The better of the minima that lead from where nuisances stand and from none.
+def moved(forward: Forward, one: Fit, iterations: int = pairs.ITERATIONS) -> Fit:
+    """A fit followed to its minimum in another view of the data, from where nuisances stand and from none.
 
     A misfit strains them, and strained they stand in the way once it counts as noise.
     """
@@ -64,7 +59,7 @@ def less(forward: Forward, null: Fit, one: Fit, k: int, setup: Setup, iterations
     """The best fit without effect k, from where a fit stands; `null` where none is left."""
     if len(one.hypothesis.components) == 1:
         return null
-    return _afresh(forward, restart.less(forward, one, k, setup), iterations)
+    return moved(forward, restart.less(forward, one, k, setup), iterations)
 
 
 class Turns:
