@@ -11,8 +11,9 @@ import pytest
 from click.testing import CliRunner
 
 from sonicvacuum import records
-from sonicvacuum.cli.discover import discover
+from sonicvacuum.cli.discover import Failure, _attempt, discover
 from sonicvacuum.cli.many import side_by_side
+from sonicvacuum.discover import session
 from sonicvacuum.files import InputError
 
 
@@ -109,3 +110,34 @@ def test_records_side_by_side_give_the_files_of_one_at_a_time(hidden, empty, tmp
             assert left == right
         elif one.is_file():
             assert one.read_bytes() == other.read_bytes()
+
+
+@pytest.mark.parametrize(("error", "code"), [(InputError("no cure"), 2), (TypeError("no law"), 1)])
+def test_one_search_that_fails_does_not_end_the_others(hidden, empty, tmp_path, monkeypatch, error, code):
+    for name, record in (("damped", hidden), ("empty", empty)):
+        records.write(record, tmp_path / name)
+    whole, errors = session.discover, [error]
+
+    def but_for_the_first(*given, **how):
+        if errors:
+            raise errors.pop()
+        return whole(*given, **how)
+
+    monkeypatch.setattr(session, "discover", but_for_the_first)
+    paths, out = [str(tmp_path / name) for name in ("damped", "empty")], tmp_path / "found"
+    asked = [*paths, "--out", str(out), "--no-figures", "--threads", "1"]
+    result = CliRunner().invoke(discover, asked)
+    assert result.exit_code == code
+    assert f"Error: {paths[0]}: " in result.stderr
+    assert str(error) in result.stderr
+    assert ("Traceback" in result.stderr) == (code == 1)
+    assert result.stderr.splitlines()[-1] == "Error: 1 of 2 searches failed, as told above"
+    assert result.stdout.startswith(f"{paths[1]}: none")
+    assert (out / "empty" / "verdict.json").is_file()
+    assert not (out / "damped").exists()
+
+
+def test_a_failure_in_a_process_of_its_own_comes_back_as_such():
+    told = list(side_by_side(_attempt, [((), "out", (), False, 1, True)] * 2, 2))
+    assert [type(t) for t in told] == [Failure, Failure]
+    assert "Traceback" in told[0].broken

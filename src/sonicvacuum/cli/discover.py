@@ -1,5 +1,8 @@
 """`sonicvacuum discover`: what records of measured data say is missing from the model."""
 
+import sys
+import traceback
+from dataclasses import dataclass
 from pathlib import Path
 
 import click
@@ -40,8 +43,8 @@ def discover(records, out, together, figures, threads, own, quiet, no_limits):
     """Find what is missing from the nominal model of measured data in the folders RECORDS.
 
     One record is written to OUT; of several each has its own folder OUT/<folder name>, and as many are
-    searched at a time as there are threads. All of them are read before the first is searched. On a terminal,
-    a line shows how far the search is.
+    searched at a time as there are threads. All of them are read before the first is searched; one whose
+    search fails is told of, and the others go on. On a terminal, a line shows how far the search is.
     """
     from sonicvacuum.discover.model import window
     from sonicvacuum.records import read
@@ -63,30 +66,79 @@ def discover(records, out, together, figures, threads, own, quiet, no_limits):
     from sonicvacuum.physics.run import available_threads
 
     threads = threads or available_threads()
+    if len(groups) == 1:
+        (folder, paths), *_ = groups.items()
+        with stages_shown(", ".join(paths), quiet):
+            told = _search([kept[p] for p in paths], folder, known, figures, threads, not no_limits)
+        _tell(paths, *told, quiet)
+        return
     processes = min(threads, len(groups))
+    how = (own, figures, threads // processes, not no_limits)
+    failed = []
+    for paths, outcome in zip(groups.values(), _outcomes(groups, processes, how, quiet), strict=True):
+        if isinstance(outcome, Failure):
+            click.echo(outcome.told(", ".join(paths)), err=True)
+            failed.append(outcome)
+        else:
+            _tell(paths, *outcome, quiet)
+    if failed:
+        click.echo(f"Error: {len(failed)} of {len(groups)} searches failed, as told above", err=True)
+        sys.exit(1 if any(f.broken for f in failed) else 2)
+
+
+@dataclass(frozen=True)
+class Failure:
+    """How the search of one record among several ended.
+
+    Attributes:
+        error: the message.
+        broken: the traceback where the program is to blame; empty where the record is.
+    """
+
+    error: str
+    broken: str = ""
+
+    def told(self, paths: str) -> str:
+        """In one line, a traceback above it."""
+        return self.broken + "Error: " + in_one_line(f"{paths}: {self.error}")
+
+
+def _outcomes(groups, processes, how, quiet):
+    """Of each search its notes and sentence, or its Failure; in their order, as they end."""
     if processes == 1:
         for folder, paths in groups.items():
-            given = [kept.get(p) or read(p) for p in paths]
             with stages_shown(", ".join(paths), quiet):
-                told = _search(given, folder, known, figures, threads, not no_limits)
-            _tell(paths, *told, quiet)
+                outcome = _attempt(paths, folder, *how)
+            yield outcome
         return
     from sonicvacuum.cli.many import side_by_side
 
-    how = (own, figures, threads // processes, not no_limits, quiet)
-    tasks = [(paths, folder, *how) for folder, paths in groups.items()]
     with stages_shown(f"{len(groups)} records", quiet):
         stages.begin("search", len(groups))
-        for paths, told in zip(groups.values(), side_by_side(_alone, tasks, processes), strict=True):
-            _tell(paths, *told, quiet)
+        tasks = [(quiet, paths, folder, *how) for folder, paths in groups.items()]
+        yield from side_by_side(_alone, tasks, processes)
 
 
-def _alone(paths, folder, own, figures, threads, limits, quiet):
+def _alone(quiet, *task):
     """One search in a process of its own, which tells of no stages."""
+    with stages_shown("", quiet=True) if quiet else compiling_told():
+        return _attempt(*task)
+
+
+def _attempt(paths, folder, own, figures, threads, limits):
+    """One search of several; what a full disk or memory ends, it would end for the others as well."""
+    from sonicvacuum.files import InputError
     from sonicvacuum.records import read
 
-    with stages_shown("", quiet=True) if quiet else compiling_told():
+    try:
         return _search([read(p) for p in paths], folder, catalogue(own), figures, threads, limits)
+    except InputError as error:
+        return Failure(str(error))
+    except (OSError, ImportError, MemoryError):
+        raise
+    except Exception as error:
+        told = f"the search broke, {type(error).__name__}: {error}; please report it with the record"
+        return Failure(told, traceback.format_exc())
 
 
 def _search(records, folder, known, figures, threads, limits):
