@@ -112,7 +112,7 @@ def investigate(experiment: Experiment, threads: int = 1, null: Fit | None = Non
 
 def _odds(found, decision: Decision, alike, prior, present) -> tuple[dict[str, float], list[str]]:
     """Probabilities and what has to be said of them."""
-    logs = explanations.log_weights(found, decision.combinations, alike, prior)
+    logs = explanations.log_weights(found, decision.combinations, prior)
     plain = explanations.probabilities(logs, decision.left, decision.beside)
     odds, likelier = explanations.consistent(plain, decision.named)
     reasons = []
@@ -124,7 +124,7 @@ def _odds(found, decision: Decision, alike, prior, present) -> tuple[dict[str, f
         )
     reasons += _said(prior, present) + _losses(found, odds, present)
     sure = odds.get(explanations.key(decision.named), 0.0) > 0.5
-    other = _with_less(found, decision, alike, prior) if sure or present else ""
+    other = _with_less(found, decision, prior) if sure or present else ""
     if other:
         reasons.append(f"were its prior ten times smaller, {other} would be the likeliest")
     elif present:
@@ -157,11 +157,11 @@ def _losses(found, odds, present) -> list[str]:
     return [f"{' + '.join(present)} with a loss, of whatever law: probability {whole:.4g}"]
 
 
-def _with_less(found, decision: Decision, alike, prior) -> str:
+def _with_less(found, decision: Decision, prior) -> str:
     """The likeliest explanation if what is named had a tenth of its prior; "" where that changes nothing."""
     named = [name for name in decision.named if name != explanations.UNKNOWN]
     less = {**prior, **{name: 0.1 * prior.get(name, 1.0) for name in named}}
-    logs = explanations.log_weights(found, decision.combinations, alike, less)
+    logs = explanations.log_weights(found, decision.combinations, less)
     odds = explanations.probabilities(logs, decision.left, decision.beside)
     best = max(odds, key=odds.get)
     return "" if set(explanations.effects(best)) == set(decision.named) else best

@@ -27,7 +27,7 @@ def unexplained(found: Investigation) -> bool:
 def logs_of(found: Investigation) -> dict[str, float]:
     """Explanation of a record → log of prior times evidence, against its nominal model's."""
     prior = found.forward.experiment.prior_odds
-    return explanations.log_weights(found.candidates, found.combinations, found.alike, prior)
+    return explanations.log_weights(found.candidates, found.combinations, prior)
 
 
 def weight_of(found: Investigation) -> float:

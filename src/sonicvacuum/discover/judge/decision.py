@@ -245,7 +245,7 @@ class Case:
         """What stays named beside something unknown."""
         reasons = [f"{after.where} is left"]
         rivals, prior = self._rivals(grown), self.forward.experiment.prior_odds
-        weights = explanations.log_weights((), [*grown.tried.values(), *rivals], [], prior)
+        weights = explanations.log_weights((), [*grown.tried.values(), *rivals], prior)
         # With what is left as noise a rival may be likelier than what the search has found.
         rival = [c.fit for c in sorted(rivals, key=lambda c: -c.log_bayes)[:1]]
         for one in (grown.best.fit, *rival, grown.null):

@@ -4,7 +4,8 @@ beside them.
 Evidence weighs what explains the data as it stands; what is left gives the odds that something unknown is
 there as well (`evidence`, `calibration`). That share goes to the explanations that count a smooth discrepancy
 as noise, by their evidence there, where they were worked out, else to `unknown` alone. Effects that act alike
-are one explanation with several names, and share its weight.
+are one explanation with several names. Each has its own evidence: equal where nothing tells the names apart,
+less for a general law that comes out as a special one, of which the data leave room for less.
 """
 
 import math
@@ -62,10 +63,9 @@ def _predicted(forward, fit):
 def log_weights(
     singles: Iterable[Candidate],
     combinations: Iterable[Combination],
-    alike: list[str],
     odds: Mapping[str, float] | None = None,
 ) -> dict[str, float]:
-    """Explanation → log of prior times evidence; those in `alike` share theirs.
+    """Explanation → log of prior times evidence.
 
     `odds` are those of `evidence.log_weights`; the prior of a set is the product of its effects'.
     """
@@ -76,10 +76,6 @@ def log_weights(
         if c.effects and all(odds.get(name, 1.0) > 0.0 for name in c.effects):
             prior = sum(each + math.log(odds.get(name, 1.0)) for name in c.effects)
             logs[key(c.effects)] = prior + c.log_bayes
-    shared = [logs[name] for name in alike if name in logs]
-    if len(shared) > 1:
-        mean = float(np.logaddexp.reduce(shared)) - math.log(len(shared))
-        logs |= {name: mean for name in alike if name in logs}
     return logs
 
 

@@ -90,7 +90,7 @@ def standing_out(
     first = None
     while True:
         ranked = sorted(weighed(forward, null, found), key=lambda c: -c.log_bayes)
-        weights = explanations.log_weights((), ranked, [], prior)
+        weights = explanations.log_weights((), ranked, prior)
         odds = shares(weights)
         if set(ranked[0].effects) & _PROFILES:
             return first or Standing(None, odds, {})
