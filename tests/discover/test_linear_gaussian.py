@@ -12,11 +12,14 @@ from sonicvacuum.discover import next_experiment, policy
 from sonicvacuum.discover.fit import calibration, evidence, heldout
 from sonicvacuum.discover.fit.calibration import Calibration
 from sonicvacuum.discover.fit.evidence import Candidate
-from sonicvacuum.discover.judge import degenerate, left
+from sonicvacuum.discover.fit.refit import Fit
+from sonicvacuum.discover.judge import behind, degenerate, left
 from sonicvacuum.discover.model.experiment import Experiment, RunData
 from sonicvacuum.discover.model.hypothesis import Hypothesis
 from sonicvacuum.discover.model.problem import noise
 from sonicvacuum.discover.search.directions import Direction
+from sonicvacuum.discover.search.screen import Screen
+from sonicvacuum.effects import IDS
 from sonicvacuum.gauges import Gauge
 from sonicvacuum.records import Record, Signals
 
@@ -126,6 +129,67 @@ def test_the_threshold_lets_pure_noise_pass_once_in_a_hundred():
 @pytest.mark.parametrize(("p", "sure"), [(5e-4, True), (2e-3, False)])
 def test_a_misfit_without_a_name_is_called_unknown_below_one_in_a_thousand(p, sure):
     assert left.sure(SimpleNamespace(p=p)) is sure
+
+
+# --- what hides behind what was named
+
+
+def hidden_odds(model, column, two_sided):
+    """Odds of one more effect of (R, T) `column` beside the model's, by direct integration of its likelihood.
+
+    Its size d′ is that of its change with nuisances alone fitted; the model follows at each size.
+    """
+    rows = np.concatenate([*model.columns, model.prior_rows])
+    known = np.concatenate([*model.data, np.zeros(len(model.prior_rows))])
+    more = np.r_[column.ravel(), np.zeros(len(model.prior_rows))]
+
+    def left(data, rows):
+        return data - rows @ np.linalg.lstsq(rows, data, rcond=None)[0]
+
+    unit = np.linalg.norm(left(more, rows[:, model.free :]))
+    least = np.sum(left(known, rows) ** 2)
+
+    def likelihood(log_size):
+        sizes = [np.exp(log_size), -np.exp(log_size)][: 1 + two_sided]
+        chi2 = [np.sum(left(known - d / unit * more, rows) ** 2) for d in sizes]
+        return np.mean(np.exp(-0.5 * (np.array(chi2) - least)))
+
+    total, _ = integrate.quad(likelihood, math.log(4.0), math.log(20.0))
+    return total / math.log(evidence.STRONG / evidence.WEAK) * 0.6 / len(IDS)
+
+
+@pytest.mark.parametrize("two_sided", [False, True])
+@pytest.mark.parametrize("apart", [0.02, 0.1, 0.5])
+def test_odds_of_an_effect_that_hides_are_the_integral_of_its_likelihood(apart, two_sided):
+    model = drawn(strength=2.0)
+    other = np.random.default_rng(np.random.SeedSequence(8)).normal(size=model.data.shape)
+    column = model.columns[..., 0] + apart * other
+    at = model.solved(range(3))
+    scores = Screen(
+        (Direction("tsuji", "alpha", two_sided=two_sided),),
+        np.einsum("rt,rt->r", column, model.data - model.columns @ at)[:, None],
+        np.einsum("rtn,rt->rn", model.columns, column)[:, :, None],
+        np.einsum("rt,rt->r", column, column)[:, None, None],
+        model.normal(at),
+        Fit(Hypothesis(), model.normal(at)),
+    )
+    found = behind.odds(scores, 20.0**2, 4.0**2, {"tsuji": 1.0})
+    exact = hidden_odds(model, column, two_sided)
+    assert found["tsuji"] == pytest.approx(exact, rel=2e-3)  # the trapezoid rule on 65 points
+
+
+def test_what_hides_takes_its_share_from_all_explanations():
+    before = {"none": 0.0, "unknown": 0.01, "tsuji": 0.79, "gravity": 0.1, "gravity + tsuji": 0.1}
+    after = behind.told(before, ["tsuji"], {"gravity": 0.3, "kuwabara-kono": 0.05, "gap": 1e-6})
+    assert set(after) - set(before) == {"kuwabara-kono + tsuji"}
+    assert sum(after.values()) == pytest.approx(1.0, rel=1e-12)  # rounding
+    assert after["kuwabara-kono + tsuji"] == pytest.approx(0.05 * after["tsuji"])
+    assert after["tsuji"] / after["gravity"] == pytest.approx(7.9)
+
+
+def test_nothing_hides_among_effects_that_are_hardly_seen():
+    scores = screened(np.eye(4), np.ones(4), (Direction("tsuji", "alpha"),) * 4)
+    assert behind.odds(scores, 15.0, 16.0, {}) == {}
 
 
 # --- limits

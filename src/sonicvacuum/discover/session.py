@@ -2,7 +2,7 @@
 
 import math
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +15,7 @@ from sonicvacuum.discover.draws import Draws
 from sonicvacuum.discover.faults import competition
 from sonicvacuum.discover.fit import goodness, heldout
 from sonicvacuum.discover.fit.refit import Fit
-from sonicvacuum.discover.judge import degenerate, explanations, locate
+from sonicvacuum.discover.judge import behind, degenerate, explanations, locate
 from sonicvacuum.discover.judge.law import surface
 from sonicvacuum.discover.model import window
 from sonicvacuum.discover.model.forward import Forward
@@ -23,6 +23,7 @@ from sonicvacuum.discover.model.nuisances import exact
 from sonicvacuum.discover.posterior import posterior
 from sonicvacuum.discover.rounds import Investigation
 from sonicvacuum.discover.search.free_law import FreeLaw, free_law
+from sonicvacuum.discover.search.screen import Screen
 from sonicvacuum.discover.verdict import Verdict
 from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.physics import validity
@@ -99,7 +100,9 @@ def discover(
     after = locate.locate(model, final) if final is not found.null else places
     clock.mark("locate")
     fits = [goodness.goodness(forward, found.null), goodness.goodness(model, final)]
-    limits, untestable, wider = upper.limits(found, fits[1])
+    scores = upper.screened(found)
+    found = _with_hidden(found, scores)
+    limits, untestable, wider = upper.limits(found, fits[1], scores)
     alike = degenerate.confusable(
         found.named, found.candidates, found.combinations, found.alike, found.probabilities
     )
@@ -148,6 +151,15 @@ def discover(
     )
     said = tuple(line for lines in notes for line in lines)
     return Result(outcome.record, records, said, found, places, after, limits, result, free, tuple(drawn))
+
+
+def _with_hidden(found: Investigation, scores: Screen) -> Investigation:
+    """The same with a share of the probability for what may hide behind the named effects."""
+    if not found.named or explanations.UNKNOWN in found.named or found.counted:
+        return found
+    gain = found.null.objective - found.final.objective
+    beside = behind.odds(scores, gain, found.threshold, found.forward.experiment.prior_odds)
+    return replace(found, probabilities=behind.told(found.probabilities, found.named, beside))
 
 
 def _exact(found: Investigation) -> list[str]:

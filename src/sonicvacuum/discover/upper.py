@@ -11,7 +11,19 @@ from sonicvacuum.discover.search import directions, screen, singles
 FAINT = 1e-3
 
 
-def limits(found: Investigation, fit: Goodness) -> tuple[list[Limit], list[str], float]:
+def screened(found: Investigation) -> screen.Screen:
+    """The catalogue, less what the final model has, screened at that; what is smooth counts as noise."""
+    view = found.counted or found
+    if view.final is found.null:
+        return found.scores
+    present = (*view.final.hypothesis.ids, *view.forward.experiment.excluded)
+    families = directions.catalogue(singles.setup_of(view.forward), present)
+    return screen.screen(view.forward, view.final, families)
+
+
+def limits(
+    found: Investigation, fit: Goodness, scores: screen.Screen
+) -> tuple[list[Limit], list[str], float]:
     """Limits, effects that the data cannot test, and the factor on the limits' errors.
 
     What is smooth is in the noise already; for the rest errors grow with the residual (Birge, Phys. Rev. 40,
@@ -21,17 +33,11 @@ def limits(found: Investigation, fit: Goodness) -> tuple[list[Limit], list[str],
     Args:
         found: effects and their evidence.
         fit: goodness of fit of the final model.
+        scores: of `screened`.
     """
-    forward, final = found.forward, found.final
-    if found.counted is not None:
-        forward, final = found.counted.forward, found.counted.final
-    setup = singles.setup_of(forward)
-    if final is found.null:
-        scores = found.scores
-    else:
-        present = (*final.hypothesis.ids, *forward.experiment.excluded)
-        scores = screen.screen(forward, final, directions.catalogue(setup, present))
-    excess = float(final.normal.chi2.sum() / found.sizes.sum())
+    view = found.counted or found
+    setup = singles.setup_of(view.forward)
+    excess = float(view.final.normal.chi2.sum() / found.sizes.sum())
     wider = max(1.0, excess**0.5) if fit.failed else 1.0
     all_of_them = degenerate.limits(scores, setup, wider, _elsewhere(found))
     untestable = sorted({one.effect for one in all_of_them if not one.testable})
