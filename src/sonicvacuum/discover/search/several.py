@@ -3,10 +3,12 @@
 At each turn the size of the smooth discrepancy is inferred at the model so far and counted as noise
 (`smooth`). An effect is added while it passes the noise of the whole catalogue under that, is ten times
 likelier than without, and predicts unseen runs no worse; one that no longer does is taken away; each is held
-against those that might stand in its place. A misfit in one direction leaves room for the effect that makes
-it, one that is spread over many does not: a systematic error names nothing.
+against those that might stand in its place, and so are any two of a set against one. A misfit in one
+direction leaves room for the effect that makes it, one that is spread over many does not: a systematic error
+names nothing.
 """
 
+import itertools
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -74,7 +76,7 @@ class Turns:
 
     def grow(self, null: Fit, start: Fit) -> Grown:
         """From a start to where nothing more is added, taken away, exchanged or found from elsewhere."""
-        plain_null, fit, exchanges, again = null, start, 0, False
+        plain_null, fit, exchanges, again, fewer = null, start, 0, False, False
         for _ in range(TURNS):
             fit = self._counted(plain_null, fit)
             fit = self._pruned(fit)
@@ -85,6 +87,9 @@ class Turns:
             if more is None and not again:
                 again = True
                 more = self._again(fit)
+            if more is None and not fewer:
+                fewer, exchanges = True, 0
+                more = self._one_for_two(fit)
             if more is None:
                 break
             fit = more
@@ -182,6 +187,22 @@ class Turns:
             if best is not None and self._evidence(best) > own + pairs.WORTH:
                 return best
         return None
+
+    def _one_for_two(self, fit):
+        """The fit with one effect in place of two, None where that is not likelier.
+
+        What was added first may be but the nearest to an effect that was never asked for, and a second one
+        make up for the difference.
+        """
+        count, gained = len(fit.hypothesis.components), self.null.objective - fit.objective
+        found = []
+        for j, k in itertools.combinations(range(count), 2) if count > 2 else ():
+            less = self._less(self._less(fit, k), j)
+            starts = pairs.beside(self.forward, self.null, less, self.setup)
+            found.append(self._likeliest(starts, PROMISE * gained))
+        best = max((one for one in found if one is not None), key=self._evidence, default=None)
+        better = best is not None and self._evidence(best) > self._evidence(fit) + pairs.WORTH
+        return best if better else None
 
     def _again(self, fit):
         """The same effects from other starts, None where that leads nowhere else."""
