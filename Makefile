@@ -21,7 +21,7 @@ COMPILE := pip compile --quiet --universal --generate-hashes --no-emit-index-url
 	--custom-compile-command "make lock"
 
 .DELETE_ON_ERROR:
-.PHONY: always all env test browser bare fuzz crash interrupt slurm crate generic reproduce bench nested study slips extras laws docs lock clean help
+.PHONY: always all env test long browser bare fuzz crash interrupt slurm crate generic reproduce bench nested study slips extras laws docs lock clean help
 
 all: env  ## build the environment, then run the whole pipeline
 	$(START) --cores $(CORES)
@@ -71,6 +71,9 @@ test: env  ## check format, style, types, import contracts, and run the tests
 	$(BIN)/lint-imports --no-logo
 	$(BIN)/mypy
 	$(BIN)/pytest --numprocesses $(CORES) --dist loadfile
+
+long: env  ## the tests that take minutes each, which `make test` leaves out
+	$(BIN)/pytest --numprocesses $(CORES) -m long
 
 browser: .venv/browsed  ## try the pages in a real browser, those of results/ among them: Chromium on the path, or CHROMIUM=PATH
 	$(BIN)/pytest tests/report/browser_pages.py

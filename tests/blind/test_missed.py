@@ -18,7 +18,7 @@ from sonicvacuum_blind.study import cases
         # The pair was fitted, in a minimum of its own.
         (1824, {"contact-gap", "mass-defect"}),
         # Alone its contact ended beside its minimum, and a second effect made up for that.
-        (1832, {"relaxing-contact"}),
+        pytest.param(1832, {"relaxing-contact"}, marks=pytest.mark.long),
     ],
 )
 def test_the_lowest_minimum_is_found(place, named):
@@ -43,6 +43,17 @@ def test_the_lowest_minimum_is_found(place, named):
 def test_beside_a_systematic_error_that_explains_more(place, named):
     record, _ = extra_cases.make(extra_cases.cases()[place])
     assert session.discover(record, limits=False).verdict.named == named
+
+
+@pytest.mark.long
+def test_one_effect_is_found_for_which_two_others_had_made_up():
+    """Friction, a contact exponent and damping: a relaxing contact and an error of the striker stood for the
+    last. Laws of damping are alike here (an ideal test is left with d′ 3.7 between some).
+    """
+    record, _ = extra_cases.make(extra_cases.cases()[47])
+    named = session.discover(record, limits=False).verdict.named
+    assert len(named) == 3
+    assert {"contact-exponent", "guide-friction"} < set(named)
 
 
 def test_the_interval_of_a_contact_that_relaxes_slowly_holds_its_truth():

@@ -103,7 +103,7 @@ def test_a_run_that_is_off_is_put_right_beside_an_effect():
     ("effects", "ratio", "named"),
     [
         ([], 0.1, []),
-        ([("kuwabara-kono", {"time_us": 0.6})], 0.03, ["kuwabara-kono"]),
+        pytest.param([("kuwabara-kono", {"time_us": 0.6})], 0.03, ["kuwabara-kono"], marks=pytest.mark.long),
     ],
 )
 def test_heavier_beads_are_no_error_of_the_striker(effects, ratio, named):

@@ -1,0 +1,52 @@
+"""Sets of effects, the search's bookkeeping alone: what is held against what, fits given by a table."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from sonicvacuum.discover.search import pairs, several
+
+# Log evidence of every set that could be fitted.
+EVIDENCE = {"bd": 40.0, "bcd": 50.0, "abcd": 52.0, "be": 49.0, "bce": 60.0, "ab": 30.0, "bc": 45.0}
+
+
+def fitted(effects):
+    """A fit of some effects, as far as bookkeeping looks at it."""
+    own = "".join(sorted(effects))
+    hypothesis = SimpleNamespace(components=tuple(own), ids=tuple(own))
+    return SimpleNamespace(hypothesis=hypothesis, objective=-2.0 * EVIDENCE.get(own, 0.0))
+
+
+@pytest.fixture
+def turns(monkeypatch):
+    """A search in which every effect of the alphabet promises what its set gains."""
+    found = several.Turns(None, None, 1.0, None)
+    found.null = fitted("")
+    asked = []
+
+    def beside(forward, null, one, setup):
+        asked.append("".join(one.hypothesis.ids))
+        return [(*one.hypothesis.ids, x) for x in "abcde" if x not in one.hypothesis.ids]
+
+    monkeypatch.setattr(pairs, "beside", beside)
+    monkeypatch.setattr(found, "_less", lambda one, k: fitted(np.delete(list(one.hypothesis.ids), k)))
+    monkeypatch.setattr(found, "_evidence", lambda one: -0.5 * one.objective)
+    monkeypatch.setattr(
+        found, "_likeliest", lambda starts, enough: max(map(fitted, starts), key=found._evidence)
+    )
+    return found, asked
+
+
+def test_one_effect_takes_the_place_of_two(turns):
+    """e, for which a and d had made up, is in no set that was tried before."""
+    found, asked = turns
+    assert found._one_for_two(fitted("abcd")).hypothesis.ids == tuple("bce")
+    assert sorted(asked) == ["ab", "ac", "ad", "bc", "bd", "cd"]
+
+
+@pytest.mark.parametrize("effects", ["bce", "bc"])
+def test_a_set_that_is_likelier_than_any_with_one_effect_less_stays(turns, effects):
+    found, asked = turns
+    assert found._one_for_two(fitted(effects)) is None
+    assert len(asked) == (3 if len(effects) == 3 else 0)
