@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from sonicvacuum.discover import policy
 from sonicvacuum.discover.search import pairs, several
 
 # Log evidence of every set that could be fitted.
@@ -50,3 +51,12 @@ def test_a_set_that_is_likelier_than_any_with_one_effect_less_stays(turns, effec
     found, asked = turns
     assert found._one_for_two(fitted(effects)) is None
     assert len(asked) == (3 if len(effects) == 3 else 0)
+
+
+@pytest.mark.parametrize(("rival", "given_up"), [(79.9, False), (80.1, True)])
+def test_a_set_that_cannot_come_to_its_rival_is_given_up(turns, rival, given_up):
+    """Three effects at 50 after two at 45: three more, each with twice the last one's 5, come to 80."""
+    found, _ = turns
+    found.rival = rival
+    assert policy.MOST_EFFECTS == 6
+    assert found._hopeless(fitted("bc"), fitted("bcd")) is given_up

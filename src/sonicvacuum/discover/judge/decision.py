@@ -207,11 +207,10 @@ class Case:
         """
         if not seen.size.found:
             return None
-        grown = several.Turns(self.forward, self.known, needed, self.setup, infer=False).grow(
-            self.null, start
-        )
-        best = grown.best
         rival = pairs.combination(self.null, start, self.setup).log_bayes + seen.size.log_odds
+        turns = several.Turns(self.forward, self.known, needed, self.setup, infer=False, rival=rival)
+        grown = turns.grow(self.null, start)
+        best = grown.best
         if len(best.effects) < 3 or best.log_bayes <= rival:
             return None
         after = left(self.forward, best.fit, self.known, behind=_behind(best.gain, most))

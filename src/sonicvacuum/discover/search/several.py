@@ -26,6 +26,8 @@ from sonicvacuum.effects import Setup
 TRIED, EXCHANGES = 2, 1
 # What slopes promise may fall short of what a fit gains by this share.
 PROMISE = 0.6
+# One more effect is hoped to gain so many times the log evidence of the one before it.
+HOPED = 2.0
 TURNS = policy.MOST_EFFECTS + 2
 
 
@@ -66,11 +68,14 @@ def less(forward: Forward, null: Fit, one: Fit, k: int, setup: Setup, iterations
 
 class Turns:
     """One search; `forward` has no discrepancy, `known` are its `smooth.blocks`, `needed` is the Δχ² that an
-    effect has to gain.
+    effect has to gain, `rival` a log evidence that a set has to come to, or is not asked for.
     """
 
-    def __init__(self, forward: Forward, known, needed: float, setup: Setup, infer: bool = True):
+    def __init__(
+        self, forward: Forward, known, needed: float, setup: Setup, infer: bool = True, rival: float = -np.inf
+    ):
         self.plain, self.known, self.needed, self.setup, self.infer = forward, known, needed, setup, infer
+        self.rival = rival
         self.forward, self.null, self.tried = forward, None, {}
         self.size = smooth.Size(0.0, 0.0)
 
@@ -81,6 +86,8 @@ class Turns:
             fit = self._counted(plain_null, fit)
             fit = self._pruned(fit)
             more = self._added(fit)
+            if more is not None and self._hopeless(fit, more):
+                return self._grown(more)
             if more is None and exchanges < EXCHANGES:
                 exchanges += 1
                 more = self._exchanged(fit)
@@ -93,8 +100,17 @@ class Turns:
             if more is None:
                 break
             fit = more
-        fit = self._pruned(self._counted(plain_null, fit))
+        return self._grown(self._pruned(self._counted(plain_null, fit)))
+
+    def _grown(self, fit) -> Grown:
         return Grown(self.forward, self.null, self._noted(fit), self.size, self.tried)
+
+    def _hopeless(self, fit, more) -> bool:
+        """Whether a set would stay behind its rival with all the effects that may still be added, from what
+        the last one gained.
+        """
+        own, room = self._evidence(more), policy.MOST_EFFECTS - len(more.hypothesis.components)
+        return own + HOPED * max(1, room) * (own - self._evidence(fit)) < self.rival
 
     def _counted(self, plain_null, fit):
         """The fit with the discrepancy at it counted as noise; what was tried under another is forgotten."""
