@@ -1,6 +1,7 @@
 """Records with slips: valid, reproducible, silent about what was done to them, and wrong in that alone."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -66,6 +67,27 @@ def test_every_slip_is_made_in_every_set_up_with_an_effect_and_without():
     made = {(c.slip, c.setup, bool(c.effect)) for c in every}
     assert len(every) == len({c.id for c in every}) == len(made) == 2 * len(slip_cases.SETUPS) * len(SLIPS)
     assert every == slip_cases.cases()
+
+
+def test_beside_systematic_errors_each_size_comes_in_turn_in_a_list_of_its_own():
+    usual, smooth = slip_cases.cases(), slip_cases.cases(smooth=True)
+    assert {c.size for c in usual} == {0.0}
+    assert [c.size for c in smooth[:4]] == [0.003, 0.01, 0.03, 0.003]
+    assert {c.spec.seed for c in smooth}.isdisjoint(c.spec.seed for c in usual)
+    assert {c.spec.d_prime for c in smooth if c.effect} == {100.0}
+    assert [(c.slip, c.setup) for c in smooth] != [(c.slip, c.setup) for c in usual]
+
+
+def test_a_systematic_error_has_its_size_and_is_of_each_record_its_own():
+    one, other = (c for c in slip_cases.cases(smooth=True)[1:5:3] if c.size == 0.01)
+    peak = np.exp(-(((np.arange(480.0) - 200.0) / 20.0) ** 2))
+    clean = SimpleNamespace(traces=np.tile(peak, (3, 2, 1)) * np.array([5.0, 10.0, 20.0])[:, None, None])
+    design = SimpleNamespace(runs=[SimpleNamespace(speed=v) for v in (0.2, 0.4, 0.8)])
+    off = [slip_cases._off(c, clean, design) for c in (one, other)]
+    within = off[0][:, :, 180:280] / clean.traces.max(axis=2, keepdims=True)
+    assert np.sqrt(np.square(within).mean()) == pytest.approx(0.01, rel=0.5)  # a few correlation times
+    assert np.abs(off[0] - off[1]).max() > 0.005 * clean.traces.max()
+    np.testing.assert_array_equal(off[0], slip_cases._off(one, clean, design))
 
 
 def test_a_slip_is_made_only_where_it_can_be():
