@@ -16,7 +16,7 @@ from sonicvacuum_blind.study import cases
         # Slopes promised half of what viscous drag gains, which leaves much.
         (677, {"guide-friction"}),
         # The pair was fitted, in a minimum of its own.
-        (1824, {"contact-gap", "mass-defect"}),
+        pytest.param(1824, {"contact-gap", "mass-defect"}, marks=pytest.mark.long),
         # Alone its contact ended beside its minimum, and a second effect made up for that.
         pytest.param(1832, {"relaxing-contact"}, marks=pytest.mark.long),
     ],
@@ -35,7 +35,7 @@ def test_the_lowest_minimum_is_found(place, named):
     ("place", "named"),
     [
         # A compliant wall beside a systematic error of 1 %, which explains more than any effect does alone.
-        (89, ["wall-compliance", "unknown"]),
+        pytest.param(89, ["wall-compliance", "unknown"], marks=pytest.mark.long),
         # Nothing beside one of 0.3 %: a decaying gauge gains as much as would do beside noise.
         (101, ["unknown"]),
     ],

@@ -76,7 +76,11 @@ def test_nothing_is_named_where_nothing_is_missing(nothing):
 
 def test_probabilities_cover_the_catalogue_and_add_up(verdict):
     p = verdict.verdict.probabilities
-    assert set(p) <= {"none", "unknown", *IDS}
+    assert {name for key in p for name in key.split(" + ")} <= {"none", "unknown", *IDS}
+    sets = {key: value for key, value in p.items() if " + " in key}
+    # What may hide behind the one effect that was named has it, and is far less likely.
+    assert all(verdict.verdict.named[0] in key for key in sets)
+    assert 0.0 < sum(sets.values()) < 0.1
     assert sum(p.values()) == pytest.approx(1.0, abs=1e-9)  # rounding
 
 
