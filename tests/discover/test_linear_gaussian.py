@@ -185,6 +185,8 @@ def test_what_hides_takes_its_share_from_all_explanations():
     assert sum(after.values()) == pytest.approx(1.0, rel=1e-12)  # rounding
     assert after["kuwabara-kono + tsuji"] == pytest.approx(0.05 * after["tsuji"])
     assert after["tsuji"] / after["gravity"] == pytest.approx(7.9)
+    unheard = behind.told(before, ["hunt-crossley"], {"gap": 0.3})
+    assert all(unheard[name] == pytest.approx(p) for name, p in before.items())
 
 
 def test_nothing_hides_among_effects_that_are_hardly_seen():

@@ -69,11 +69,11 @@ def told(
     """Probabilities with the sets among them that hide behind what is named; they sum to 1.
 
     Args:
-        probabilities: of explanations, what is `named` among them.
+        probabilities: of explanations.
         named: ids.
         beside: of `odds`; sets that were fitted are among the explanations as they stand.
     """
-    own = probabilities[explanations.key(named)]
+    own = probabilities.get(explanations.key(named), 0.0)
     sets = {explanations.key([*named, n]): own * o for n, o in beside.items() if o > _FAINT}
     every = {**probabilities, **{name: p for name, p in sets.items() if name not in probabilities}}
     total = sum(every.values())
