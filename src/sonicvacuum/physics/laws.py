@@ -26,6 +26,9 @@ import numpy as np
 from sonicvacuum.physics.fingerprint import fingerprint
 from sonicvacuum.physics.lanes import power_3_2
 
+# The search for compressions at rest ends after a step so short, relative: what the next would still change
+# lies below the rounding errors of the law.
+SETTLED = 1e-10
 # Slot → arguments of its formula besides the coefficients.
 SLOTS = {"elastic": 1, "factor": 1, "path": 3, "force": 3, "memory": 2, "body": 1}
 
@@ -220,8 +223,7 @@ def depth_at(laws: LawSet, coefficients: np.ndarray, load: np.ndarray) -> np.nda
     for _ in range(60):
         step = np.where(borne, -miss / slope, 0.0)
         x = x + step
-        # Steps of a rounding error change nothing, and say nothing of the slope.
-        if np.all(np.abs(step) <= 4e-16 * np.abs(x)):
+        if np.all(np.abs(step) <= SETTLED):
             break
         last, miss = miss, np.log(elastic_at(laws, coefficients, np.exp(x))) - wanted
         moved = np.abs(step) > 1e-9

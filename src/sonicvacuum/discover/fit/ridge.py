@@ -13,8 +13,10 @@ from sonicvacuum.discover.fit.normal import Normal, from_slopes
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Hypothesis
 
-# Steps to either side at most; of Gauss and Newton at each.
-MOST, STEPS = 16, 4
+# Steps to either side at most; of Gauss and Newton at each, fewer where one promises no more χ² than this.
+MOST, STEPS, SETTLED = 16, 4, 0.01
+# A step that does not lower the misfit is tried once more at this share.
+BACK = 0.25
 # The valley ends where χ² is this much above its lowest; steps double below the one, halve above the other.
 END, CALM, STEEP = 25.0, 1.0, 6.0
 # First step, in standard errors; the longest, in a coordinate.
@@ -150,20 +152,27 @@ class _Walk:
 
     def settled(self, u: np.ndarray, nu: np.ndarray) -> _Point | None:
         """The best point at the same place along the axis."""
-        best = None
+        best, base, move = None, None, None
         for _ in range(STEPS):
             normal = self._normal(u, nu)
             if not normal.has_slopes[0] or not np.isfinite(normal.objective[0]):
                 break
-            gradient, hessian = normal.total()
-            turn = np.eye(len(u) + len(nu))[:, 1:]
-            turn[: len(u), : len(u) - 1] = self.across
-            matrix = turn.T @ hessian[0] @ turn
-            inverse = np.linalg.pinv(matrix, hermitian=True)
             if best is None or normal.objective[0] < best.objective:
+                gradient, hessian = normal.total()
+                turn = np.eye(len(u) + len(nu))[:, 1:]
+                turn[: len(u), : len(u) - 1] = self.across
+                matrix = turn.T @ hessian[0] @ turn
+                inverse = np.linalg.pinv(matrix, hermitian=True)
                 best = self._point(u, nu, float(normal.objective[0]), matrix, inverse)
-            move = turn @ (inverse @ (turn.T @ gradient[0]))
-            u, nu = self.hypothesis.inside((u + move[: len(u)])[None])[0], nu + move[len(u) :]
+                slope = turn.T @ gradient[0]
+                move = inverse @ slope
+                if float(slope @ move) < SETTLED:
+                    break
+                base, move = (u, nu), turn @ move
+            else:
+                move = BACK * move
+            u = self.hypothesis.inside((base[0] + move[: len(u)])[None])[0]
+            nu = base[1] + move[len(u) :]
         return best
 
     def _point(self, u, nu, objective, matrix, inverse):

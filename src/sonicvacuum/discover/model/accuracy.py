@@ -12,7 +12,7 @@ LARGEST_STEP, STEP_AIM = 3e-3, 10.0
 # Error of a simulation at full accuracy as a share of the data's norm, and what is allowed of it, in standard
 # errors over all data together; it grows as the fourth power of the step. Beyond LONGEST times the step laws
 # that remember are no longer followed.
-ERROR, ERROR_AIM, LONGEST = 1e-6, 0.05, 2.5
+ERROR, ERROR_AIM, LONGEST = 1e-6, 0.05, 4.0
 
 
 def difference(norm: float) -> float:

@@ -66,6 +66,11 @@ class Forward:
         return float(np.sqrt(sum(float(d @ d) for d in self._whitened)))
 
     @cached_property
+    def _refine(self) -> float:
+        """What divides the steps of simulations."""
+        return accuracy.refinement(self._norm)
+
+    @cached_property
     def _whitened(self):
         return [self.experiment.whitened(run) for run in range(len(self.experiment.runs))]
 
@@ -287,7 +292,7 @@ class Forward:
             )
         for k, run in enumerate(batch.runs):
             value, timing = traces[run]
-            measured = scalars.of_run(e, self.layout, batch, k, seen, gain, nu)
+            measured = scalars.of_run(e, self.layout, batch, k, seen, gain, nu, self._refine)
             flat = e.whitened_on(run, value, measured)
             flat[lost] = np.nan
             rated, times, *shape = timing.shape
@@ -341,7 +346,7 @@ class Forward:
             batch.interval,
             besides=virtual(self.experiment.gauges, setup.chain.beads) if asked else (),
             striker=asked,
-            refine=accuracy.refinement(self._norm),
+            refine=self._refine,
             threads=self.threads,
             forgiving=True,
             alone=False,

@@ -75,7 +75,7 @@ def shared_column(experiment, run: int, value: np.ndarray, source: str) -> np.nd
     return columns
 
 
-def of_run(experiment, layout, batch, k: int, seen, gain, nu) -> np.ndarray:
+def of_run(experiment, layout, batch, k: int, seen, gain, nu, refine: float = 1.0) -> np.ndarray:
     """(L, n) observables of the k-th run of a batch as they are compared.
 
     Args:
@@ -86,12 +86,13 @@ def of_run(experiment, layout, batch, k: int, seen, gain, nu) -> np.ndarray:
         seen: the simulation.
         gain: (L, S) of the gauges.
         nu: (L, q) nuisances over their standard errors.
+        refine: divides the step of further simulations.
     """
     run, own = batch.runs[k], slice(k, None, len(batch.runs))
     wanted = experiment.runs[run].scalars
     if not wanted:
         return np.zeros((len(nu), 0))
-    measured_ = predict(experiment, run, own, seen, seen.readings[own] * gain[..., None])
+    measured_ = predict(experiment, run, own, seen, seen.readings[own] * gain[..., None], refine)
     return read(wanted, measured_, {layout.named(p): nu[:, p] for p in layout.other("shared")})
 
 
@@ -125,12 +126,12 @@ def _column(experiment, scalar, seen, lanes, passages, refine):
             return [one.value for one in of_amplitude(scalar, seen, lanes, experiment.diameter, refine)]
         except ValueError:
             pass  # of which lane, is found one by one
-    return [_value(experiment, scalar, seen, k, p) for k, p in zip(lanes, passages, strict=True)]
+    return [_value(experiment, scalar, seen, k, p, refine) for k, p in zip(lanes, passages, strict=True)]
 
 
-def _value(experiment, scalar, seen, lane, passage):
+def _value(experiment, scalar, seen, lane, passage, refine):
     """One scalar of one lane; no number where its motion does not stay finite."""
     try:
-        return measured(scalar, seen, lane, passage, experiment.diameter).value
+        return measured(scalar, seen, lane, passage, experiment.diameter, refine).value
     except (FloatingPointError, ValueError):
         return np.nan
