@@ -25,6 +25,9 @@ BROKEN = {"full-0870": 6, "full-1242": 42, "full-1552": 16}
 # The list once more, "again", of which commit 92f947a searched a part: drawn after that commit.
 SEEDS = {"small": 20061, "full": 88_822_325, "again": 84_131_661, "training": 20063, "laws": 20067}
 TRAINING = 300
+# Places in the list of the small study that are left out, so that `make` takes minutes; the others keep the
+# numbers and the records that they had among 36.
+LEFT_OUT = {"small": {5, 6, 7, 9, 19, 20, 29, 30, 31, 34, 35}}
 # Single effects in traces of several speeds: d′ → records of each effect.
 STRENGTHS = {3.0: 4, 5.0: 5, 7.5: 5, 10.0: 5, 20.0: 5, 50.0: 3, 150.0: 2, 500.0: 2}
 # Other designs than that and one ball: any set-up, one speed, no traces.
@@ -85,13 +88,16 @@ def cases(study: str) -> list[Spec]:
         rows = [rows[(2 * k + 1) * len(rows) // (2 * TRAINING)] for k in range(TRAINING)]
     # Folder names must not follow the order of kinds.
     order = random.permutation(len(rows))
+    left_out = LEFT_OUT.get(study, set())
     return [
-        Spec(f"{study}-{k:04d}", *rows[i], seed=SEEDS[study], place=k) for k, i in enumerate(order.tolist())
+        Spec(f"{study}-{k:04d}", *rows[i], seed=SEEDS[study], place=k)
+        for k, i in enumerate(order.tolist())
+        if i not in left_out
     ]
 
 
 def _small():
-    """36 cases: 18 singles over all designs, 8 nulls, 6 foreign ones, 4 pairs."""
+    """36 cases: 18 singles over all designs, 8 nulls, 6 foreign ones, 4 pairs; see `LEFT_OUT`."""
     singles = ("kuwabara-kono", "viscous-drag", "coating-thickness", "contact-gap", "sensor-droop", "gravity")
     singles += ("dynamic-modulus", "plastic-contact", "wall-compliance", "sensor-offset", "mass-defect")
     for k, name in enumerate(singles):

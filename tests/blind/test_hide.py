@@ -134,7 +134,8 @@ def test_studies_cover_what_is_asked(tmp_path):
     assert {s.design for s in full if s.kind == "pair"} == set(design.KINDS)
     for specs in (small, full):
         assert len({s.id for s in specs}) == len(specs)
-        assert [s.place for s in specs] == list(range(len(specs)))
+        places = [s.place for s in specs]
+        assert places == sorted(set(places))
     assert {s.effects[0] for s in full if s.kind == "single"} == set(catalogue.BY_ID)
     laws = study.cases("laws")
     assert {s.effects[0] for s in full if s.kind == "foreign"} == set(foreign.STUDIED)

@@ -43,7 +43,7 @@ INPUTS = {
     "predict": CHAIN,
     "design": f"--effects sensor-droop,kuwabara-kono {CHAIN}",
     "record": f"check {MEASURED}-steel",
-    "discover": f"{SMALL}/records/3/small-0019 --out {{out}}/found --no-figures --threads 1",
+    "discover": f"{SMALL}/records/0/small-0019 --out {{out}}/found --no-figures --threads 1",
     "page": "{out}/steel",
     "compare": f"{MEASURED}-steel --model {{results}}/discover/daraio-nesterenko-2006-steel/model.json "
     "--json {out}/score.json",

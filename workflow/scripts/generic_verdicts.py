@@ -11,7 +11,7 @@ import sys
 from pathlib import Path
 
 # Two records of the small study: an effect beside another, and none.
-BATCH = "1/18"
+BATCH = "6/14"
 TOLERANCES = {"probabilities": 1e-6, "parameters, in errors": 1e-4, "limits": 1e-4, "gap": 1e-6}
 
 
