@@ -103,8 +103,9 @@ def integrate(
     kept = np.zeros((len(times) if states else 0, 2, len(problem.mass)))
     times = np.ascontiguousarray(times, dtype=float)
     push, wall = tuple(map(float, problem.push)), tuple(map(float, problem.wall))
+    room = stepper.begin(problem.table, problem.acting, speed, scale, tolerance)
     chain = (problem.table, problem.acting, push, wall)
-    arguments = (*chain, speed, scale, times, recorded, tolerance, force, kept)
+    arguments = (*chain, speed, scale, times, recorded, force, kept, *room)
     prepare(_run, "hidden-effect data", arguments)
     steps = _run(*arguments)
     if steps < 0:

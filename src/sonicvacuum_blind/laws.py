@@ -262,11 +262,16 @@ def decelerate(y, at, slopes, s, table):
 def _borne(delta, table, uses, room):
     """(contacts,) static forces in N at compressions (contacts,) in m, 0 or more."""
     n = len(delta)
-    room[DELTA, :n] = delta
+    borne = np.empty(n)
+    for c in range(n):
+        room[DELTA, c] = delta[c]
     load(n, table, uses, room, DELTA, SPRING)
-    room[FORCE, 1:] = room[SPRING, :n]
+    for c in range(n):
+        room[FORCE, c + 1] = room[SPRING, c]
     _stick(n, table, room)
-    return room[FORCE, 1:].copy()
+    for c in range(n):
+        borne[c] = room[FORCE, c + 1]
+    return borne
 
 
 def static_forces(rest: np.ndarray, rows: np.ndarray) -> np.ndarray:
@@ -302,24 +307,39 @@ def _alone(rows):
 
 @njit(nogil=True, error_model="numpy")
 def _sink(weight, table, uses, room):
+    """Compressions in m at which contacts bear `weight`; in loops, which compile in half the time."""
     n = len(weight)
-    adhesion = table[_ADHESION, :n]
-    sticks = (adhesion / table[_HERTZ, :n]) ** (4.0 / 3.0)
-    bears = (weight > 0.0) | (adhesion != 0.0)
-    high = np.full(n, 1e-9)
-    while True:
-        short = bears & ((_borne(high, table, uses, room) < weight) | (high < sticks))
-        if not np.any(short):
-            break
-        high = np.where(short, 2.0 * high, high)
-    low = np.where((weight > 0.0) & (high > 1e-9), 0.5 * high, 0.0)
+    low, high, middle = np.zeros(n), np.full(n, 1e-9), np.zeros(n)
+    short = True
+    while short:
+        borne = _borne(high, table, uses, room)
+        short = False
+        for c in range(n):
+            sticks = (table[_ADHESION, c] / table[_HERTZ, c]) ** (4.0 / 3.0)
+            bears = weight[c] > 0.0 or table[_ADHESION, c] != 0.0
+            if bears and (borne[c] < weight[c] or high[c] < sticks):
+                high[c] *= 2.0
+                short = True
+    for c in range(n):
+        if weight[c] > 0.0 and high[c] > 1e-9:
+            low[c] = 0.5 * high[c]
     for _ in range(200):
-        middle = 0.5 * (low + high)
-        if np.all((middle == low) | (middle == high)):
+        apart = False
+        for c in range(n):
+            middle[c] = 0.5 * (low[c] + high[c])
+            apart = apart or (middle[c] != low[c] and middle[c] != high[c])
+        if not apart:
             break
-        less = _borne(middle, table, uses, room) < weight
-        low, high = np.where(less, middle, low), np.where(less, high, middle)
-    return np.where(bears, high, 0.0)
+        borne = _borne(middle, table, uses, room)
+        for c in range(n):
+            if borne[c] < weight[c]:
+                low[c] = middle[c]
+            else:
+                high[c] = middle[c]
+    for c in range(n):
+        if not (weight[c] > 0.0 or table[_ADHESION, c] != 0.0):
+            high[c] = 0.0
+    return high
 
 
 for one in (_borne, _sink):

@@ -32,9 +32,11 @@ _A = np.array(
 )
 _C = np.array([0, 1 / 5, 3 / 10, 4 / 5, 8 / 9, 1, 1])
 _E = np.array([-71 / 57600, 0, 71 / 16695, -71 / 1920, 17253 / 339200, -22 / 525, 1 / 40])
-# Rows of the states: at the start and at the end of a step, in between; error of a step, and one over the
-# error allowed.
-START, END, BETWEEN, ERROR, WEIGHT = range(5)
+# Rows of the states: at the start and at the end of a step, in between; one over the error allowed.
+# Numbers of Numpy's: for each of Python's, functions called with it would be compiled once more.
+START, END, BETWEEN, WEIGHT = np.arange(4)
+# Stages of the slopes: the first, and the second, whose place is free between steps.
+FIRST, SPARE = np.arange(2)
 
 
 @njit(nogil=True, error_model="numpy")
@@ -72,10 +74,14 @@ def _attempt(t, h, y, k, table, uses, push, wall, room):
     for s in range(1, 7):
         _combine(y, k, s, h)
         _rates(t + _C[s] * h, y, END, k, s, table, uses, push, wall, room)
+    largest = 0.0
     for i in range(y.shape[1]):
         e = _E[0] * k[0, i] + _E[2] * k[2, i] + _E[3] * k[3, i]
-        y[ERROR, i] = (e + _E[4] * k[4, i] + _E[5] * k[5, i] + _E[6] * k[6, i]) * y[WEIGHT, i]
-    return h * np.max(np.abs(y[ERROR]))
+        e = abs((e + _E[4] * k[4, i] + _E[5] * k[5, i] + _E[6] * k[6, i]) * y[WEIGHT, i])
+        # What is not a number stays.
+        if largest == largest and not e <= largest:
+            largest = e
+    return h * largest
 
 
 @njit(nogil=True, error_model="numpy")
@@ -112,8 +118,10 @@ def _between(s, h, y, k, w):
 def _settle(y, k, table, uses, room):
     """Accept a step; whether its last slopes no longer hold, because a contact forgot or yielded."""
     w = table.shape[1]
-    y[START] = y[END]
-    k[0] = k[6]
+    # Whole rows would take as long to compile as all the rest.
+    for i in range(y.shape[1]):
+        y[START, i] = y[END, i]
+        k[0, i] = k[6, i]
     changed = False
     if uses.residual or uses.relaxing:
         for c in range(w - 1):
@@ -127,11 +135,10 @@ def _settle(y, k, table, uses, room):
     return changed
 
 
-@njit(nogil=True, error_model="numpy")
-def _begin(table, uses, speed, scale, tolerance):
-    """States and slopes before the first step: the striker at its speed, all else at rest."""
+def begin(table, uses, speed: float, scale: float, tolerance: float) -> tuple:
+    """States, slopes and room before the first step: the striker at its speed, all else at rest."""
     w = table.shape[1]
-    y = np.zeros((5, 3 * w if uses.relaxing else 2 * w))
+    y = np.zeros((4, 3 * w if uses.relaxing else 2 * w))
     y[START, w] = speed
     y[WEIGHT, :w] = 1.0 / (tolerance * scale)
     y[WEIGHT, w : 2 * w] = 1.0 / (tolerance * speed)
@@ -142,7 +149,7 @@ def _begin(table, uses, speed, scale, tolerance):
 
 
 @njit(nogil=True, error_model="numpy")
-def run(table, uses, push, wall, speed, scale, times, recorded, tolerance, force, states):
+def run(table, uses, push, wall, speed, scale, times, recorded, force, states, y, k, room):
     """Fill `force` (samples, recorded) and `states` (samples or 0, 2, bodies); number of steps.
 
     It is −1 where the motion diverges or takes more than `TRIES` attempts.
@@ -153,12 +160,11 @@ def run(table, uses, push, wall, speed, scale, times, recorded, tolerance, force
         speed, scale: of the striker in m/s, of its compression in m.
         times: (samples,) ascending, s.
         recorded: (recorded,) contacts.
-        tolerance: of a step over speed and scale.
+        y, k, room: of `begin`.
     """
-    y, k, room = _begin(table, uses, speed, scale, tolerance)
     unit, w = scale / speed, table.shape[1]
     t, h, done, steps = 0.0, 1e-3 * unit, 0, 0
-    _rates(t, y, START, k, 0, table, uses, push, wall, room)
+    _rates(t, y, START, k, FIRST, table, uses, push, wall, room)
     for _ in range(TRIES):
         error = _attempt(t, h, y, k, table, uses, push, wall, room)
         if not error < np.inf:
@@ -176,17 +182,17 @@ def run(table, uses, push, wall, speed, scale, times, recorded, tolerance, force
         while done < len(times) and times[done] <= t + h:
             _between((times[done] - t) / h, h, y, k, w)
             # Only the first and the last stage are needed any more.
-            forces(y, BETWEEN, k, 1, table, uses, room)
+            forces(y, BETWEEN, k, SPARE, table, uses, room)
             for r in range(len(recorded)):
                 force[done, r] = room[FORCE, recorded[r] + 1]
-            if len(states):
-                states[done, 0], states[done, 1] = y[BETWEEN, : w - 1], y[BETWEEN, w : 2 * w - 1]
+            for i in range(w - 1 if len(states) else 0):
+                states[done, 0, i], states[done, 1, i] = y[BETWEEN, i], y[BETWEEN, w + i]
             done += 1
         t += h
         steps += 1
         if done == len(times):
             return steps
         if _settle(y, k, table, uses, room):
-            _rates(t, y, START, k, 0, table, uses, push, wall, room)
+            _rates(t, y, START, k, FIRST, table, uses, push, wall, room)
         h *= factor
     return -1

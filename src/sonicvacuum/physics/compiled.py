@@ -164,13 +164,16 @@ def cached(dispatcher, sources: tuple[Path, ...] = ()):
 _prepared = set()
 
 
-def prepare(dispatcher, name: str, arguments: tuple) -> None:
+def prepare(dispatcher, name: str, arguments: tuple, soon: dict | None = None) -> None:
     """Load or compile a function for the types of `arguments`, whose signature goes by `name`.
 
-    Of several processes that lack it one compiles, the others wait and load.
+    Of several processes that lack it one compiles. The others meanwhile compile what they need `soon` (name →
+    first argument, the rest being alike) and nobody else compiles, or wait, and load.
     """
     if name not in _prepared:
-        _load_or_compile(dispatcher, tuple(numba.typeof(a) for a in arguments))
+        signature = tuple(numba.typeof(a) for a in arguments)
+        left = [(numba.typeof(first), *signature[1:]) for n, first in (soon or {}).items() if n != name]
+        _load_or_compile(dispatcher, signature, left)
         _prepared.add(name)
 
 
@@ -190,14 +193,33 @@ def _import_array_functions():
             linalg.ensure_blas = check
 
 
-def _load_or_compile(dispatcher, signature):
+def _load_or_compile(dispatcher, signature, soon=()):
     folder = cache_folder()
     path = dispatcher._cache.path(signature, dispatcher.targetctx) if folder else None
     if path and path.exists():
         dispatcher.compile(signature)
         return
     _import_array_functions()
-    with compiling(), _lock(path.with_suffix(".lock")) if path else contextlib.nullcontext(), _uncollected():
+    with compiling():
+        for other in soon if path else ():
+            with _lock(path, 0.0) as alone:
+                if alone:
+                    _compile(dispatcher, signature)
+                    return
+            _compile_unless_another_does(dispatcher, other)
+        with _lock(path, _PATIENCE) if path else contextlib.nullcontext():
+            _compile(dispatcher, signature)
+
+
+def _compile_unless_another_does(dispatcher, signature):
+    path = dispatcher._cache.path(signature, dispatcher.targetctx)
+    with _lock(path, 0.0) as alone:
+        if alone and not path.exists():
+            _compile(dispatcher, signature)
+
+
+def _compile(dispatcher, signature):
+    with _uncollected():
         watch.aside(dispatcher.compile, signature)
 
 
@@ -214,13 +236,18 @@ def _uncollected():
 
 
 @contextlib.contextmanager
-def _lock(path):
+def _lock(path, patience):
+    """Whether this process alone compiles what is kept at `path`, as far as it could be found out within
+    `patience` (s).
+    """
     from filelock import FileLock, Timeout
 
-    lock = FileLock(path)
+    lock = FileLock(path.with_suffix(".lock"))
+    alone = False
     with contextlib.suppress(Timeout, OSError):
-        lock.acquire(timeout=_PATIENCE)
+        lock.acquire(timeout=patience)
+        alone = True
     try:
-        yield
+        yield alone
     finally:
         lock.release()

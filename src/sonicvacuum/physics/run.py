@@ -34,6 +34,17 @@ SHORT = 5e6
 
 advance = cached(kernel.advance)
 
+# Name → composition of the kernels that will be asked for.
+_expected: dict[str, Composition] = {}
+
+
+def expect(*chains: Chain) -> None:
+    """Tell of chains that will be simulated, forces alone and never alone (see `simulate`): a process that
+    would wait for another one's compilation compiles for these meanwhile.
+    """
+    kernels = [Composition(chain.laws(), LANES) for chain in chains]
+    _expected.update({one.name: one for one in kernels})
+
 
 def simulate(
     chain: Chain,
@@ -250,7 +261,7 @@ class _Batch:
             )
 
         everything = share(0, groups)
-        prepare(advance, self.composition.name, everything)
+        prepare(advance, self.composition.name, everything, _expected)
         expected = float(self.steps[self.dealt].max(axis=1).sum())
         if (threads == 1 or groups == 1) and expected * self.bodies < SHORT:
             advance(*everything)

@@ -135,10 +135,12 @@ class Hypothesis:
 
 def is_law(effect: Effect, setup: Setup) -> bool:
     """Whether an effect adds to the force law of the chain."""
-    if effect.places:
-        return False
-    typical = {p.name: p.at(0.3, setup) for p in effect.parameters}
-    return len(effect.apply(setup, **typical).chain.actions) > len(setup.chain.actions)
+    return not effect.places and len(typical(effect, setup).chain.actions) > len(setup.chain.actions)
+
+
+def typical(effect: Effect, setup: Setup) -> Setup:
+    """The setup with an effect that sits nowhere, at a typical strength."""
+    return effect.apply(setup, **{p.name: p.at(0.3, setup) for p in effect.parameters})
 
 
 def of_one_strength(free: tuple[Coordinate, ...]) -> bool:
