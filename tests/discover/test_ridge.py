@@ -94,6 +94,32 @@ def test_a_bent_valley_is_followed_along_its_bottom(two):
     assert found.root[:, 0, 0] == pytest.approx(NARROW / np.sqrt(2.0), rel=0.1)
 
 
+class Steep(Valley):
+    """A straight valley between slopes that flatten, where a step of Gauss and Newton from 0.6 widths on goes
+    too far.
+    """
+
+    def values(self, u, nu):
+        a, b = (u - self.middle).T
+        along = (a + b + 0.3 * WIDE * nu[:, 0]) / WIDE
+        return np.column_stack([along, 3.0 * np.arctan((b - a) / NARROW)])
+
+
+def test_a_step_that_goes_too_far_is_tried_once_more_and_shorter(two):
+    middle = np.array([-2.0, 0.5])
+    forward = Steep(middle)
+    aside = middle + np.array([-0.85, 0.85]) * NARROW
+    start = forward.fit(two, aside)
+    columns = forward.columns(two, start.u[None], start.nu[None], step=1e-5)
+    axis, across = np.array([1.0, 1.0]) / np.sqrt(2.0), np.array([[-1.0], [1.0]]) / np.sqrt(2.0)
+    steps = np.full(2, 1e-5)
+    walk = ridge._Walk(forward, two, axis, across, columns, middle, steps)
+    before = float(np.square(forward.values(aside[None], np.zeros((1, forward.layout.size)))).sum())
+    assert before == pytest.approx(9.0 * np.arctan(1.7) ** 2, rel=1e-9)  # 9.6
+    # A full step leads to 3.0 widths on the other side, 14; a quarter of it to half a width.
+    assert walk.settled(aside, np.zeros(forward.layout.size)).objective < 0.05 * before
+
+
 @pytest.mark.parametrize("room", [0.0, 0.003, 0.3])
 def test_no_valley_leads_beyond_the_bounds(two, room):
     """The stand-in for the predictor refuses what lies beyond."""

@@ -4,10 +4,14 @@ import os
 import shutil
 import subprocess
 import sys
+import threading
+import time
 from pathlib import Path
 
+import numba
 import numpy as np
 import pytest
+from filelock import FileLock
 
 import sonicvacuum
 from sonicvacuum.physics import compiled
@@ -211,3 +215,34 @@ def test_law_sets_are_told_apart_by_their_formulas_not_their_names():
     assert LawSet((one,)).name != LawSet((two,)).name
     assert LawSet() == LawSet((HERTZ,))
     assert LawSet().name != LawSet(preloaded=True).name != LawSet(symplectic=False).name
+
+
+def twice(x):
+    return x + x
+
+
+def test_while_another_process_compiles_what_is_asked_for_soon_is_compiled(monkeypatch, tmp_path):
+    """The other, which this test stands for, lets go of the lock once that has happened."""
+    monkeypatch.setattr(compiled, "cache_folder", lambda: tmp_path)
+    monkeypatch.setattr(compiled, "_prepared", set())
+    dispatcher = compiled.cached(numba.njit(twice))
+    asked, soon = (
+        dispatcher._cache.path((numba.typeof(x),), dispatcher.targetctx) for x in (1.0, np.int64(1))
+    )
+    lock = FileLock(asked.with_suffix(".lock"), thread_local=False)
+    lock.acquire()
+    seen = []
+
+    def other():
+        while not soon.exists() and threading.main_thread().is_alive():
+            time.sleep(0.01)
+        seen.append(asked.exists())
+        lock.release()
+
+    thread = threading.Thread(target=other)
+    thread.start()
+    compiled.prepare(dispatcher, "float", (1.0,), {"float": 1.0, "whole": np.int64(1)})
+    thread.join()
+    assert seen == [False]
+    assert asked.exists()
+    assert dispatcher(2.5) == 5.0

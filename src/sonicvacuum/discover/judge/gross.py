@@ -32,6 +32,8 @@ TRIED = 3
 # Explanations, by what they leave, that are fitted once more from all over what is hardly known, so many
 # times unless little changes: effects that have grown find other minima.
 LEADING, TIMES, STAYS = 6, 3, 0.98
+# Of these the best, that are followed from basin to basin.
+FOLLOWED = 3
 _PROFILES = {effect.id for effect in profiles.effects()}
 
 
@@ -117,15 +119,22 @@ def _at_their_best(forward, null, found: list[Combination]) -> list[Combination]
         return found
     ranked = sorted(found, key=lambda c: c.fit.objective)
     nu = np.array([c.fit.nu for c in ranked[:LEADING]])
-    return [_again(forward, null, c, nu) for c in ranked[:LEADING]] + ranked[LEADING:]
+    again = [_moved(null, c, _again(forward, c.fit, nu)) for c in ranked[:LEADING]]
+    again.sort(key=lambda c: c.fit.objective)
+    followed = [_moved(null, c, wide.around(forward, c.fit)) for c in again[:FOLLOWED]]
+    return followed + again[FOLLOWED:] + ranked[LEADING:]
 
 
-def _again(forward, null, c: Combination, nu: np.ndarray) -> Combination:
-    one = c.fit
+def _again(forward, one: Fit, nu: np.ndarray) -> Fit:
     for _ in range(TIMES):
         before, one = one, wide.again(forward, one, nu)
         if one.objective > STAYS * before.objective:
             break
+    return one
+
+
+def _moved(null: Fit, c: Combination, one: Fit) -> Combination:
+    """An explanation whose fit ended elsewhere."""
     gain = null.objective - one.objective
     worth = c.log_bayes - evidence.log_bayes(c.fit, c.gain) + evidence.log_bayes(one, gain)
     return Combination(c.effects, one, gain, worth)
