@@ -147,6 +147,16 @@ def test_studies_cover_what_is_asked(tmp_path):
     assert sorted((s for p in parts for s in p), key=lambda s: s.id) == small
 
 
+def test_records_of_the_small_study_keep_their_numbers():
+    """Its list had 36 records once, which docs/benchmark.md names by their numbers."""
+    small = {s.id: s for s in study.cases("small")}
+    assert len(small) == 36 - len(study.LEFT_OUT["small"])
+    assert (small["small-0019"].kind, small["small-0019"].design) == ("null", "one-speed")
+    assert small["small-0020"].effects == ("mass-defect",)
+    assert small["small-0030"].place == 30
+    assert {s.kind for s in small.values()} == {"single", "pair", "null", "foreign"}
+
+
 def test_a_longer_catalogue_redraws_no_study(monkeypatch):
     drawn = {name: study.cases(name) for name in study.SEEDS}
     for module in (catalogue, foreign):
