@@ -121,8 +121,17 @@ def _at_their_best(forward, null, found: list[Combination]) -> list[Combination]
     nu = np.array([c.fit.nu for c in ranked[:LEADING]])
     again = [_moved(null, c, _again(forward, c.fit, nu)) for c in ranked[:LEADING]]
     again.sort(key=lambda c: c.fit.objective)
-    followed = [_moved(null, c, wide.around(forward, c.fit)) for c in again[:FOLLOWED]]
+    fits = [wide.around(forward, c.fit) for c in again[:FOLLOWED]]
+    # One may stay in a basin from which another found the way out.
+    nu = np.array([one.nu for one in fits])
+    fits = [_from_others(forward, one, nu) for one in fits]
+    followed = [_moved(null, c, one) for c, one in zip(again[:FOLLOWED], fits, strict=True)]
     return followed + again[FOLLOWED:] + ranked[LEADING:]
+
+
+def _from_others(forward, one: Fit, nu: np.ndarray) -> Fit:
+    other = fit(forward, one.hypothesis, np.repeat(one.u[None], len(nu), axis=0), nu)
+    return wide.around(forward, other) if other.objective < STAYS * one.objective else one
 
 
 def _again(forward, one: Fit, nu: np.ndarray) -> Fit:
