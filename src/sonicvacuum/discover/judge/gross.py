@@ -32,7 +32,7 @@ TRIED = 3
 # Explanations, by what they leave, that are fitted once more from all over what is hardly known, so many
 # times unless little changes: effects that have grown find other minima.
 LEADING, TIMES, STAYS = 6, 3, 0.98
-# Of these the best, that are followed from basin to basin.
+# Of those with up to two effects the best, that are followed from basin to basin.
 FOLLOWED = 3
 _PROFILES = {effect.id for effect in profiles.effects()}
 
@@ -88,7 +88,7 @@ def standing_out(
     the data, what stood out at first is kept: one effect more would only stand for what is left.
     """
     found = [*found, *_crossed(forward, null, found, setup), *_profiles(forward, null, setup)]
-    found = _at_their_best(forward, null, found)
+    found = _beyond_basins(forward, null, _at_their_best(forward, null, found))
     first = None
     while True:
         ranked = sorted(weighed(forward, null, found), key=lambda c: -c.log_bayes)
@@ -119,14 +119,21 @@ def _at_their_best(forward, null, found: list[Combination]) -> list[Combination]
         return found
     ranked = sorted(found, key=lambda c: c.fit.objective)
     nu = np.array([c.fit.nu for c in ranked[:LEADING]])
-    again = [_moved(null, c, _again(forward, c.fit, nu)) for c in ranked[:LEADING]]
-    again.sort(key=lambda c: c.fit.objective)
-    fits = [wide.around(forward, c.fit) for c in again[:FOLLOWED]]
-    # One may stay in a basin from which another found the way out.
+    return [_moved(null, c, _again(forward, c.fit, nu)) for c in ranked[:LEADING]] + ranked[LEADING:]
+
+
+def _beyond_basins(forward, null, found: list[Combination]) -> list[Combination]:
+    """The same with the best ones followed from basin to basin, and then from where the others ended: one may
+    stay in a basin from which another found the way out.
+    """
+    if not wide.wide(forward):
+        return found
+    ranked = sorted(found, key=lambda c: c.fit.objective)
+    fits = [wide.around(forward, c.fit) for c in ranked[:FOLLOWED]]
     nu = np.array([one.nu for one in fits])
     fits = [_from_others(forward, one, nu) for one in fits]
-    followed = [_moved(null, c, one) for c, one in zip(again[:FOLLOWED], fits, strict=True)]
-    return followed + again[FOLLOWED:] + ranked[LEADING:]
+    followed = [_moved(null, c, one) for c, one in zip(ranked, fits, strict=False)]
+    return followed + ranked[FOLLOWED:]
 
 
 def _from_others(forward, one: Fit, nu: np.ndarray) -> Fit:
