@@ -3,7 +3,6 @@ time zero, and more missing than the catalogue has.
 """
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -17,7 +16,6 @@ from sonicvacuum.discover.fit.wide import nominal
 from sonicvacuum.discover.judge import decision, gross
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, variants
-from sonicvacuum.discover.model.nuisances import Layout
 from sonicvacuum.discover.model.problem import experiment
 from sonicvacuum.discover.rounds import investigate
 from sonicvacuum.discover.search import several
@@ -140,31 +138,6 @@ def test_an_explanation_that_missed_its_minimum_is_fitted_once_more():
     assert found.fit.objective < size * (1.0 + 4.0 * np.sqrt(2.0 / size))  # noise, within 4 of its errors
     assert found.log_bayes > one.log_bayes
     assert found.gain == pytest.approx(null.objective - found.fit.objective)
-
-
-def test_a_fit_goes_from_basin_to_basin_as_long_as_that_lowers_it(monkeypatch):
-    """Basins half a standard error wide, lower by a tenth each up to 2.5 errors in one shot's speed; none of
-    them is seen from the next but one.
-    """
-    layout = Layout(2, 1, ())
-    shot = layout.speed(1)
-    forward = SimpleNamespace(layout=layout, nuisance_sigma=np.full(layout.size, 0.2))
-
-    def settled(nu):
-        nu = nu.copy()
-        nu[shot] = min(0.5 * np.round(2.0 * nu[shot]), 2.5)
-        return SimpleNamespace(
-            nu=nu, u=np.zeros(1), hypothesis=None, objective=1000.0 * 0.9 ** (2.0 * nu[shot])
-        )
-
-    def fit(forward, hypothesis, u, nu, keep):
-        assert len(u) == len(nu) == keep
-        return min((settled(row) for row in nu), key=lambda f: f.objective)
-
-    monkeypatch.setattr(wide, "fit", fit)
-    found = wide.around(forward, settled(np.zeros(layout.size)))
-    assert found.nu[shot] == 2.5
-    assert found.objective == pytest.approx(1000.0 * 0.9**5)
 
 
 def test_nothing_wide_needs_one_start(empty):

@@ -23,9 +23,6 @@ STEP, REACH, MOST = 0.5, 2.0, 1.0
 # Starts that are followed to their minimum; steps of all before these are chosen; minima that the fits of
 # effects start from.
 FOLLOWED, FIRST, MINIMA = 8, 4, 3
-# Steps to other basins, in standard errors: of one speed or modulus, of all speeds together; basins that are
-# gone through, each lower than this share of the last.
-BESIDE, TOGETHER, BASINS, LOWER = (-0.5, -0.2, 0.2, 0.5), (-0.6, -0.3, 0.3, 0.6), 8, 0.99
 # Steps on running integrals, where a fit of nuisances alone starts once more from these.
 COARSE = 6
 
@@ -102,26 +99,3 @@ def again(forward: Forward, one: Fit, more: np.ndarray | None = None) -> Fit:
     u = np.repeat(one.u[None], len(rows), axis=0)
     other = fit(forward, one.hypothesis, u, rows, keep=FOLLOWED, halved=FIRST)
     return min((one, other), key=lambda f: f.objective)
-
-
-def around(forward: Forward, one: Fit) -> Fit:
-    """A fit followed from basin to basin of its nuisances, the effects as they are there: from beside the
-    minimum in each speed and modulus by itself, and in all speeds together, as long as that lowers it.
-
-    Where an echo overlaps the measured one in one shot, it need not in the next, so that speeds of shots have
-    minima of their own.
-    """
-    layout = forward.layout
-    speeds = [layout.speed(run) for run in range(layout.runs)]
-    axes = [[k] for k in (*speeds, *layout.simulated) if forward.nuisance_sigma[k] > 0.0]
-    steps = [(axis, step) for axis in axes for step in BESIDE] + [(speeds, step) for step in TOGETHER]
-    for _ in range(BASINS):
-        rows = np.repeat(one.nu[None], 1 + len(steps), axis=0)
-        for row, (axis, step) in zip(rows[1:], steps, strict=True):
-            row[axis] += step
-        u = np.repeat(one.u[None], len(rows), axis=0)
-        before, other = one, fit(forward, one.hypothesis, u, rows, keep=len(rows))
-        one = min((one, other), key=lambda f: f.objective)
-        if one.objective > LOWER * before.objective:
-            break
-    return one

@@ -32,8 +32,6 @@ TRIED = 3
 # Explanations, by what they leave, that are fitted once more from all over what is hardly known, so many
 # times unless little changes: effects that have grown find other minima.
 LEADING, TIMES, STAYS = 6, 3, 0.98
-# Of those with up to two effects the best, that are followed from basin to basin.
-FOLLOWED = 3
 _PROFILES = {effect.id for effect in profiles.effects()}
 
 
@@ -88,7 +86,7 @@ def standing_out(
     the data, what stood out at first is kept: one effect more would only stand for what is left.
     """
     found = [*found, *_crossed(forward, null, found, setup), *_profiles(forward, null, setup)]
-    found = _beyond_basins(forward, null, _at_their_best(forward, null, found))
+    found = _at_their_best(forward, null, found)
     first = None
     while True:
         ranked = sorted(weighed(forward, null, found), key=lambda c: -c.log_bayes)
@@ -119,38 +117,15 @@ def _at_their_best(forward, null, found: list[Combination]) -> list[Combination]
         return found
     ranked = sorted(found, key=lambda c: c.fit.objective)
     nu = np.array([c.fit.nu for c in ranked[:LEADING]])
-    return [_moved(null, c, _again(forward, c.fit, nu)) for c in ranked[:LEADING]] + ranked[LEADING:]
+    return [_again(forward, null, c, nu) for c in ranked[:LEADING]] + ranked[LEADING:]
 
 
-def _beyond_basins(forward, null, found: list[Combination]) -> list[Combination]:
-    """The same with the best ones followed from basin to basin, and then from where the others ended: one may
-    stay in a basin from which another found the way out.
-    """
-    if not wide.wide(forward):
-        return found
-    ranked = sorted(found, key=lambda c: c.fit.objective)
-    fits = [wide.around(forward, c.fit) for c in ranked[:FOLLOWED]]
-    nu = np.array([one.nu for one in fits])
-    fits = [_from_others(forward, one, nu) for one in fits]
-    followed = [_moved(null, c, one) for c, one in zip(ranked, fits, strict=False)]
-    return followed + ranked[FOLLOWED:]
-
-
-def _from_others(forward, one: Fit, nu: np.ndarray) -> Fit:
-    other = fit(forward, one.hypothesis, np.repeat(one.u[None], len(nu), axis=0), nu)
-    return wide.around(forward, other) if other.objective < STAYS * one.objective else one
-
-
-def _again(forward, one: Fit, nu: np.ndarray) -> Fit:
+def _again(forward, null, c: Combination, nu: np.ndarray) -> Combination:
+    one = c.fit
     for _ in range(TIMES):
         before, one = one, wide.again(forward, one, nu)
         if one.objective > STAYS * before.objective:
             break
-    return one
-
-
-def _moved(null: Fit, c: Combination, one: Fit) -> Combination:
-    """An explanation whose fit ended elsewhere."""
     gain = null.objective - one.objective
     worth = c.log_bayes - evidence.log_bayes(c.fit, c.gain) + evidence.log_bayes(one, gain)
     return Combination(c.effects, one, gain, worth)
