@@ -23,7 +23,13 @@ class Valley:
     `jumps`: data that jump as the coordinates pass multiples of short distances.
     """
 
-    simulations = 0
+    simulations, threads, stop = 0, 1, None
+
+    def branch(self, stop, threads):
+        return self
+
+    def join(self, branches):
+        pass
 
     def __init__(self, middle, jumps=0):
         self.middle, self.layout = np.asarray(middle), Layout(1, 0, ())

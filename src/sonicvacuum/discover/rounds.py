@@ -12,6 +12,7 @@ from sonicvacuum.discover.fit.evidence import Candidate, Combination
 from sonicvacuum.discover.fit.refit import Fit, polish
 from sonicvacuum.discover.judge import explanations
 from sonicvacuum.discover.judge.decision import Case, Decision, View
+from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.experiment import Experiment
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import typical
@@ -202,21 +203,23 @@ def _likelier_than_none(found: list[Candidate], prior) -> bool:
 
 def _polished(forward, null, found, threshold):
     """The leading candidates followed to their minimum, to the last step where one may be named."""
-    result = []
     most = max((c.gain for c in found), default=0.0)
     # Where something is hardly known, fits that have not settled may be far from their minima.
     least = most - (max(NEAR, FAR * most) if wide.wide(forward) else NEAR)
-    for c in found:
+
+    def polished(branch, c):
         hopeful = most > HOPEFUL * threshold and not c.fit.finished
         if c.gain > least and (hopeful or not c.fit.settled):
-            better = polish(forward, c.fit)
+            better = polish(branch, c.fit)
             flags = tuple(f for f in c.flags if f != "unsettled") + ("unsettled",) * (not better.settled)
             c = _moved(c, null, better, c.places, flags)
-        if c.gain > least and wide.wide(forward):
-            c = _moved(c, null, wide.again(forward, c.fit), c.places, c.flags)
+        if c.gain > least and wide.wide(branch):
+            c = _moved(c, null, wide.again(branch, c.fit), c.places, c.flags)
         # What a bound holds back may be far behind for that alone.
         further = c.gain > least or (c.gain > 0.0 and bounds.held_back(c.fit))
-        result.append(_beyond(forward, null, c) if further else c)
+        return _beyond(branch, null, c) if further else c
+
+    result = abreast.each(forward, polished, found, "leading effects")
     return enough.first(forward, evidence.ranked(result, forward.experiment.prior_odds))
 
 

@@ -22,6 +22,7 @@ import sys
 import tempfile
 from functools import lru_cache
 from pathlib import Path
+from threading import Lock
 
 import llvmlite
 import numba
@@ -162,6 +163,8 @@ def cached(dispatcher, sources: tuple[Path, ...] = ()):
 
 
 _prepared = set()
+# Of several threads one at a time loads or compiles.
+_preparing = Lock()
 
 
 def prepare(dispatcher, name: str, arguments: tuple, soon: dict | None = None) -> None:
@@ -170,7 +173,11 @@ def prepare(dispatcher, name: str, arguments: tuple, soon: dict | None = None) -
     Of several processes that lack it one compiles. The others meanwhile compile what they need `soon` (name →
     first argument, the rest being alike) and nobody else compiles, or wait, and load.
     """
-    if name not in _prepared:
+    if name in _prepared:
+        return
+    with _preparing:
+        if name in _prepared:
+            return
         signature = tuple(numba.typeof(a) for a in arguments)
         left = [(numba.typeof(first), *signature[1:]) for n, first in (soon or {}).items() if n != name]
         _load_or_compile(dispatcher, signature, left)

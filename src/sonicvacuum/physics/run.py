@@ -31,6 +31,8 @@ SHARES = 8
 LONG = 1000
 # Steps of one body (in all lanes of a group) below which a call is over in a fraction of a second.
 SHORT = 5e6
+# And below which threads take longer to begin than the call by itself.
+BRIEF = 1e5
 
 advance = cached(kernel.advance)
 
@@ -263,7 +265,8 @@ class _Batch:
         everything = share(0, groups)
         prepare(advance, self.composition.name, everything, _expected)
         expected = float(self.steps[self.dealt].max(axis=1).sum())
-        if (threads == 1 or groups == 1) and expected * self.bodies < SHORT:
+        alone = threads == 1 or groups == 1
+        if expected * self.bodies < (SHORT if alone else BRIEF):
             advance(*everything)
         else:
             count = 1 if threads == 1 else min(SHARES * threads, groups)

@@ -5,11 +5,12 @@ Each starts where the last two point to, and everything but the place along the 
 few steps of Gauss and Newton, slopes to the nuisances that take simulations held.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from sonicvacuum.discover.fit.normal import Normal, from_slopes
+from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Hypothesis
 
@@ -76,7 +77,11 @@ def valley(
     start = walk.settled(now.u[0], now.nu[0])
     if start is None:
         return None
-    before, behind = (walk.side(start, sign * min(FIRST * length, LONGEST)) for sign in (-1.0, 1.0))
+
+    def side(branch, sign):
+        return replace(walk, forward=branch).side(start, sign * min(FIRST * length, LONGEST))
+
+    before, behind = abreast.each(forward, side, (-1.0, 1.0))
     points = [*reversed(before), start, *behind]
     stacked = (np.array([getattr(p, name) for p in points]) for name in _Point.__annotations__)
     return Valley(axis, across, *stacked)

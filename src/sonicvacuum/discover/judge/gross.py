@@ -14,15 +14,17 @@ explanations that have it are together clearly the likelier.
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
 from sonicvacuum.discover import policy
-from sonicvacuum.discover.fit import enough, evidence, wide
+from sonicvacuum.discover.fit import enough, evidence, places, wide
 from sonicvacuum.discover.fit.evidence import Combination
 from sonicvacuum.discover.fit.normal import linearise
 from sonicvacuum.discover.fit.refit import Fit, fit
 from sonicvacuum.discover.judge import explanations
+from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.search import pairs, profiles, screen, several, singles, unknown
 from sonicvacuum.effects import Setup
@@ -117,10 +119,11 @@ def _at_their_best(forward, null, found: list[Combination]) -> list[Combination]
         return found
     ranked = sorted(found, key=lambda c: c.fit.objective)
     nu = np.array([c.fit.nu for c in ranked[:LEADING]])
-    return [_again(forward, null, c, nu) for c in ranked[:LEADING]] + ranked[LEADING:]
+    again = partial(_again, null=null, nu=nu)
+    return abreast.each(forward, again, ranked[:LEADING]) + ranked[LEADING:]
 
 
-def _again(forward, null, c: Combination, nu: np.ndarray) -> Combination:
+def _again(forward, c: Combination, null: Fit, nu: np.ndarray) -> Combination:
     one = c.fit
     for _ in range(TIMES):
         before, one = one, wide.again(forward, one, nu)
@@ -137,17 +140,18 @@ def _crossed(forward, null, found: list[Combination], setup: Setup) -> list[Comb
     """
     known = {frozenset(c.effects) for c in found}
     alone = sorted((c for c in found if len(c.effects) == 1), key=lambda c: c.fit.objective)[:LEADING]
-    crossed = []
-    for other in alone[1:]:
+    asked = [other for other in alone[1:] if frozenset((*alone[0].effects, *other.effects)) not in known]
+
+    def crossed(branch, other):
         best = alone[0].fit
-        if frozenset((*alone[0].effects, *other.effects)) in known:
-            continue
         hypothesis = pairs.joined(best.hypothesis, other.fit.hypothesis.components[0], setup)
         u = np.concatenate([best.u, other.fit.u])
         nu = np.array([best.nu, other.fit.nu])
-        one = fit(forward, hypothesis, np.array([u, u]), nu, iterations=pairs.ITERATIONS)
-        crossed.append(pairs.combination(null, one, setup))
-    return [c for c in crossed if np.isfinite(c.fit.objective)]
+        one = fit(branch, hypothesis, np.array([u, u]), nu, iterations=pairs.ITERATIONS)
+        return pairs.combination(null, one, setup)
+
+    found = abreast.each(forward, crossed, asked)
+    return [c for c in found if np.isfinite(c.fit.objective)]
 
 
 def _profiles(forward, null, setup) -> list[Combination]:
@@ -156,7 +160,11 @@ def _profiles(forward, null, setup) -> list[Combination]:
         return []
     seen = screen.screen(forward, null, [profiles.family()])
     effort = singles.Effort(True, singles.ITERATIONS, 0, wide.FIRST)
-    fits = [singles.candidate(forward, null, seen, effect, effort) for effect in profiles.effects()]
+
+    def follow(branch, effect):
+        return singles.candidate(branch, null, seen, effect, effort)
+
+    fits = abreast.each(forward, follow, profiles.effects())
     return [Combination((c.effect,), c.fit, c.gain, c.log_bayes) for c in fits if c is not None]
 
 
@@ -164,7 +172,12 @@ def _more(forward, null, fit: Fit, setup: Setup, found) -> list[Combination]:
     """Explanations with one effect more than a fit, if that was not tried yet."""
     known = {frozenset(c.effects) for c in found}
     starts = sorted(pairs.beside(forward, null, fit, setup), key=lambda s: -s.gain)
-    fits = [pairs.fitted(forward, s, setup, np.inf) for s in starts[:TRIED] if s.effects not in known]
+
+    def follow(branch, start):
+        one = pairs.fitted(branch, start)
+        return places.settled(branch, one, setup) if places.placed(one) else one
+
+    fits = abreast.each(forward, follow, [s for s in starts[:TRIED] if s.effects not in known])
     return [pairs.combination(null, one, setup) for one in fits if np.isfinite(one.objective)]
 
 

@@ -6,8 +6,13 @@ Nuisances (`nuisances`) stand in units of their standard errors; times and gains
 further simulation.
 """
 
+from collections.abc import Iterable
+from concurrent.futures import CancelledError
+from copy import copy
 from dataclasses import replace
 from functools import cached_property
+from threading import Event
+from time import perf_counter
 
 import numpy as np
 
@@ -21,6 +26,7 @@ from sonicvacuum.forward import Seen, see, virtual
 from sonicvacuum.physics.chain import Chain
 
 CHUNK = 512  # chains simulated in one call, to bound the memory
+LONG_CALL = 0.01  # s
 # Natural logarithm of a ratio at which a chain is none that a laboratory has: a speed, a modulus or a mass a
 # thousand times what was stated. A step that runs away to there would ask for steps without end.
 NO_CHAIN = 7.0
@@ -33,6 +39,8 @@ class Forward:
         simulations: chains simulated so far.
         strengths: directions of a family → strengths at which its slopes were taken last.
         memory: columns, slopes and tests at the points asked for last.
+        calls, seconds: predictions asked for at once, and the time that they took.
+        stop: set where nobody waits for the predictions any more; None: somebody does.
     """
 
     def __init__(self, experiment: Experiment, threads: int = 1):
@@ -43,6 +51,34 @@ class Forward:
         self._coarse = None
         self._tiled: dict[tuple, Chain] = {}
         self._alike: dict[tuple, list[list[int]]] = {}
+        self.calls, self.seconds = 0, 0.0
+        self.stop: Event | None = None
+
+    def branch(self, stop: Event, threads: int = 1) -> "Forward":
+        """The same predictor for one of several threads, with a memory of its own that begins as it is."""
+        other = copy(self)
+        other.threads, other.stop = threads, stop
+        other.simulations, other.calls, other.seconds = 0, 0, 0.0
+        other.strengths, other.memory = dict(self.strengths), self.memory.copy()
+        other._coarse = self._coarse.branch(stop) if self._coarse else None
+        return other
+
+    def join(self, branches: Iterable["Forward"]) -> None:
+        """Take over what branches counted and, in their order, what they know and which strengths serve."""
+        before = dict(self.strengths)
+        for branch in branches:
+            self.simulations += branch.simulations
+            self.calls, self.seconds = self.calls + branch.calls, self.seconds + branch.seconds
+            self.memory.add(branch.memory)
+            served = branch.strengths.items()
+            self.strengths.update((family, s) for family, s in served if s is not before.get(family))
+            if branch._coarse:
+                self.coarse.join([branch._coarse])
+
+    @property
+    def long_calls(self) -> bool:
+        """Whether threads gain: most of a short call is interpreted, one thread at a time."""
+        return self.seconds > LONG_CALL * self.calls
 
     @property
     def coarse(self) -> "Forward":
@@ -256,7 +292,7 @@ class Forward:
         """For each run whitened predictions (L, M) and, for every `rate_of`-th lane, slopes (·, n, M) to time
         zero, clock and delays.
         """
-        change = change or hypothesis.change(u, places)
+        begun, change = perf_counter(), change or hypothesis.change(u, places)
         runs = len(self.experiment.runs)
         values = [[] for _ in range(runs)]
         rates = [[] for _ in range(runs)]
@@ -268,10 +304,13 @@ class Forward:
                 for run, value, rate in self._batch(batch, change, nu, part, rate_of):
                     values[run].append(value)
                     rates[run].append(rate)
+        self.calls, self.seconds = self.calls + 1, self.seconds + perf_counter() - begun
         return [(np.concatenate(v), np.concatenate(r)) for v, r in zip(values, rates, strict=True)]
 
     def _batch(self, batch, change, nu, part, rate_of):
         """Run, predictions and rates of a batch for the lanes `part`; no numbers where there is no chain."""
+        if self.stop and self.stop.is_set():
+            raise CancelledError
         nu, e, own = nu[part], self.experiment, self.layout.of_chain
         lost = ~(np.abs(nu[:, own] * self.nuisance_sigma[own]) < NO_CHAIN).all(axis=1)
         nu = np.where(lost[:, None], 0.0, nu)

@@ -18,13 +18,30 @@ class Memory:
         self._points: OrderedDict[Hashable, dict] = OrderedDict()
         self._most = points
 
+    def copy(self) -> "Memory":
+        """What is known so far, to which more may be added apart."""
+        other = Memory(self._most)
+        other._points.update((point, dict(found)) for point, found in self._points.items())
+        return other
+
+    def add(self, other: "Memory") -> None:
+        """Take over what another one knows besides."""
+        for point, found in other._points.items():
+            found = {**found, **self._points.get(point, {})}
+            self._keep(point, found)
+
     def recalled(self, hypothesis: Hypothesis, u, nu, what: Hashable, work: Callable):
         """The result of `work()` at (p,) coordinates and (q,) nuisances, which goes by the name `what`."""
         point = (hypothesis.key, u.tobytes(), nu.tobytes())
-        found = self._points.setdefault(point, {})
-        self._points.move_to_end(point)
-        if len(self._points) > self._most:
-            self._points.popitem(last=False)
+        found = self._keep(point, self._points.get(point, {}))
         if what not in found:
             found[what] = work()
         return found[what]
+
+    def _keep(self, point, found):
+        """The results at a point, which is now the last one that was asked for."""
+        self._points[point] = found
+        self._points.move_to_end(point)
+        if len(self._points) > self._most:
+            self._points.popitem(last=False)
+        return found

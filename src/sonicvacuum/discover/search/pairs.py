@@ -11,10 +11,10 @@ from functools import partial
 
 import numpy as np
 
-from sonicvacuum import stages
 from sonicvacuum.discover.fit import places
 from sonicvacuum.discover.fit.evidence import Candidate, Combination, log_bayes
 from sonicvacuum.discover.fit.refit import Fit, fit, polish
+from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, is_law, of_one_strength, variants
 from sonicvacuum.discover.search import directions, restart, screen, secants, singles
@@ -93,10 +93,10 @@ class Pairs:
             leading = self.ranked[:LEADING]
             if not leading:
                 break
-            stages.begin("pairs of effects again", len(leading))
-            for pair in leading:
-                self._note(restart.restarted(self.forward, pair.fit, self.setup))
-                stages.step()
+            restarted = partial(restart.restarted, setup=self.setup)
+            fits = [pair.fit for pair in leading]
+            for one in abreast.each(self.forward, restarted, fits, "pairs of effects again"):
+                self._note(one)
             self._refit(_best(self._instead(self.ranked[0].fit), self.found, BESIDE))
             if self.ranked[0].log_bayes < leading[0].log_bayes + WORTH:
                 break
@@ -152,11 +152,14 @@ class Pairs:
 
     def _refit(self, starts: list[Start]):
         """Fit pairs and note them."""
-        stages.begin("pairs of effects", len(starts))
-        for s in starts:
-            stages.step()
-            least = min((p.fit.objective for p in self.found.values()), default=np.inf)
-            self._note(fitted(self.forward, s, self.setup, least + BEHIND))
+        found = abreast.each(self.forward, fitted, starts, "pairs of effects")
+        for one in found:
+            self._note(one)
+        least = min((p.fit.objective for p in self.found.values()), default=np.inf)
+        near = [one for one in found if places.placed(one) and one.objective < least + BEHIND]
+        settled = partial(places.settled, setup=self.setup)
+        for one in abreast.each(self.forward, settled, near, "places of pairs" if near else ""):
+            self._note(one)
 
     def _note(self, one: Fit):
         """Keep a fit where it is the best of its effects."""
@@ -284,28 +287,29 @@ def beside(
     scores = scores or screened(forward, first, setup)
     gained = null.objective - first.objective
     own = np.array([c.place or 0 for c in first.hypothesis.components], dtype=int)
-    result = []
-    for second, k in scores.best().items():
+
+    def start(branch, best):
+        second, k = best
         effect = setup.catalogue.effect(second)
-        finite = secants.search(forward, first, effect, setup, 2, sparse=True)
+        finite = secants.search(branch, first, effect, setup, 2, sparse=True)
         more = max([float(np.square(scores.z[k])), *(one.gain for one in finite)])
         free = _variant(scores.directions[k], setup)
-        u, places, nu = singles.starts(forward, first, scores, effect, free, False, finite)
+        u, places, nu = singles.starts(branch, first, scores, effect, free, False, finite)
         if not len(u):
-            continue
+            return None
         u = np.column_stack([np.repeat(first.u[None], len(u), axis=0), u])
         places = np.zeros((len(u), 1), dtype=int) if places is None else places
         places = np.column_stack([np.tile(own, (len(u), 1)), places])
         hypothesis = joined(first.hypothesis, Component(effect, free), setup)
-        result.append(Start(gained + more, hypothesis, u, nu, places))
-    return result
+        return Start(gained + more, hypothesis, u, nu, places)
+
+    return [s for s in abreast.each(forward, start, scores.best().items()) if s is not None]
 
 
-def fitted(forward, start: Start, setup: Setup, below: float) -> Fit:
-    """The joint fit from a start, followed along the chain where its objective is low enough."""
+def fitted(forward, start: Start) -> Fit:
+    """The joint fit from a start."""
     one = fit(forward, start.hypothesis, start.u, start.nu, start.places, keep=3, iterations=ITERATIONS)
-    one = one if one.settled else polish(forward, one, ITERATIONS)
-    return places.settled(forward, one, setup) if places.placed(one) and one.objective < below else one
+    return one if one.settled else polish(forward, one, ITERATIONS)
 
 
 def combination(null: Fit, one: Fit, setup: Setup) -> Combination:

@@ -15,6 +15,7 @@ import numpy as np
 
 from sonicvacuum.discover.fit.normal import Normal, from_slopes
 from sonicvacuum.discover.fit.refit import Fit
+from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.search import directions as ways
 from sonicvacuum.discover.search.directions import Direction
@@ -116,10 +117,12 @@ class Screen:
 def screen(forward: Forward, fit: Fit, families: list[ways.Family], rough: bool = False) -> Screen:
     """Scores of families of directions at a fitted model; `rough` ones take half the simulations."""
     base = forward.columns(fit.hypothesis, fit.u[None], fit.nu[None], precise=not rough)
-    parts = []
-    for family in families:
-        alike = ways.like_nuisance(forward, family, base, fit.normal.free)
-        parts.append(alike or ways.simulate(forward, fit.hypothesis, fit.u, fit.nu, family, rough)[0])
+
+    def taken(branch, family):
+        alike = ways.like_nuisance(branch, family, base, fit.normal.free)
+        return alike or ways.simulate(branch, fit.hypothesis, fit.u, fit.nu, family, rough)[0]
+
+    parts = abreast.each(forward, taken, families)
     slopes = [np.concatenate([p[run] for p in parts]) for run in range(len(base))]
     directions = tuple(d for f in families for d in f.directions)
     return from_columns(forward, fit, directions, base, slopes)

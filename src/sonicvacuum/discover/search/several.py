@@ -17,6 +17,7 @@ from sonicvacuum.discover import policy
 from sonicvacuum.discover.fit import enough, heldout, places, smooth
 from sonicvacuum.discover.fit.evidence import Combination
 from sonicvacuum.discover.fit.refit import ITERATIONS, Fit, fit
+from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.search import pairs, restart
 from sonicvacuum.discover.search.unknown import ShapeTest
@@ -139,12 +140,23 @@ class Turns:
     def _pruned(self, fit):
         """Without effects that do not earn their evidence beside the others."""
         while fit.hypothesis.components:
-            less = [self._less(fit, k) for k in range(len(fit.hypothesis.components))]
-            weakest = min(less, key=lambda one: one.objective)
+            weakest = min(self._each_less(fit), key=lambda one: one.objective)
             if self._earned(weakest, fit):
                 return fit
             fit = weakest
         return fit
+
+    def _each_less(self, fit) -> list[Fit]:
+        """The best fits without one effect, each in turn."""
+
+        def without(branch, k):
+            return less(branch, self.null, fit, k, self.setup, pairs.ITERATIONS)
+
+        found = abreast.each(self.forward, without, range(len(fit.hypothesis.components)))
+        for one in found:
+            if one is not self.null:
+                self._noted(one)
+        return found
 
     def _less(self, fit, k):
         """The best fit without effect k."""
@@ -182,7 +194,7 @@ class Turns:
         """The likeliest of the most promising starts, fitted; what was tried before is not tried again."""
         chosen = [s for s in starts if s.gain > enough and s.effects not in self.tried]
         chosen = sorted(chosen, key=lambda s: -s.gain)[:TRIED]
-        found = [pairs.fitted(self.forward, s, self.setup, -np.inf) for s in chosen]
+        found = abreast.each(self.forward, pairs.fitted, chosen)
         found = [one for one in found if np.isfinite(one.objective)]
         for one in found:
             self._noted(one)

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sonicvacuum import stages
 from sonicvacuum.discover.fit import wide
 from sonicvacuum.discover.fit.evidence import Candidate, log_bayes, ranked
 from sonicvacuum.discover.fit.refit import Fit, fit
+from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, variants
 from sonicvacuum.discover.search import secants
@@ -56,21 +56,22 @@ def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
     left = list(setup.catalogue.candidates(setup, forward.experiment.excluded))
     found: list[Candidate] = []
     best_gain, err = largest, ERR
+
+    def follow(branch, effect):
+        far = effect.id in best and abs(scores.strength[best[effect.id]]) > FAR
+        grid = nonlinear or (loose and far and not effect.places)
+        # Most are far behind another; near the nominal model, those that are not are finished once all
+        # are known. Far from it the last steps are as good as any.
+        effort = Effort(grid, steps, COARSE if grid and traced else 0, finish=loose)
+        effort = Effort(True, ITERATIONS, 0, wide.FIRST) if grid and rough else effort
+        return candidate(branch, null, scores, effect, effort)
+
     while left:
         # Places and strengths may not keep what slopes promise: others are measured against what was found.
         enough = -np.inf if loose else max((1.0 - err) * best_gain - HOPELESS, 0.5)
         always = [e for e in left if secants.applies(e) and largest > CLEAR]
         chosen = [e for e in left if e in always or gains.get(e.id, 0.0 if loose else -np.inf) > enough]
-        stages.begin("single effects", len(chosen))
-        for effect in chosen:
-            far = effect.id in best and abs(scores.strength[best[effect.id]]) > FAR
-            grid = nonlinear or (loose and far and not effect.places)
-            # Most are far behind another; near the nominal model, those that are not are finished once all
-            # are known. Far from it the last steps are as good as any.
-            effort = Effort(grid, steps, COARSE if grid and traced else 0, finish=loose)
-            effort = Effort(True, ITERATIONS, 0, wide.FIRST) if grid and rough else effort
-            found.append(candidate(forward, null, scores, effect, effort))
-            stages.step()
+        found += abreast.each(forward, follow, chosen, "single effects")
         left = [e for e in left if e not in chosen]
         achieved = max((c.gain for c in found if c is not None), default=0.0)
         if chosen and achieved < best_gain:
