@@ -6,6 +6,7 @@ import subprocess
 import sys
 import threading
 import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numba
@@ -246,3 +247,17 @@ def test_while_another_process_compiles_what_is_asked_for_soon_is_compiled(monke
     assert seen == [False]
     assert asked.exists()
     assert dispatcher(2.5) == 5.0
+
+
+def test_of_several_threads_one_prepares_a_kernel(monkeypatch):
+    made = []
+
+    def slowly(dispatcher, signature, left):
+        time.sleep(0.05)  # the others come meanwhile
+        made.append(signature)
+
+    monkeypatch.setattr(compiled, "_load_or_compile", slowly)
+    monkeypatch.setattr(compiled, "_prepared", set())
+    with ThreadPoolExecutor(4) as pool:
+        list(pool.map(lambda k: compiled.prepare(None, "one kernel", (1.0,)), range(8)))
+    assert len(made) == 1
