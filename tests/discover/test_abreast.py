@@ -58,6 +58,23 @@ def test_results_and_what_serves_come_in_the_order_of_the_items(hidden, long_cal
     assert known == [0, 1, 2, 3]
 
 
+def test_threads_and_chains_in_the_memory_are_shared_out(hidden, long_calls):
+    forward = ready(hidden, 5)
+    shares = abreast.each(forward, lambda branch, k: (branch.threads, branch.chunk), range(2))
+    assert shares == [(2, model.CHUNK // 2)] * 2
+    (alone,) = abreast.each(forward, lambda branch, k: (branch.threads, branch.chunk), range(1))
+    assert alone == (5, model.CHUNK)
+
+
+def test_predictions_do_not_depend_on_how_many_chains_are_simulated_at_once(hidden):
+    forward = ready(hidden, 1)
+    nu = np.random.default_rng(np.random.SeedSequence(3)).standard_normal((7, forward.layout.size))
+    whole = forward.sampled(Hypothesis(), np.zeros((7, 0)), nu)
+    forward.chunk = 4
+    parts = forward.sampled(Hypothesis(), np.zeros((7, 0)), nu)
+    assert all(np.array_equal(a[0], b[0]) for a, b in zip(whole, parts, strict=True))
+
+
 @pytest.mark.parametrize("threads", [1, 2])
 def test_one_that_fails_ends_all(hidden, long_calls, threads):
     forward, begun = ready(hidden, threads), []

@@ -23,9 +23,9 @@ class Valley:
     `jumps`: data that jump as the coordinates pass multiples of short distances.
     """
 
-    simulations, threads, stop = 0, 1, None
+    simulations, threads, stop, long_calls = 0, 1, None, False
 
-    def branch(self, stop, threads):
+    def branch(self, stop, beside):
         return self
 
     def join(self, branches):

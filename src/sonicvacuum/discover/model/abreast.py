@@ -33,10 +33,10 @@ def each(
     if stage:
         stages.begin(stage, len(items))
     done = stages.step if stage else lambda: None
-    share = max(1, forward.threads // max(1, len(items)))
-    branches = [forward.branch(stop, share) for _ in items]
-    if min(forward.threads, len(items)) > 1 and forward.long_calls:
-        results = _abreast(forward.threads, work, branches, items, stop, done)
+    abreast = min(forward.threads, len(items)) if forward.long_calls else 1
+    branches = [forward.branch(stop, abreast) for _ in items]
+    if abreast > 1:
+        results = _abreast(abreast, work, branches, items, stop, done)
     else:
         results = []
         for branch, item in zip(branches, items, strict=True):

@@ -25,7 +25,7 @@ from sonicvacuum.effects import Setup
 from sonicvacuum.forward import Seen, see, virtual
 from sonicvacuum.physics.chain import Chain
 
-CHUNK = 512  # chains simulated in one call, to bound the memory
+CHUNK = 512  # chains simulated at once, to bound the memory
 LONG_CALL = 0.01  # s
 # Natural logarithm of a ratio at which a chain is none that a laboratory has: a speed, a modulus or a mass a
 # thousand times what was stated. A step that runs away to there would ask for steps without end.
@@ -52,15 +52,19 @@ class Forward:
         self._tiled: dict[tuple, Chain] = {}
         self._alike: dict[tuple, list[list[int]]] = {}
         self.calls, self.seconds = 0, 0.0
+        self.chunk = CHUNK
         self.stop: Event | None = None
 
-    def branch(self, stop: Event, threads: int = 1) -> "Forward":
-        """The same predictor for one of several threads, with a memory of its own that begins as it is."""
+    def branch(self, stop: Event, beside: int = 1) -> "Forward":
+        """The same predictor for one of several threads, with a memory of its own that begins as it is;
+        `beside`: among how many at a time threads and chains are shared out.
+        """
         other = copy(self)
-        other.threads, other.stop = threads, stop
+        other.threads, other.chunk = max(1, self.threads // beside), max(1, self.chunk // beside)
+        other.stop = stop
         other.simulations, other.calls, other.seconds = 0, 0, 0.0
         other.strengths, other.memory = dict(self.strengths), self.memory.copy()
-        other._coarse = self._coarse.branch(stop) if self._coarse else None
+        other._coarse = self._coarse.branch(stop, beside) if self._coarse else None
         return other
 
     def join(self, branches: Iterable["Forward"]) -> None:
@@ -85,6 +89,7 @@ class Forward:
         """The same predictor of running integrals of the traces."""
         if self._coarse is None:
             self._coarse = Forward(replace(self.experiment, integrated=True), self.threads)
+            self._coarse.chunk, self._coarse.stop = self.chunk, self.stop
         return self._coarse
 
     @property
@@ -296,7 +301,7 @@ class Forward:
         runs = len(self.experiment.runs)
         values = [[] for _ in range(runs)]
         rates = [[] for _ in range(runs)]
-        per_call = max(rate_of or 1, CHUNK // max(1, runs))
+        per_call = max(rate_of or 1, self.chunk // max(1, runs))
         per_call -= per_call % (rate_of or 1)
         for first in range(0, len(nu), per_call):
             part = np.arange(first, min(first + per_call, len(nu)))
