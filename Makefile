@@ -74,7 +74,7 @@ test: env  ## check format, style, types, import contracts, and run the tests
 	$(BIN)/mypy
 	$(BIN)/pytest --numprocesses $(CORES) --dist loadfile
 
-long: env  ## the tests that take minutes each, which `make test` leaves out
+long: env  ## the tests that take longest, which `make test` leaves out
 	$(BIN)/pytest --numprocesses $(CORES) -m long
 
 browser: .venv/browsed  ## try the pages in a real browser, those of results/ among them: Chromium on the path, or CHROMIUM=PATH

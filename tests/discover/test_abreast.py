@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from sonicvacuum import stages
-from sonicvacuum.discover import session
 from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model import forward as model
 from sonicvacuum.discover.model.forward import Forward
@@ -29,12 +28,6 @@ def ready(hidden, threads):
     forward = Forward(experiment(hidden), threads)
     sampled(forward)
     return forward
-
-
-def test_the_verdict_does_not_depend_on_threads_where_calls_are_long(hidden, verdict, long_calls):
-    again = session.discover(hidden, threads=2).verdict
-    same = ("named", "probabilities", "parameters", "gap", "where", "upper_limits", "simulations")
-    assert all(getattr(again, key) == getattr(verdict.verdict, key) for key in same)
 
 
 @pytest.mark.parametrize("threads", [1, 3])

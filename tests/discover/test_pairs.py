@@ -52,6 +52,7 @@ def test_two_effects_are_named_together():
     assert v.gap.fitted.after == pytest.approx(1.0, abs=4.0 * np.sqrt(2.0 / found.found.sizes.sum()))
 
 
+@pytest.mark.long
 def test_beads_of_two_kinds_in_turn_are_outside_the_catalogue():
     turn = [("mass", b, 1.06 if b % 2 else 0.94) for b in range(1, BEADS + 1)]
     v = session.discover(made(departures=turn, seed=8)[0]).verdict

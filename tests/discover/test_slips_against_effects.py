@@ -71,6 +71,7 @@ def test_noise_is_not_called_misstated_where_gauges_were_swapped(hidden):
     assert v.named == ["kuwabara-kono"]
 
 
+@pytest.mark.long
 def test_a_slip_is_looked_for_beside_the_likeliest_effect_where_none_was_named():
     """Neither alone explains the record, and another profile along the chain may explain more than either."""
     record, _ = made([("viscous-drag", {"rate_per_s": 150.0})], seed=5, speeds=(0.2, 0.45, 0.95))
@@ -90,6 +91,7 @@ def test_exchanged_runs_are_put_right_beside_an_effect_of_speed():
     assert v.named == ["contact-exponent"]
 
 
+@pytest.mark.long
 def test_a_run_that_is_off_is_put_right_beside_an_effect():
     """An error of all strikers explains a part of one run's, and was named beside the drag with 0.998."""
     record, _ = made([("viscous-drag", {"rate_per_s": 400.0})], seed=6, speeds=(0.2, 0.45, 0.95))
