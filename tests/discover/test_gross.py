@@ -3,6 +3,7 @@ time zero, and more missing than the catalogue has.
 """
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -229,3 +230,14 @@ def test_noise_is_no_gross_misfit(empty):
     forward = Forward(experiment(empty))
     assert not gross.gross(forward, nominal(forward))
     assert gross._pieces(np.zeros(5)) == 0.0
+
+
+@pytest.mark.parametrize(
+    ("others", "share", "told"), [(1, 0.29, False), (1, 0.34, True), (2, 0.34, False), (3, 0.41, True)]
+)
+def test_a_further_effect_is_asked_for_more_than_a_second_one(monkeypatch, others, share, told):
+    """On real chains specimens agree on the second effect, and each has a third one of its own."""
+    monkeypatch.setattr(gross.unknown, "simplest", lambda forward, less: ("", 50.0))
+    less = SimpleNamespace(objective=1000.0, hypothesis=SimpleNamespace(components=[None] * others))
+    fit = SimpleNamespace(objective=1000.0 * (1.0 - share))
+    assert gross._ahead(None, less, fit) is told

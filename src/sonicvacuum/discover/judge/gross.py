@@ -208,7 +208,8 @@ def _ahead(forward, less: Fit, fit: Fit) -> bool:
     away much of what they leave.
     """
     gain = less.objective - fit.objective
-    if less.hypothesis.components and gain < policy.TAKES_AWAY * less.objective:
+    others = len(less.hypothesis.components)
+    if others and gain < policy.TAKES_AWAY[min(others, 2) - 1] * less.objective:
         return False
     return gain > (1.0 + policy.SHARE) * unknown.simplest(forward, less)[1] + policy.MARGIN
 
