@@ -30,7 +30,7 @@ def each(
         stage: what is told to be done, a step for each item; nothing is told without.
     """
     items, stop = list(items), forward.stop or Event()
-    if stage:
+    if stage and items:
         stages.begin(stage, len(items))
     done = stages.step if stage else lambda: None
     abreast = min(forward.threads, len(items)) if forward.long_calls else 1

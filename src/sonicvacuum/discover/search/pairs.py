@@ -158,7 +158,7 @@ class Pairs:
         least = min((p.fit.objective for p in self.found.values()), default=np.inf)
         near = [one for one in found if places.placed(one) and one.objective < least + BEHIND]
         settled = partial(places.settled, setup=self.setup)
-        for one in abreast.each(self.forward, settled, near, "places of pairs" if near else ""):
+        for one in abreast.each(self.forward, settled, near, "places of pairs"):
             self._note(one)
 
     def _note(self, one: Fit):

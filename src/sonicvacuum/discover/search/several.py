@@ -140,19 +140,20 @@ class Turns:
     def _pruned(self, fit):
         """Without effects that do not earn their evidence beside the others."""
         while fit.hypothesis.components:
-            weakest = min(self._each_less(fit), key=lambda one: one.objective)
+            less = self._each_less(fit, range(len(fit.hypothesis.components)))
+            weakest = min(less, key=lambda one: one.objective)
             if self._earned(weakest, fit):
                 return fit
             fit = weakest
         return fit
 
-    def _each_less(self, fit) -> list[Fit]:
-        """The best fits without one effect, each in turn."""
+    def _each_less(self, fit, which) -> list[Fit]:
+        """The best fits without one effect, each of `which` in turn."""
 
         def without(branch, k):
             return less(branch, self.null, fit, k, self.setup, pairs.ITERATIONS)
 
-        found = abreast.each(self.forward, without, range(len(fit.hypothesis.components)))
+        found = abreast.each(self.forward, without, which)
         for one in found:
             if one is not self.null:
                 self._noted(one)
@@ -160,10 +161,7 @@ class Turns:
 
     def _less(self, fit, k):
         """The best fit without effect k."""
-        found = less(self.forward, self.null, fit, k, self.setup, pairs.ITERATIONS)
-        if found is self.null:
-            return found
-        self._noted(found)
+        (found,) = self._each_less(fit, [k])
         return found
 
     def _earned(self, before: Fit, after: Fit) -> bool:
