@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from sonicvacuum.physics.compiled import cached, prepare
+from sonicvacuum.physics.dispatchers import cached, prepare
 from sonicvacuum_blind import stepper
 from sonicvacuum_blind.laws import SOURCES, Acting, acting, numbers
 

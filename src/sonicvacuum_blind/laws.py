@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 from numba import njit
 
-from sonicvacuum.physics.compiled import cached, prepare
+from sonicvacuum.physics.dispatchers import cached, prepare
 from sonicvacuum_blind import layer
 from sonicvacuum_blind.layer import DEGREE
 

@@ -5,9 +5,9 @@ import pytest
 from engine_cases import DURATION, coated
 
 from sonicvacuum.physics import sampling
+from sonicvacuum.physics.composition import U, V
 from sonicvacuum.physics.methods import BLANES_MOAN, VERLET
 from sonicvacuum.physics.run import _Batch, simulate
-from sonicvacuum.physics.table import U, V
 
 CHAINS = {
     "horizontal": coated(),

@@ -3,13 +3,15 @@
 import numpy as np
 import pytest
 from engine_cases import DURATION, coated
-from numba import njit
 
 from sonicvacuum.physics import lanes, run
 from sonicvacuum.physics.chain import Chain
-from sonicvacuum.physics.laws import LawSet
+from sonicvacuum.physics.composition import Frame
+from sonicvacuum.physics.entry import handed_over, kinds_of, prototype
+from sonicvacuum.physics.linking import alone
+from sonicvacuum.physics.machine import address_of
 from sonicvacuum.physics.run import simulate
-from sonicvacuum.physics.table import OPTIONS, Composition, load, store
+from sonicvacuum.physics.table import OPTIONS, load, store
 
 MODULI = np.linspace(2.76e9, 30e9, 19)
 CONTACTS = (0, 12, 21)
@@ -100,9 +102,6 @@ def test_samples_are_the_same_however_dense():
 
 @pytest.mark.parametrize("width", [1, lanes.LANES])
 def test_compiled_arithmetic(width):
-    composition = Composition(LawSet(), width)
-
-    @njit(**OPTIONS)
     def apply(c, x, y, out):
         for i in range(len(x)):
             a, b = load(c, x, i), load(c, y, i)
@@ -119,7 +118,10 @@ def test_compiled_arithmetic(width):
     x[::11] = 0.0
     y = random.uniform(0.2, 3.0, x.shape)
     out = np.empty((len(x), 6, width))
-    apply(composition, x, y, out)
+    arguments = (x, y, out.reshape(-1, width))
+    kinds, name = kinds_of(arguments), f"arithmetic_of_{width}"
+    code = alone(apply, OPTIONS, kinds, name, Frame(width))
+    prototype(kinds)(address_of(name, code))(*handed_over(arguments))
     # Polynomials of lanes are good to 1e-13, their square roots to 6e-13.
     for k, expected in enumerate(
         (

@@ -6,7 +6,7 @@ import pytest
 from click.testing import CliRunner
 
 from sonicvacuum.cli import stage_lines
-from sonicvacuum.physics import compiled
+from sonicvacuum.physics import compiled, dispatchers
 from sonicvacuum.stages import compilations_told_to
 
 
@@ -34,12 +34,13 @@ def thrice(x):
 @pytest.fixture
 def compile_laws(monkeypatch, tmp_path):
     """Function that compiles so many kernels, as an empty folder of kernels makes a verb do."""
-    monkeypatch.setattr(compiled, "cache_folder", lambda: tmp_path)
-    monkeypatch.setattr(compiled, "_prepared", set())
+    for module in (compiled, dispatchers):
+        monkeypatch.setattr(module, "cache_folder", lambda: tmp_path)
+    monkeypatch.setattr(dispatchers, "_prepared", set())
 
     def compile_laws(count):
         for law in (twice, thrice)[:count]:
-            compiled.prepare(compiled.cached(numba.njit(law)), law.__name__, (1.0,))
+            dispatchers.prepare(dispatchers.cached(numba.njit(law)), law.__name__, (1.0,))
 
     return compile_laws
 
@@ -48,7 +49,7 @@ def test_a_compilation_is_heard_and_what_is_read_from_the_folder_is_not(compile_
     heard = []
     with compilations_told_to(heard.append):
         compile_laws(1)
-        monkeypatch.setattr(compiled, "_prepared", set())
+        monkeypatch.setattr(dispatchers, "_prepared", set())
         compile_laws(1)
     assert heard == [1, -1]
     compile_laws(2)
@@ -69,7 +70,8 @@ def test_a_log_gets_one_plain_line_however_much_is_compiled(compile_laws):
 
 
 def test_where_kernels_cannot_be_kept_the_cure_is_told(compile_laws, monkeypatch):
-    monkeypatch.setattr(compiled, "cache_folder", lambda: None)
+    for module in (compiled, dispatchers):
+        monkeypatch.setattr(module, "cache_folder", lambda: None)
     told = said_by_a_verb(lambda: compile_laws(1))
     assert told == f"work: {stage_lines.NOT_KEPT}\n"
 

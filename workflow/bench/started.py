@@ -5,7 +5,7 @@ processor seconds: `begun`, all until the first file is read that the command li
 folder it names, which is when a verb has checked its arguments and turns to its work (of a verb that is given
 no file, the first table of data; of one that reads nothing, all that it loads);
 `load`, the interpreter's start and all import statements together, wherever they stand; `kernels`, reading
-compiled kernels from the cache, for which Numba first fills its tables of types.
+compiled kernels from the cache.
 """
 
 import atexit
@@ -55,7 +55,10 @@ def counting(function, name):
 
 
 def watch_kernels():
-    """Count what Numba's functions take to be compiled or read, as soon as Numba is there."""
+    """Count what compiled functions take to be compiled or read, as soon as what does so is there."""
+    kernels = sys.modules.get("sonicvacuum.physics.kernels")
+    if kernels and hasattr(kernels, "_made_ready") and kernels._made_ready.__name__ != "call":
+        kernels._made_ready = counting(kernels._made_ready, "kernels")
     numba = sys.modules.get("numba.core.dispatcher")
     if numba and hasattr(numba, "Dispatcher") and numba.Dispatcher.compile.__name__ != "call":
         numba.Dispatcher.compile = counting(numba.Dispatcher.compile, "kernels")

@@ -15,7 +15,6 @@ from sonicvacuum.discover.judge.decision import Case, Decision, View
 from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.experiment import Experiment
 from sonicvacuum.discover.model.forward import Forward
-from sonicvacuum.discover.model.hypothesis import typical
 from sonicvacuum.discover.search import directions, screen, singles
 
 # Candidates whose Δχ² is this far behind the best are not followed to their minimum.
@@ -86,7 +85,6 @@ def investigate(experiment: Experiment, threads: int = 1, null: Fit | None = Non
     stages.begin("nominal model")
     null = null or wide.nominal(forward)
     setup = singles.setup_of(forward)
-    _expect(setup, experiment.excluded)
     scores = screen.screen(forward, null, directions.catalogue(setup, experiment.excluded))
     threshold = scores.threshold(policy.FALSE_ALARM)
     found = _polished(forward, null, singles.fit_all(forward, null, scores), threshold)
@@ -111,14 +109,6 @@ def investigate(experiment: Experiment, threads: int = 1, null: Fit | None = Non
     given = {**vars(decision), "reasons": reasons}
     del given["beside"], given["left"], given["singles"]
     return Investigation(forward, null, scores, threshold, found, odds, alike=alike, **given)
-
-
-def _expect(setup, excluded):
-    """Tell which kernels the search will ask for, of effects one by one."""
-    from sonicvacuum.physics.run import expect  # and with it Numba, as in `motion.see`
-
-    alone = (e for e in setup.catalogue.candidates(setup, excluded) if not e.places)
-    expect(*(typical(effect, setup).chain for effect in alone))
 
 
 def _odds(found, decision: Decision, alike, prior, present) -> tuple[dict[str, float], list[str]]:

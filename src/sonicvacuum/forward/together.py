@@ -9,16 +9,15 @@ from pathlib import Path
 from types import FunctionType
 
 import numpy as np
-from numba import njit
 
 from sonicvacuum.observe import pulse, trace
 from sonicvacuum.observe.pulse import MAIN, PROMINENCE, Pulse
 from sonicvacuum.observe.run import Geometry, Run
-from sonicvacuum.observe.trace import DEGREE, TOP, Measured, grid, maximum
-from sonicvacuum.physics.compiled import cached, prepare
+from sonicvacuum.observe.trace import DEGREE, TOP, Measured, cubic, grid, maximum, newton, root
+from sonicvacuum.physics.kernels import Compiled
 
 # Neither reordered nor fused: the same roundings as in Python.
-_compiled = njit(error_model="numpy", nogil=True, _nrt=False)
+_OPTIONS = {"error_model": "numpy", "nogil": True, "_nrt": False}
 # Columns of what is known of each pulse: whether it looks as most do, its highest sample, the one by which it
 # has fallen, first and last sample of its top.
 _USUAL, _PEAK, _SEEN, _LEFT, _RIGHT = range(5)
@@ -65,9 +64,7 @@ class Together:
 
     def _tops(self, s):
         found = np.zeros((len(self._signals), 5), dtype=np.int64)
-        arguments = (self._signals, s, found)
-        prepare(_find_tops, "tops", arguments)
-        _find_tops(*arguments)
+        _find_tops(self._signals, s, found)
         start, interval = self.grid
         pulses: list[Pulse | None] = [None] * len(found)
         for lane, (usual, peak, seen, left, right) in enumerate(found.tolist()):
@@ -80,26 +77,21 @@ class Together:
         known = [(-1, 0.0) if p is None else (p.peak, level * p.force) for p in self.pulses(sensor)]
         peak, target = (np.array(column) for column in zip(*known, strict=True))
         places = np.full(len(known), np.nan)
-        arguments = (self._signals, self._place[sensor], peak, target, rising, places)
         if 0.0 < level < 1.0:
-            prepare(_find_crossings, "crossings", arguments)
-            _find_crossings(*arguments)
+            _find_crossings(self._signals, self._place[sensor], peak, target, rising, places)
         start, interval = self.grid
         return [Measured(start + interval * x) if x == x else None for x in places.tolist()]
 
 
 def _with(function, **callees):
-    """A function of `observe` compiled, with what it calls: one formula, one place."""
-    names = {**function.__globals__, **callees}
-    return _compiled(FunctionType(function.__code__, names, function.__name__))
+    """A function and what it calls of `observe`, compiled there: one formula, one place."""
+    from numba import njit
+
+    compiled = {name: njit(**_OPTIONS)(callee) for name, callee in callees.items()}
+    names = {**function.__globals__, **compiled}
+    return FunctionType(function.__code__, names, function.__name__)
 
 
-_cubic = _compiled(trace.cubic)
-_root = _with(trace.root, value_at=_compiled(trace.value_at))
-_newton = _with(trace.newton, slope_and_curvature=_compiled(trace.slope_and_curvature))
-
-
-@_compiled
 def _tops(signals, s, found):
     """As `pulse.main_pulse` of each lane, up to the fit of the top."""
     samples = signals.shape[2]
@@ -133,7 +125,6 @@ def _tops(signals, s, found):
         found[lane, _USUAL] = 1
 
 
-@_compiled
 def _crossings(signals, s, peak, target, rising, places):
     """As `shape.onset` or `shape.ending` of each lane with a peak (−1: none), where the signal only falls."""
     samples, way = signals.shape[2], -1 if rising else 1
@@ -147,21 +138,38 @@ def _crossings(signals, s, peak, target, rising, places):
             continue
         before = t if rising else t - 1
         first = min(max(before - 1, 0), samples - 4)
-        c = _cubic(
+        c = cubic(
             force[first] - level, force[first + 1] - level, force[first + 2] - level, force[first + 3] - level
         )
         lower = float(before - first)
-        places[lane] = first + _root(c, lower, lower + 1.0)
+        places[lane] = first + root(c, lower, lower + 1.0)
+
+
+def _newton(coefficients, x, lower, upper, found):
+    """`trace.newton` for the coefficients of most pulses."""
+    c = coefficients
+    found[0] = newton((c[0], c[1], c[2], c[3], c[4], c[5], c[6]), x, lower, upper)
+
+
+def _made_crossings():
+    return _with(_crossings, cubic=cubic, root=_with(root, value_at=trace.value_at)), _OPTIONS
+
+
+def _made_newton():
+    steps = _with(newton, slope_and_curvature=trace.slope_and_curvature)
+    return _with(_newton, newton=steps), _OPTIONS
 
 
 _SOURCES = (Path(__file__), Path(trace.__file__), Path(pulse.__file__))
-_find_tops, _find_crossings, _find_newton = (cached(f, _SOURCES) for f in (_tops, _crossings, _newton))
+_find_tops = Compiled(lambda: (_tops, _OPTIONS), "tops", _SOURCES)
+_find_crossings = Compiled(_made_crossings, "crossings", _SOURCES)
+_find_newton = Compiled(_made_newton, "newton", _SOURCES)
 
 
 def _newton_compiled(c, x, lower, upper):
     """`trace.newton` in compiled code, for the coefficients of most pulses."""
     if len(c) != DEGREE + 1:
-        return trace.newton(c, x, lower, upper)
-    arguments = (tuple(c), x, lower, upper)
-    prepare(_find_newton, "newton", arguments)
-    return _find_newton(*arguments)
+        return newton(c, x, lower, upper)
+    found = np.empty(1)
+    _find_newton(np.array(c), float(x), float(lower), float(upper), found)
+    return float(found[0])

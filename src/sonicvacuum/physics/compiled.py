@@ -1,11 +1,11 @@
 """A cache of compiled code that is never stale and that many processes may use at once.
 
 Numba's own cache looks at the file of one function only: an edit of any function that it calls goes
-unseen, and processes that write together may mix their files up. Here each compiled signature is one
-file, named by a digest of the signature and the processor, in a folder named by a digest of the source of
-`sonicvacuum.physics` and of the versions of all that takes part. Force laws from elsewhere (effects) stand in
-the signature with a digest of their own formulas. Nothing is ever overwritten with something else, and
-nothing is loaded that another user could have written.
+unseen, and processes that write together may mix their files up. Here each stepper (`kept`), and each
+signature of another function, is one file, named by a digest of what it is and the processor,
+in a folder named by a digest of the source of `sonicvacuum.physics` and of the versions of what compiles it.
+Force laws from elsewhere (effects) stand in the name with a digest of their own formulas. Nothing is ever
+overwritten with something else, and nothing is loaded that another user could have written.
 
 The folder lies in the user's cache folder, or in $SONICVACUUM_CACHE_DIR. Where it cannot be written,
 code is compiled afresh by each process.
@@ -15,33 +15,30 @@ import contextlib
 import gc
 import hashlib
 import os
-import pickle
 import shutil
 import stat
 import sys
 import tempfile
+from collections.abc import Callable
 from functools import lru_cache
+from importlib.metadata import version
 from pathlib import Path
-from threading import Lock
-
-import llvmlite
-import numba
-import numpy as np
-from numba.core.caching import CompileResultCacheImpl, _Cache
-from numba.core.serialize import dumps
+from threading import RLock
 
 from sonicvacuum.physics import watch
+from sonicvacuum.physics.machine import processor
 from sonicvacuum.stages import compiling
 
 _PACKAGE = Path(__file__).resolve().parent
 _KEPT_FOLDERS = 8
 # Longer than any compilation: a process that still holds the lock then is taken for dead.
-_PATIENCE = 60.0
+PATIENCE = 60.0
+_DIGEST = hashlib.sha256().digest_size
 
 
 def source_digest(package: Path = _PACKAGE) -> str:
     """Digest of all Python files of a package and of the versions of what compiles them."""
-    versions = (sys.version, numba.__version__, llvmlite.__version__, np.__version__)
+    versions = (sys.version, *(version(name) for name in ("numba", "llvmlite", "numpy")))
     return files_digest(tuple(sorted(package.rglob("*.py"))), package, repr(versions))
 
 
@@ -85,60 +82,15 @@ def _prune(folder):
         shutil.rmtree(old, ignore_errors=True)
 
 
-class _SignatureCache(_Cache):
-    """Numba's interface to a cache: one file per signature.
-
-    Numba's own makes its contexts ready to compile before it loads, a third of a second of every process.
-    What counts no references to arrays (option `_nrt`) needs nothing of that, and the compiler makes them
-    ready itself.
-    """
-
-    def __init__(self, dispatcher, sources):
-        self._function, self._sources = dispatcher.py_func, sources
-        self._counts_references = dispatcher.targetoptions.get("_nrt", True)
-
-    @property
-    def cache_path(self):
-        return str(cache_folder())
-
-    def enable(self):
-        pass
-
-    def disable(self):
-        pass
-
-    def flush(self):
-        pass
-
-    def path(self, signature, target):
-        own = (self._function.__qualname__, *(files_digest((file,)) for file in self._sources))
-        key = (*own, str(signature), target.codegen().magic_tuple())
-        return cache_folder() / f"{hashlib.sha256(repr(key).encode()).hexdigest()[:32]}.bin"
-
-    def load_overload(self, sig, target_context):
-        if cache_folder() is None:
-            return None
-        # Whatever is wrong with the file, compiling afresh is the cure.
-        with contextlib.suppress(Exception):
-            payload = pickle.loads(_own(self.path(sig, target_context)))
-            if self._counts_references:
-                target_context.refresh()
-            return CompileResultCacheImpl.rebuild(None, target_context, payload)
-        return None
-
-    def save_overload(self, sig, data):
-        if cache_folder() is None:
-            return
-        with contextlib.suppress(OSError):
-            payload = dumps(data._reduce())
-            path = self.path(sig, data.target_context)
-            with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as file:
-                file.write(payload)
-            os.replace(file.name, path)
+def write(path, content):
+    """Write a file that is there whole or not at all."""
+    with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as file:
+        file.write(content)
+    os.replace(file.name, path)
 
 
-def _own(path: Path) -> bytes:
-    """Content of a file that nobody else could have written: whoever makes a pickle runs code here.
+def own(path: Path) -> bytes:
+    """Content of a file that nobody else could have written: what it says is run.
 
     Raises:
         PermissionError: for a file of another user, or one that others may write.
@@ -151,87 +103,53 @@ def _own(path: Path) -> bytes:
         return file.read()
 
 
-def cached(dispatcher, sources: tuple[Path, ...] = ()):
-    """Give a Numba function this cache instead of Numba's own.
-
-    Args:
-        dispatcher: what `numba.njit` returned.
-        sources: files outside `sonicvacuum.physics` with whose code it is compiled.
-    """
-    dispatcher._cache = _SignatureCache(dispatcher, sources)
-    return dispatcher
-
-
-_prepared = set()
+# Names of what this process compiled.
+made: list[str] = []
 # Of several threads one at a time loads or compiles.
-_preparing = Lock()
+preparing = RLock()
 
 
-def prepare(dispatcher, name: str, arguments: tuple, soon: dict | None = None) -> None:
-    """Load or compile a function for the types of `arguments`, whose signature goes by `name`.
+def kept(name: str, make: Callable[[], bytes]) -> bytes:
+    """What goes by `name` on this processor, as an earlier process made it, or made now and kept.
 
-    Of several processes that lack it one compiles. The others meanwhile compile what they need `soon` (name →
-    first argument, the rest being alike) and nobody else compiles, or wait, and load.
+    Of several processes that lack it one makes it, and the others wait.
     """
-    if name in _prepared:
-        return
-    with _preparing:
-        if name in _prepared:
-            return
-        signature = tuple(numba.typeof(a) for a in arguments)
-        left = [(numba.typeof(first), *signature[1:]) for n, first in (soon or {}).items() if n != name]
-        _load_or_compile(dispatcher, signature, left)
-        _prepared.add(name)
-
-
-def _import_array_functions():
-    """Import Numba's array functions, but without scipy's linear algebra: no kernel multiplies matrices.
-
-    Numba loads it only to see that it is there, which is a fifth of a second of every process's start; where
-    it is used, Numba checks again.
-    """
-    with contextlib.suppress(ImportError, AttributeError):
-        from numba.np import linalg
-
-        check, linalg.ensure_blas = linalg.ensure_blas, lambda: None
-        try:
-            import numba.np.arraymath  # noqa: F401
-        finally:
-            linalg.ensure_blas = check
-
-
-def _load_or_compile(dispatcher, signature, soon=()):
+    key = repr((name, *processor())).encode()
     folder = cache_folder()
-    path = dispatcher._cache.path(signature, dispatcher.targetctx) if folder else None
-    if path and path.exists():
-        dispatcher.compile(signature)
-        return
-    _import_array_functions()
-    with compiling():
-        for other in soon if path else ():
-            with _lock(path, 0.0) as alone:
-                if alone:
-                    _compile(dispatcher, signature)
-                    return
-            _compile_unless_another_does(dispatcher, other)
-        with _lock(path, _PATIENCE) if path else contextlib.nullcontext():
-            _compile(dispatcher, signature)
+    path = folder / f"{hashlib.sha256(key).hexdigest()[:32]}.bin" if folder else None
+    content = _whole(path)
+    if content is None:
+        with compiling(), lock(path, PATIENCE) if path else contextlib.nullcontext():
+            content = _whole(path)
+            if content is None:
+                content = _made(name, make)
+                if path:
+                    with contextlib.suppress(OSError):
+                        write(path, hashlib.sha256(content).digest() + content)
+    return content
 
 
-def _compile_unless_another_does(dispatcher, signature):
-    path = dispatcher._cache.path(signature, dispatcher.targetctx)
-    with _lock(path, 0.0) as alone:
-        if alone and not path.exists():
-            _compile(dispatcher, signature)
+def _whole(path):
+    """Content of a file of the cache; None where it is not there, damaged, or could be another user's."""
+    with contextlib.suppress(OSError):
+        if path:
+            whole = own(path)
+            digest, content = whole[:_DIGEST], whole[_DIGEST:]
+            if hashlib.sha256(content).digest() == digest:
+                return content
+    return None
 
 
-def _compile(dispatcher, signature):
-    with _uncollected():
-        watch.aside(dispatcher.compile, signature)
+def _made(name, make):
+    found = []
+    with uncollected():
+        watch.aside(lambda: found.append(make()))
+    made.append(name)
+    return found[0]
 
 
 @contextlib.contextmanager
-def _uncollected():
+def uncollected():
     """Without the collection of garbage, which takes a quarter of a compilation and finds next to nothing."""
     enabled = gc.isenabled()
     gc.disable()
@@ -243,7 +161,7 @@ def _uncollected():
 
 
 @contextlib.contextmanager
-def _lock(path, patience):
+def lock(path, patience):
     """Whether this process alone compiles what is kept at `path`, as far as it could be found out within
     `patience` (s).
     """

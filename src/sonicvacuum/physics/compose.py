@@ -1,34 +1,24 @@
-"""From a law set to machine code: the formulas of a composition, chained into one function each.
+"""From a law set to functions of a body's row: the formulas of a composition, chained into one function each.
 
-The functions without a body here exist in compiled code only: `@overload` gives Numba, for each
-`Composition`, a source text that calls the formulas of its terms and nothing else.
+They fill what the stepper leaves open (see `table`). Each is made as a source text that calls the formulas of
+the terms and nothing else, with which `linking` goes on.
 """
 
+from collections.abc import Callable
+from dataclasses import dataclass
+
 import numpy as np
-from numba import njit
-from numba.extending import overload
+from numba import njit, types
 
 from sonicvacuum.physics import lanes
-from sonicvacuum.physics.lanes import absolute, positive, root, select
-from sonicvacuum.physics.table import (
-    INLINED,
-    REST,
-    REST_FORCE,
-    U,
-    V,
-    first_memory,
-    get,
-    is_any_positive,
-    put,
-    zero,
-)
+from sonicvacuum.physics.composition import REST, REST_FORCE, Composition, U, V
+from sonicvacuum.physics.lanes import positive, root, select
+from sonicvacuum.physics.table import INLINED, is_any_positive, number_type, read, write
 
 # Gauss's rule on −1 to 1, moved to 0 to 1; exact where a correction is a polynomial in √compression up to the
 # eleventh power.
 _X, _W = np.polynomial.legendre.leggauss(8)
 _NODES, _WEIGHTS = (0.5 * (_X + 1.0)).tolist(), (0.5 * _W).tolist()
-
-COMPILED_ONLY = "this function exists in compiled code only: it takes a composition that Numba knows"
 
 
 def _compiled(function):
@@ -57,15 +47,15 @@ class _Source:
         self.composition, self.laws = composition, composition.laws
         self.lines = [f"def composed({signature}):"]
         self.namespace = {name: getattr(lanes, name) for name in ("select", "positive", "without_fusing")}
-        self.namespace |= {"get": get, "put": put, "highest": highest}
-        self.namespace |= {"absolute": absolute, "is_any_positive": is_any_positive}
+        self.namespace |= {"read": read, "write": write, "highest": highest}
+        self.namespace |= {"absolute": lanes.absolute, "is_any_positive": is_any_positive}
 
     def call(self, term, what, *arguments):
         """The call of one formula of a term, its coefficients read from the table."""
         key = f"{what}_{len(self.namespace)}"
         self.namespace[key] = _compiled(getattr(term, what))
         start = self.composition.first_coefficient + self.laws.first_coefficient[term.name]
-        read = [f"get(c, table, body, {start + k})" for k in range(term.coefficients)]
+        read = [f"read(row, {start + k})" for k in range(term.coefficients)]
         return f"{key}({', '.join([*arguments, *read])})"
 
     def add(self, *lines):
@@ -80,7 +70,7 @@ class _Source:
             self.add(line)
             return
         start = self.composition.first_coefficient + self.laws.first_coefficient[term.name]
-        sizes = " + ".join(f"absolute(get(c, table, body, {start + k}))" for k in term.strengths)
+        sizes = " + ".join(f"absolute(read(row, {start + k}))" for k in term.strengths)
         self.add(f"if is_any_positive({sizes}):", f"    {line}")
 
     def add_elastic(self, first_memory):
@@ -91,7 +81,7 @@ class _Source:
             self.add(f"loading = loading * {self.call(term, 'formula', 'delta')}")
         self.add("elastic = loading")
         for term in self.laws.in_slot("path"):
-            largest = f"get(c, table, body, {first_memory} + {self.laws.memory_of[term.name]})"
+            largest = f"read(row, {first_memory} + {self.laws.memory_of[term.name]})"
             self.add_acting(term, f"elastic = {self.call(term, 'formula', 'delta', 'loading', largest)}")
 
     def add_energy(self, name, delta):
@@ -116,195 +106,159 @@ class _Source:
         return self.namespace["composed"]
 
 
-def push(c, table, body, approach, rate, first_memory):
-    """Force in N, beyond the static one, between a body and the next.
+@dataclass(frozen=True)
+class Piece:
+    """One function of the laws.
 
-    `approach` of the two since rest in m, its `rate` in m/s; `first_memory`: column of the memory to use.
+    Attributes:
+        arguments: names of what it takes beside `row`, a pointer to the row of a body; numbers of all lanes.
+        write: adds lines to a source; whether there is anything to do: if not, zero is returned.
+        scalars: names of arguments that are alike in all lanes.
+        columns: names of arguments that are columns of the table.
+        returns: whether it returns a number of all lanes.
     """
-    raise TypeError(COMPILED_ONLY)
+
+    arguments: tuple[str, ...]
+    write: Callable[[Composition, _Source], bool]
+    scalars: tuple[str, ...] = ()
+    columns: tuple[str, ...] = ()
+    returns: bool = False
+
+    def signature(self, composition: Composition):
+        """Types of all arguments and of what is returned, for Numba."""
+        number = number_type(composition.width)
+        kinds = dict.fromkeys(self.scalars, types.float64) | dict.fromkeys(self.columns, types.intp)
+        arguments = [kinds.get(name, number) for name in self.arguments]
+        return (number if self.returns else types.void)(types.CPointer(number), *arguments)
+
+    def function(self, composition: Composition) -> Callable | None:
+        """Python function of `row` and the arguments; None where it does nothing."""
+        source = _Source(composition, ", ".join(("row", *self.arguments)))
+        return source.function() if self.write(composition, source) else None
 
 
-@overload(push, jit_options=INLINED)
-def _push(c, table, body, approach, rate, first_memory):
-    laws = c.composition.laws
-    source = _Source(c.composition, "c, table, body, approach, rate, first_memory")
+def _push(composition, source):
+    laws = composition.laws
     source.add(_delta(laws))
     source.add_elastic("first_memory")
     source.add("force = elastic")
     for term in laws.in_slot("force"):
         source.add_acting(term, f"force = force + {source.call(term, 'formula', 'delta', 'rate', 'elastic')}")
     for term in laws.in_slot("memory"):
-        state = f"get(c, table, body, first_memory + {laws.memory_of[term.name]})"
+        state = f"read(row, first_memory + {laws.memory_of[term.name]})"
         source.add(f"force = force + {source.call(term, 'formula', 'elastic', state)}")
     if not laws.is_positional:
         # A lone elastic force is already zero out of contact and never negative.
         source.add("force = select(delta, positive(force), 0.0)")
     if laws.preloaded:
-        source.add(f"force = without_fusing(force, get(c, table, body, {REST_FORCE}))")
+        source.add(f"force = without_fusing(force, read(row, {REST_FORCE}))")
     source.add("return force")
-    return source.function()
-
-
-def set_rest_force(c, table, body):
-    """Keep the static force of a contact.
-
-    By the law itself: what is at rest then stays so to the bit.
-    """
-    raise TypeError(COMPILED_ONLY)
-
-
-@overload(set_rest_force, jit_options=INLINED)
-def _set_rest_force(c, table, body):
-    if not c.composition.laws.preloaded:
-        return lambda c, table, body: None
-
-    def set_rest_force(c, table, body):
-        put(c, table, body, REST_FORCE, zero(c))
-        put(c, table, body, REST_FORCE, push(c, table, body, zero(c), zero(c), first_memory(c)))
-
-    return set_rest_force
+    return True
 
 
 def _delta(laws):
-    rest = f" + get(c, table, body, {REST})" if laws.preloaded else ""
+    rest = f" + read(row, {REST})" if laws.preloaded else ""
     return f"delta = approach{rest}"
 
 
-def advance_memory(c, table, body, approach, keep, gain, step):
-    """One low-storage Runge–Kutta stage of the memory of the contact behind a body."""
-    raise TypeError(COMPILED_ONLY)
-
-
-@overload(advance_memory, jit_options=INLINED)
-def _advance_memory(c, table, body, approach, keep, gain, step):
-    composition, laws = c.composition, c.composition.laws
-    source = _Source(composition, "c, table, body, approach, keep, gain, step")
-    if laws.in_slot("memory"):
-        source.add(_delta(laws))
-        source.add_elastic(composition.first_memory)
+def _advance_memory(composition, source):
+    laws = composition.laws
+    if not laws.in_slot("memory"):
+        return False
+    source.add(_delta(laws))
+    source.add_elastic(composition.first_memory)
     for term in laws.in_slot("memory"):
         k = laws.memory_of[term.name]
         column, increment = composition.first_memory + k, composition.first_increment + 2 + k
         growth = source.call(term, "growth", "elastic", "state")
         source.add(
-            f"state = get(c, table, body, {column})",
-            f"change = keep * get(c, table, body, {increment}) + step * {growth}",
-            f"put(c, table, body, {increment}, select(delta, change, 0.0))",
-            f"put(c, table, body, {column}, select(delta, state + gain * change, 0.0))",
+            f"state = read(row, {column})",
+            f"change = keep * read(row, {increment}) + step * {growth}",
+            f"write(row, {increment}, select(delta, change, 0.0))",
+            f"write(row, {column}, select(delta, state + gain * change, 0.0))",
         )
-    source.add("return None")
-    return source.function()
+    return True
 
 
-def follow_path(c, table, body, step):
-    """After a step, keep the largest compression that the contact behind a body had during it.
+def _follow_path(composition, source):
+    """The largest compression of the step is that of the cubic Hermite polynomial.
 
-    That of the cubic Hermite polynomial: the stages of a step stray from the motion, and a largest
-    compression once too large would stay so.
+    The stages of a step stray from the motion, and a largest compression once too large would stay so.
     """
-    raise TypeError(COMPILED_ONLY)
-
-
-@overload(follow_path, jit_options=INLINED)
-def _follow_path(c, table, body, step):
-    composition, laws = c.composition, c.composition.laws
-    source = _Source(composition, "c, table, body, step")
-    if laws.in_slot("path"):
-        start = composition.first_turn
-        source.add(
-            f"x, v = get(c, table, body, {start}), step * get(c, table, body, {start + 1})",
-            f"rate = get(c, table, body, {V}) - get(c, table, body + 1, {V})",
-            f"approach = get(c, table, body, {U}) - get(c, table, body + 1, {U})",
-            f"put(c, table, body, {start}, approach)",
-            f"put(c, table, body, {start + 1}, rate)",
-            "approach = x + highest(v, step * rate, approach - x)",
-            _delta(laws),
-        )
+    laws = composition.laws
+    if not laws.in_slot("path"):
+        return False
+    start, ahead = composition.first_turn, composition.columns
+    source.add(
+        f"x, v = read(row, {start}), step * read(row, {start + 1})",
+        f"rate = read(row, {V}) - read(row, {ahead + V})",
+        f"approach = read(row, {U}) - read(row, {ahead + U})",
+        f"write(row, {start}, approach)",
+        f"write(row, {start + 1}, rate)",
+        "approach = x + highest(v, step * rate, approach - x)",
+        _delta(laws),
+    )
     for term in laws.in_slot("path"):
         column = composition.first_memory + laws.memory_of[term.name]
-        source.add(f"largest = get(c, table, body, {column})")
-        source.add(f"put(c, table, body, {column}, select(delta - largest, delta, largest))")
-    source.add("return None")
-    return source.function()
+        source.add(f"largest = read(row, {column})")
+        source.add(f"write(row, {column}, select(delta - largest, delta, largest))")
+    return True
 
 
-def body_acceleration(c, table, body, velocity):
-    """Acceleration in m/s² of a bead by drag and friction."""
-    raise TypeError(COMPILED_ONLY)
-
-
-@overload(body_acceleration, jit_options=INLINED)
-def _body_acceleration(c, table, body, velocity):
-    source = _Source(c.composition, "c, table, body, velocity")
+def _body_acceleration(composition, source):
+    if not composition.laws.in_slot("body"):
+        return False
     source.add("total = 0.0 * velocity")
-    for term in c.composition.laws.in_slot("body"):
+    for term in composition.laws.in_slot("body"):
         source.add_acting(term, f"total = total + {source.call(term, 'formula', 'velocity')}")
     source.add("return total")
-    return source.function()
+    return True
 
 
-def stored_energy(c, table, body, approach):
-    """Elastic energy in J of a contact beyond that at rest, less the work of its static force."""
-    raise TypeError(COMPILED_ONLY)
-
-
-@overload(stored_energy, jit_options=INLINED)
-def _stored_energy(c, table, body, approach):
-    laws = c.composition.laws
-    source = _Source(c.composition, "c, table, body, approach")
-    if not laws.stores_energy:
-        source.add("return 0.0 * approach")
-        return source.function()
+def _stored_energy(composition, source):
+    laws = composition.laws
+    if not (composition.audited and laws.stores_energy):
+        return False
     source.add(_delta(laws))
     source.add_energy("energy", "delta")
     if laws.preloaded:
-        source.add(f"rest = get(c, table, body, {REST})", f"force = get(c, table, body, {REST_FORCE})")
+        source.add(f"rest = read(row, {REST})", f"force = read(row, {REST_FORCE})")
         source.add_energy("before", "rest")
         source.add("energy = energy - before - force * approach")
     source.add("return energy")
-    return source.function()
+    return True
 
 
-def keep_memory(c, table, body):
-    """Copy the memory of a contact to the columns `old`."""
-    raise TypeError(COMPILED_ONLY)
-
-
-@overload(keep_memory, jit_options=INLINED)
-def _keep_memory(c, table, body):
-    composition = c.composition
-    source = _Source(composition, "c, table, body")
+def _keep_memory(composition, source):
     for k in range(composition.memories):
-        memory = f"get(c, table, body, {composition.first_memory + k})"
-        source.add(f"put(c, table, body, {composition.first_old + k}, {memory})")
-    source.add("return None")
-    return source.function()
+        source.add(f"write(row, {composition.first_old + k}, read(row, {composition.first_memory + k}))")
+    return composition.memories > 0
 
 
-def blend_memory(c, table, body, fraction, approach, rate):
-    """Leave the memory at a fraction of the step in the columns `blend`.
-
-    `approach` and `rate` at that moment: the largest compression is the present one while it grows beyond the
-    old.
-    """
-    raise TypeError(COMPILED_ONLY)
-
-
-@overload(blend_memory, jit_options=INLINED)
-def _blend_memory(c, table, body, fraction, approach, rate):
-    composition, laws = c.composition, c.composition.laws
-    source = _Source(composition, "c, table, body, fraction, approach, rate")
+def _blend_memory(composition, source):
+    laws = composition.laws
     if laws.in_slot("path"):
         source.add(_delta(laws))
     for name, k in laws.memory_of.items():
         source.add(
-            f"old = get(c, table, body, {composition.first_old + k})",
-            f"new = get(c, table, body, {composition.first_memory + k})",
+            f"old = read(row, {composition.first_old + k})",
+            f"new = read(row, {composition.first_memory + k})",
         )
         if name in [t.name for t in laws.in_slot("path")]:
             source.add("blend = select(rate, select(delta - old, delta, old), new)")
         else:
             source.add("blend = old * (1.0 - fraction) + new * fraction")
-        source.add(f"put(c, table, body, {composition.first_blend + k}, blend)")
-    source.add("return None")
-    return source.function()
+        source.add(f"write(row, {composition.first_blend + k}, blend)")
+    return composition.memories > 0
+
+
+# What `table` says of each of these names.
+PIECES = {
+    "push": Piece(("approach", "rate", "first_memory"), _push, columns=("first_memory",), returns=True),
+    "advance_memory": Piece(("approach", "keep", "gain", "step"), _advance_memory, scalars=("keep", "gain")),
+    "follow_path": Piece(("step",), _follow_path),
+    "body_acceleration": Piece(("velocity",), _body_acceleration, returns=True),
+    "stored_energy": Piece(("approach",), _stored_energy, returns=True),
+    "keep_memory": Piece((), _keep_memory),
+    "blend_memory": Piece(("fraction", "approach", "rate"), _blend_memory),
+}

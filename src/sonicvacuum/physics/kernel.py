@@ -11,59 +11,53 @@ Two explicit steppers share the force laws (`compose`), which decide between the
 * Runge–Kutta in low storage, for laws with rates or memory.
 
 Every chain has its own step: a result does not depend on the chains that are computed along with it.
-Samples fall between steps: see `sampling`.
+Samples fall between steps: see `sampling`. The laws are put in later, see `linking`.
 """
 
 from numba import njit
 from numba.extending import overload
 
-from sonicvacuum.physics.compose import (
-    COMPILED_ONLY,
-    advance_memory,
-    body_acceleration,
-    follow_path,
-    keep_memory,
-    push,
-    set_rest_force,
-    stored_energy,
-)
-from sonicvacuum.physics.lanes import absolute, select
-from sonicvacuum.physics.sampling import (
+from sonicvacuum.physics.composition import (
+    BALANCED,
     DUE,
     FINE_STEP,
     FINE_UNTIL,
+    INVERSE_MASS,
     LAST,
+    MADE,
+    RAN_OUT,
+    REST_FORCE,
     STEP,
+    STEPPED,
+    STOP,
     THRESHOLD,
     WEIGHT,
-    Recorder,
-    emit,
-    note,
-    note_motion,
-)
-from sonicvacuum.physics.table import (
-    INLINED,
-    INVERSE_MASS,
-    OPTIONS,
     U,
     V,
+)
+from sonicvacuum.physics.lanes import absolute, select
+from sonicvacuum.physics.sampling import COMPILED_ONLY, Recorder, emit, note, note_motion
+from sonicvacuum.physics.table import (
+    INLINED,
+    advance_memory,
+    body_acceleration,
     first_increment,
     first_memory,
+    follow_path,
     get,
     is_any_positive,
+    keep_memory,
     load,
+    preloaded,
+    push,
     put,
     store,
+    stored_energy,
     zero,
 )
 
 # Bodies that are switched on together, ahead of the wave.
 MARGIN = 4
-# Entries of a group's status: bodies stepped, entries of the balance, whether the wave ran out of the table,
-# steps made, and whether to stop, which another thread may say.
-STEPPED, BALANCED, RAN_OUT, MADE, STOP = range(5)
-STATUS_ENTRIES = 5
-
 
 _inlined = njit(**INLINED)
 
@@ -145,7 +139,7 @@ def _step(c, table, first, beyond, weight, factors, gains, step, pending):
 
 @overload(_step, jit_options=INLINED)
 def _choose_step(c, table, first, beyond, weight, factors, gains, step, pending):
-    stepper = _step_splitting if c.composition.laws.splits else _step_runge_kutta
+    stepper = _step_splitting if c.frame.splits else _step_runge_kutta
     return stepper.py_func
 
 
@@ -156,7 +150,7 @@ def _audit(c, table, first, beyond, weight, impulse, pending, time, balance, sta
 
 @overload(_audit, jit_options=INLINED)
 def _choose_audit(c, table, first, beyond, weight, impulse, pending, time, balance, status):
-    if not c.composition.audited:
+    if not c.frame.audited:
         return lambda c, table, first, beyond, weight, impulse, pending, time, balance, status: None
     return _keep_balance
 
@@ -179,6 +173,14 @@ def _keep_balance(c, table, first, beyond, weight, impulse, pending, time, balan
 
 
 @_inlined
+def _set_rest_force(c, table, body):
+    """Keep the static force of a contact, by the law itself: what is at rest then stays so to the bit."""
+    if preloaded(c) > 0:
+        put(c, table, body, REST_FORCE, zero(c))
+        put(c, table, body, REST_FORCE, push(c, table, body, zero(c), zero(c), first_memory(c)))
+
+
+@_inlined
 def _advance_group(
     c, factors, gains, table, first, bodies, extendable, recorder, start, end, every, balance, status
 ):
@@ -194,7 +196,7 @@ def _advance_group(
     count = 0
     noted = False
     for body in range(first, first + bodies):
-        set_rest_force(c, table, body)
+        _set_rest_force(c, table, body)
         follow_path(c, table, body, zero(c))
     _audit(c, table, first, beyond, weight, impulse, pending, time, balance, status)
     while True:
@@ -236,7 +238,6 @@ def _advance_group(
     status[STEPPED] = beyond - first
 
 
-@njit(**OPTIONS)
 def advance(
     c,
     first,
@@ -260,12 +261,12 @@ def advance(
     """Integrate the groups `begin` … `end` − 1, each one chain or eight, in place.
 
     Args:
-        c: Composition; its width is the last axis L of the arrays marked so.
+        c: Frame; its width is the last axis L of the arrays marked so.
         first, second: coefficients of the `Method`.
         interval: time between samples in s.
         contacts: (R,) contacts whose force is recorded.
         watched: (B, 3) bodies whose motion is recorded: BODY, BEFORE and BEHIND of each.
-        table: (groups, bodies + 1, columns, L) bodies, see `compose`; final state on return.
+        table: (groups, bodies + 1, columns, L) bodies, see `composition`; final state on return.
         extendable: whether further bodies exist beyond the table; then a group stops as the wave gets there.
         clock: (groups, CLOCK_ROWS, L) steps in s before and after the time FINE_UNTIL, moment of the last
             sample less TOLERANCE, weight of the striker in N, speed above which a body counts as moving,

@@ -5,42 +5,45 @@ held.
 """
 
 import numpy as np
-from numba import njit
 
-from sonicvacuum.physics.compiled import cached, prepare
-from sonicvacuum.physics.table import OPTIONS
+from sonicvacuum.physics.kernels import Compiled
 
 # Neighbours that a reading is made of, of which so many lie before it.
 POINTS, BEFORE = 6, 2
 
 
-@njit(**OPTIONS)
 def _resampled(signals, chain, whole, weights, gain, stride, value):
     samples = signals.shape[2]
     for row in range(len(chain)):
-        w0, w1, w2, w3, w4, w5 = weights[row]
+        w = weights[row]
         for gauge in range(signals.shape[1]):
             signal, factor = signals[chain[row], gauge], gain[row, gauge]
             for t in range(value.shape[2]):
                 first = whole[row] - BEFORE + t * stride
                 if first >= 0 and first + POINTS <= samples:
                     total = (
-                        w0 * signal[first]
-                        + w1 * signal[first + 1]
-                        + w2 * signal[first + 2]
-                        + w3 * signal[first + 3]
-                        + w4 * signal[first + 4]
-                        + w5 * signal[first + 5]
+                        w[0] * signal[first]
+                        + w[1] * signal[first + 1]
+                        + w[2] * signal[first + 2]
+                        + w[3] * signal[first + 3]
+                        + w[4] * signal[first + 4]
+                        + w[5] * signal[first + 5]
                     )
                 else:
                     total = 0.0
                     for k in range(POINTS):
                         if first + k >= 0:
-                            total += weights[row, k] * signal[min(first + k, samples - 1)]
+                            total += w[k] * signal[min(first + k, samples - 1)]
                 value[row, gauge, t] = factor * total
 
 
-_compiled = cached(_resampled)
+def _made():
+    from sonicvacuum.physics.table import OPTIONS
+
+    return _resampled, OPTIONS
+
+
+_compiled = Compiled(_made, "resampled")
 
 
 def resampled(
@@ -76,6 +79,5 @@ def resampled(
         stride,
         value,
     )
-    prepare(_compiled, "resampled", arguments)
     _compiled(*arguments)
     return value

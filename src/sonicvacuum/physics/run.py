@@ -10,15 +10,15 @@ from itertools import pairwise
 
 import numpy as np
 
-from sonicvacuum.physics import kernel, sampling, watch
+from sonicvacuum.physics import composition, watch
 from sonicvacuum.physics.chain import Chain
-from sonicvacuum.physics.compiled import cached, prepare
+from sonicvacuum.physics.composition import INVERSE_MASS, REST, Composition, V
 from sonicvacuum.physics.history import History
+from sonicvacuum.physics.kernels import advance, prepare
 from sonicvacuum.physics.lanes import LANES
 from sonicvacuum.physics.laws import depth_at, memory_at_rest
 from sonicvacuum.physics.methods import CARPENTER_KENNEDY, METHODS
 from sonicvacuum.physics.steps import choose_steps, reachable_bodies
-from sonicvacuum.physics.table import INVERSE_MASS, REST, Composition, V
 
 # A body moves once it is faster than this fraction of the impact speed.
 FRONT = 1e-12
@@ -33,19 +33,6 @@ LONG = 1000
 SHORT = 5e6
 # And below which threads take longer to begin than the call by itself.
 BRIEF = 1e5
-
-advance = cached(kernel.advance)
-
-# Name → composition of the kernels that will be asked for.
-_expected: dict[str, Composition] = {}
-
-
-def expect(*chains: Chain) -> None:
-    """Tell of chains that will be simulated, forces alone and never alone (see `simulate`): a process that
-    would wait for another one's compilation compiles for these meanwhile.
-    """
-    kernels = [Composition(chain.laws(), LANES) for chain in chains]
-    _expected.update({one.name: one for one in kernels})
 
 
 def simulate(
@@ -101,7 +88,7 @@ def simulate(
             chain, laws, reachable, contacts, bodies, samples, interval, step, refine, audit, alone
         )
         batch.run(scheme, threads)
-        if not batch.status[:, kernel.RAN_OUT].any():
+        if not batch.status[:, composition.RAN_OUT].any():
             return batch.history()
         reachable = min(every, 2 * reachable)
 
@@ -201,16 +188,16 @@ class _Batch:
 
     def _set_clock(self):
         tolerance = COINCIDENCE * self.late
-        clock = self.clock = _zeros(len(self.dealt), sampling.CLOCK_ROWS, self.dealt.shape[1])
+        clock = self.clock = _zeros(len(self.dealt), composition.CLOCK_ROWS, self.dealt.shape[1])
         for row, values in (
-            (sampling.FINE_STEP, self.fine),
-            (sampling.STEP, self.late),
-            (sampling.FINE_UNTIL, self.until),
-            (sampling.LAST, (self.samples - 1) * self.interval - tolerance),
-            (sampling.WEIGHT, self.chain.striker_mass * self.chain.gravity),
-            (sampling.THRESHOLD, FRONT * self.chain.speed),
-            (sampling.TOLERANCE, tolerance),
-            (sampling.DUE, self.interval - tolerance),
+            (composition.FINE_STEP, self.fine),
+            (composition.STEP, self.late),
+            (composition.FINE_UNTIL, self.until),
+            (composition.LAST, (self.samples - 1) * self.interval - tolerance),
+            (composition.WEIGHT, self.chain.striker_mass * self.chain.gravity),
+            (composition.THRESHOLD, FRONT * self.chain.speed),
+            (composition.TOLERANCE, tolerance),
+            (composition.DUE, self.interval - tolerance),
         ):
             clock[:, row] = values[self.dealt]
 
@@ -224,7 +211,7 @@ class _Batch:
             if body == 0:
                 self.out[:, len(self.recorded) + 2 * b, 0] = self.chain.speed
                 self.out[:, len(self.recorded) + 2 * b + 1, 0] = self.chain.gravity
-        self.status = np.zeros((groups, kernel.STATUS_ENTRIES), dtype=np.int64)
+        self.status = np.zeros((groups, composition.STATUS_ENTRIES), dtype=np.int64)
         count = int(self.steps.max()) + 2
         self.every = max(1, count // AUDIT_ENTRIES) if audit else 0
         entries = count // self.every + 2 if audit else 0
@@ -263,7 +250,7 @@ class _Batch:
             )
 
         everything = share(0, groups)
-        prepare(advance, self.composition.name, everything, _expected)
+        prepare(*everything)
         expected = float(self.steps[self.dealt].max(axis=1).sum())
         alone = threads == 1 or groups == 1
         if expected * self.bodies < (SHORT if alone else BRIEF):
@@ -272,12 +259,12 @@ class _Batch:
             count = 1 if threads == 1 else min(SHARES * threads, groups)
             bounds = np.linspace(0, groups, count + 1).astype(int).tolist()
             shares = [share(*ends) for ends in pairwise(bounds)]
-            made = self.status[:, kernel.MADE]
+            made = self.status[:, composition.MADE]
             watch.run(advance, shares, threads, self._stop, lambda: min(1.0, made.sum() / expected))
         self._check_finite()
 
     def _stop(self):
-        self.status[:, kernel.STOP] = 1
+        self.status[:, composition.STOP] = 1
 
     def _check_finite(self):
         sane = np.isfinite(self.table[:, :, V]).all(axis=1)
@@ -300,7 +287,7 @@ class _Batch:
         force = self._complete(self.out[:, :count], self.wanted)
         velocity = self._complete(self.out[:, count::2], self.watched)
         acceleration = self._complete(self.out[:, count + 1 :: 2], self.watched)
-        entries = int(self.status[:, kernel.BALANCED].min())
+        entries = int(self.status[:, composition.BALANCED].min())
         balance = self._collect(self.balance[:, :entries]) if entries else np.empty((0, 2, self.chain.lanes))
         return History(
             time=np.arange(self.samples) * self.interval,

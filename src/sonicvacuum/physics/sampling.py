@@ -3,7 +3,7 @@
 The compression of each recorded contact is interpolated by the cubic Hermite polynomial of its values and
 rates at both ends, and the law gives the force. Of a recorded body the acceleration follows from the forces
 at that moment, and the velocity is interpolated as the compression is, from velocity and acceleration at both
-ends. Code that records bodies is compiled apart (`Composition.watched`): where only forces are asked for,
+ends. Code that records bodies is compiled apart (`Frame.watched`): where only forces are asked for,
 nothing of it exists.
 """
 
@@ -13,27 +13,22 @@ import numpy as np
 from numba import njit
 from numba.extending import overload
 
-from sonicvacuum.physics.compose import COMPILED_ONLY, blend_memory, body_acceleration, push
+from sonicvacuum.physics.composition import BEFORE, BEHIND, BODY, DUE, INVERSE_MASS, TOLERANCE, WEIGHT, U, V
 from sonicvacuum.physics.table import (
     INLINED,
-    INVERSE_MASS,
-    U,
-    V,
+    blend_memory,
+    body_acceleration,
     first_blend,
     first_memory,
     get,
     is_any_positive,
     load,
+    push,
     store,
     zero,
 )
 
-# Rows of a group's clock: what each chain needs besides its bodies.
-FINE_STEP, STEP, FINE_UNTIL, LAST, WEIGHT, THRESHOLD, TOLERANCE, DUE = range(8)
-CLOCK_ROWS = 8
-# What is said of a recorded body: its number, and the rows of the recorded contacts before and behind it; the
-# striker has none before it.
-BODY, BEFORE, BEHIND = range(3)
+COMPILED_ONLY = "this function exists in compiled code only: it takes a frame that Numba knows"
 
 _inlined = njit(**INLINED)
 
@@ -79,7 +74,7 @@ def note_motion(c, table, first, recorder, ends):
 
 @overload(note_motion, jit_options=INLINED)
 def _choose_note_motion(c, table, first, recorder, ends):
-    return _keep_motion if c.composition.watched else lambda c, table, first, recorder, ends: None
+    return _keep_motion if c.frame.watched else lambda c, table, first, recorder, ends: None
 
 
 def _keep_motion(c, table, first, recorder, ends):
@@ -132,7 +127,7 @@ def emit_motion(c, table, first, recorder, start, end, step, fraction):
 
 @overload(emit_motion, jit_options=INLINED)
 def _choose_emit_motion(c, table, first, recorder, start, end, step, fraction):
-    if not c.composition.watched:
+    if not c.frame.watched:
         return lambda c, table, first, recorder, start, end, step, fraction: None
     return _write_motion
 

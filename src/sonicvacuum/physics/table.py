@@ -1,205 +1,153 @@
-"""The table of all bodies, and what a stepper is compiled for.
+"""The table of all bodies as compiled code reads and writes it, and the stepper's way into the laws.
 
-All numbers of one body (or of the contact behind it) stand side by side in one row of the *table*,
-an array (groups, bodies + 1, columns, lanes) whose last body is the wall, always at rest:
-
-    U, V, INVERSE_MASS          displacement from rest, velocity, 1/mass
-    REST, REST_FORCE            compression and force of the contact at rest; only if it may be preloaded
-    coefficients, memory        of the law set
-    increments, old, blend, turn  work space of the Runge–Kutta stepper and of its samples between steps
-
-A `Composition` (law set, lanes, audit, motion) is part of the type that Numba compiles for. It knows the
-columns, so that all addresses are constants of the compiled code.
+The stepper is compiled for a `Frame`, its first argument `c`: without laws. What depends on them is left
+open, functions of a body's row (`push` and those after it) and whole numbers (the table's columns,
+`preloaded` and those after it). They go by LAW and their name until `linking` puts them in.
 """
-
-from dataclasses import dataclass
-from functools import cached_property
 
 from llvmlite import ir
 from numba import types
-from numba.extending import NativeValue, intrinsic, models, register_model, unbox
+from numba.core import cgutils
+from numba.extending import intrinsic, models, register_model
+from numba.np.arrayobj import populate_array
 
+from sonicvacuum.physics.composition import Frame
 from sonicvacuum.physics.lanes import LANES
-from sonicvacuum.physics.laws import LawSet
 from sonicvacuum.physics.registers import FASTMATH, constant, lane
 
 # Options of all that is compiled, and of what is only ever called from compiled code.
 OPTIONS = {"fastmath": FASTMATH, "error_model": "numpy", "nogil": True, "_nrt": False}
-INLINED = OPTIONS | {"forceinline": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+WITHIN = {"forceinline": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+INLINED = OPTIONS | WITHIN
 
-U, V, INVERSE_MASS, REST, REST_FORCE = range(5)
-
-
-@dataclass(frozen=True)
-class Composition:
-    """What a stepper is compiled for.
-
-    Attributes:
-        laws: all terms that act.
-        width: chains stepped together, 1 or `LANES`.
-        audited: whether the energy and momentum balance is kept.
-        watched: whether the motion of bodies is recorded.
-    """
-
-    laws: LawSet
-    width: int
-    audited: bool = False
-    watched: bool = False
-
-    @cached_property
-    def name(self) -> str:
-        """Key of the compiled code."""
-        extras = f"{'+audit' if self.audited else ''}{'+motion' if self.watched else ''}"
-        return f"{self.laws.name}x{self.width}{extras}"
-
-    @property
-    def first_coefficient(self) -> int:
-        """Column of the law set's first coefficient."""
-        return REST_FORCE + 1 if self.laws.preloaded else REST
-
-    @property
-    def memories(self) -> int:
-        """Remembered numbers per contact."""
-        return len(self.laws.memory_of)
-
-    @property
-    def first_memory(self) -> int:
-        """Column of the first remembered number."""
-        return self.first_coefficient + self.laws.coefficients
-
-    @property
-    def first_increment(self) -> int:
-        """Column of the increments of displacement, velocity and memory."""
-        return self.first_memory + self.memories
-
-    @property
-    def first_old(self) -> int:
-        """Column of the memory at the step's start, for samples between steps."""
-        return self.first_increment + 2 + self.memories
-
-    @property
-    def first_blend(self) -> int:
-        """Column of the memory at a moment between steps."""
-        return self.first_old + self.memories
-
-    @property
-    def first_turn(self) -> int:
-        """Column of approach and rate at the step's start, kept where a path is to be followed."""
-        return self.first_blend + self.memories
-
-    @property
-    def columns(self) -> int:
-        """Numbers per body."""
-        if self.laws.splits:
-            return self.first_increment
-        return self.first_turn + (2 if self.laws.in_slot("path") else 0)
-
-    @cached_property
-    def _numba_type_(self):
-        return _types.setdefault(self.name, CompositionType(self))
-
-    def __hash__(self):
-        return hash(self.name)
+# What names begin with that a law set fills in.
+LAW = "law_"
 
 
-class CompositionType(types.Type):
-    """Numba type of a composition."""
+class FrameType(types.Type):
+    """Numba type of a frame."""
 
-    def __init__(self, composition: Composition):
-        self.composition = composition
-        super().__init__(name=composition.name)
-
-    def __reduce__(self):
-        # Compiled code needs the name alone; formulas need not be picklable.
-        return _bare_type, (self.name,)
+    def __init__(self, frame: Frame):
+        self.frame = frame
+        super().__init__(name=frame.name)
 
 
-class _BareComposition:
-    def __init__(self, name):
-        self.name = name
-
-
-def _bare_type(name):
-    return CompositionType(_BareComposition(name))
-
-
-# Name → type: asking for the type of an argument is part of every call.
-_types = {}
-
-
-@register_model(CompositionType)
-class _CompositionModel(models.OpaqueModel):
+@register_model(FrameType)
+class _FrameModel(models.OpaqueModel):
     pass
 
 
-@unbox(CompositionType)
-def _unbox_composition(kind, obj, c):
-    return NativeValue(c.context.get_dummy_value())
+def number_type(width: int) -> types.Type:
+    """Numba type of one number of all lanes."""
+    return lane if width == LANES else types.float64
 
 
-def _number_type(composition):
-    return lane if composition.composition.width == LANES else types.float64
+def _number_type(c):
+    return number_type(c.frame.width)
 
 
 def _address(context, builder, sig, args, columns):
     """Pointer to the numbers of all lanes at a row (and column) of a contiguous array."""
-    kind, array = sig.args[1], args[1]
-    width = sig.args[0].composition.width
-    data = context.make_array(kind)(context, builder, array).data
-    index = builder.mul(args[2], ir.Constant(args[2].type, columns * width), flags=("nsw",))
+    kind, width = sig.args[1], sig.args[0].frame.width
+    data = context.make_array(kind)(context, builder, args[1]).data
+    index = builder.mul(args[2], columns, flags=("nsw",))
     if len(args) > 3 and sig.args[3] in types.integer_domain:
-        column = builder.mul(args[3], ir.Constant(args[3].type, width), flags=("nsw",))
-        index = builder.add(index, column, flags=("nsw",))
+        index = builder.add(index, args[3], flags=("nsw",))
+    index = builder.mul(index, ir.Constant(index.type, width), flags=("nsw",))
     pointer = builder.gep(data, [index], inbounds=True)
-    if width == 1:
-        return pointer
-    return builder.bitcast(pointer, context.get_value_type(lane).as_pointer())
+    return builder.bitcast(pointer, context.get_value_type(_number_type(sig.args[0])).as_pointer())
+
+
+def _law_number(builder, name):
+    """A whole number that the laws fill in."""
+    module, kind = builder.module, ir.IntType(64)
+    if LAW + name not in module.globals:
+        ir.GlobalVariable(module, kind, LAW + name).global_constant = True
+    return builder.load(module.globals[LAW + name])
 
 
 @intrinsic
-def load(typing, composition, array, row):
+def array_at(typing, pointer, shape):
+    """The array of a shape that begins at a pointer, in C's order; `numba.carray` counts references."""
+    kind = types.Array(pointer.dtype, len(shape), "C")
+
+    def generate(context, builder, sig, args):
+        sizes = cgutils.unpack_tuple(builder, args[1])
+        size = context.get_abi_sizeof(context.get_value_type(kind.dtype))
+        strides = [context.get_constant(types.intp, size)]
+        for n in reversed(sizes[1:]):
+            strides.insert(0, builder.mul(strides[0], n))
+        array = context.make_array(kind)(context, builder)
+        populate_array(array, args[0], sizes, strides, strides[-1], None)
+        return array._getvalue()
+
+    return kind(pointer, shape), generate
+
+
+@intrinsic
+def load(typing, c, array, row):
     """The numbers of all lanes in one row of an array (…, lanes)."""
 
     def generate(context, builder, sig, args):
-        return builder.load(_address(context, builder, sig, args, 1), align=8)
+        return builder.load(_address(context, builder, sig, args, ir.Constant(args[2].type, 1)), align=8)
 
-    return _number_type(composition)(composition, array, types.intp), generate
+    return _number_type(c)(c, array, types.intp), generate
 
 
 @intrinsic
-def store(typing, composition, array, row, value):
+def store(typing, c, array, row, value):
     """Write the numbers of all lanes in one row of an array (…, lanes)."""
-    number = _number_type(composition)
 
     def generate(context, builder, sig, args):
-        builder.store(args[3], _address(context, builder, sig, args, 1), align=8)
+        one = ir.Constant(args[2].type, 1)
+        builder.store(args[3], _address(context, builder, sig, args, one), align=8)
         return context.get_dummy_value()
 
-    return types.void(composition, array, types.intp, number), generate
+    return types.void(c, array, types.intp, _number_type(c)), generate
 
 
 @intrinsic
-def get(typing, composition, table, body, column):
+def get(typing, c, table, body, column):
     """One number of a body, for all lanes."""
 
     def generate(context, builder, sig, args):
-        columns = sig.args[0].composition.columns
+        columns = _law_number(builder, "columns")
         return builder.load(_address(context, builder, sig, args, columns), align=8)
 
-    return _number_type(composition)(composition, table, types.intp, types.intp), generate
+    return _number_type(c)(c, table, types.intp, types.intp), generate
 
 
 @intrinsic
-def put(typing, composition, table, body, column, value):
+def put(typing, c, table, body, column, value):
     """Write one number of a body, for all lanes."""
-    number = _number_type(composition)
 
     def generate(context, builder, sig, args):
-        columns = sig.args[0].composition.columns
+        columns = _law_number(builder, "columns")
         builder.store(args[4], _address(context, builder, sig, args, columns), align=8)
         return context.get_dummy_value()
 
-    return types.void(composition, table, types.intp, types.intp, number), generate
+    return types.void(c, table, types.intp, types.intp, _number_type(c)), generate
+
+
+@intrinsic
+def read(typing, row, column):
+    """One number of a body for all lanes, by a pointer to the body's row."""
+
+    def generate(context, builder, sig, args):
+        return builder.load(builder.gep(args[0], [args[1]], inbounds=True), align=8)
+
+    return row.dtype(row, types.intp), generate
+
+
+@intrinsic
+def write(typing, row, column, value):
+    """Write one number of a body for all lanes, by a pointer to the body's row."""
+
+    def generate(context, builder, sig, args):
+        builder.store(args[2], builder.gep(args[0], [args[1]], inbounds=True), align=8)
+        return context.get_dummy_value()
+
+    return types.void(row, types.intp, row.dtype), generate
 
 
 @intrinsic
@@ -218,28 +166,98 @@ def is_any_positive(typing, x):
 
 
 @intrinsic
-def zero(typing, composition):
+def zero(typing, c):
     """0 in all lanes."""
 
     def generate(context, builder, sig, args):
         return constant(context.get_value_type(sig.return_type), 0.0)
 
-    return _number_type(composition)(composition), generate
+    return _number_type(c)(c), generate
 
 
-def _fixed(attribute):
-    """A function of the composition that compiles to one of its numbers."""
+def _number(name):
+    """A function of the frame that compiles to a whole number of the laws."""
 
     @intrinsic
-    def number(typing, composition):
+    def number(typing, c):
         def generate(context, builder, sig, args):
-            return context.get_constant(types.intp, getattr(sig.args[0].composition, attribute))
+            return _law_number(builder, name)
 
-        return types.intp(composition), generate
+        return types.intp(c), generate
 
     return number
 
 
-first_memory = _fixed("first_memory")
-first_increment = _fixed("first_increment")
-first_blend = _fixed("first_blend")
+preloaded = _number("preloaded")
+first_memory = _number("first_memory")
+first_increment = _number("first_increment")
+first_blend = _number("first_blend")
+
+
+def _law(name, c, table, *kinds, returns=types.void):
+    """Signature of a function of the laws and what generates its call: a body of the table, then `kinds`."""
+
+    def generate(context, builder, sig, args):
+        row = _address(context, builder, sig, args[:3], _law_number(builder, "columns"))
+        values = [row, *args[3:]]
+        empty = sig.return_type == types.void
+        result = ir.VoidType() if empty else context.get_value_type(sig.return_type)
+        kind = ir.FunctionType(result, [v.type for v in values])
+        found = builder.call(cgutils.get_or_insert_function(builder.module, kind, LAW + name), values)
+        return context.get_dummy_value() if empty else found
+
+    return returns(c, table, types.intp, *kinds), generate
+
+
+@intrinsic
+def push(typing, c, table, body, approach, rate, first_memory):
+    """Force in N, beyond the static one, between a body and the next.
+
+    `approach` of the two since rest in m, its `rate` in m/s; `first_memory`: column of the memory to use.
+    """
+    n = _number_type(c)
+    return _law("push", c, table, n, n, types.intp, returns=n)
+
+
+@intrinsic
+def advance_memory(typing, c, table, body, approach, keep, gain, step):
+    """One low-storage Runge–Kutta stage of the memory of the contact behind a body."""
+    n = _number_type(c)
+    return _law("advance_memory", c, table, n, types.float64, types.float64, n)
+
+
+@intrinsic
+def follow_path(typing, c, table, body, step):
+    """After a step, keep the largest compression that the contact behind a body had during it."""
+    return _law("follow_path", c, table, _number_type(c))
+
+
+@intrinsic
+def body_acceleration(typing, c, table, body, velocity):
+    """Acceleration in m/s² of a bead by drag and friction."""
+    n = _number_type(c)
+    return _law("body_acceleration", c, table, n, returns=n)
+
+
+@intrinsic
+def stored_energy(typing, c, table, body, approach):
+    """Elastic energy in J of a contact beyond that at rest, less the work of its static force."""
+    n = _number_type(c)
+    return _law("stored_energy", c, table, n, returns=n)
+
+
+@intrinsic
+def keep_memory(typing, c, table, body):
+    """Copy the memory of a contact to the columns `old`."""
+    return _law("keep_memory", c, table)
+
+
+@intrinsic
+def blend_memory(typing, c, table, body, fraction, approach, rate):
+    """Leave the memory at a fraction of the step in the columns `blend`.
+
+    `approach` and `rate` at that moment: the largest compression is the present one while it grows beyond the
+    old.
+    """
+    n = _number_type(c)
+    return _law("blend_memory", c, table, n, n, n)
