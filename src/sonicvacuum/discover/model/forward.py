@@ -21,6 +21,7 @@ from sonicvacuum.discover.model.experiment import Experiment
 from sonicvacuum.discover.model.hypothesis import Hypothesis
 from sonicvacuum.discover.model.memory import Memory
 from sonicvacuum.discover.model.nuisances import Layout
+from sonicvacuum.discover.model.slopes import Slopes
 from sonicvacuum.effects import Setup
 from sonicvacuum.forward import Seen, see, virtual
 from sonicvacuum.physics.chain import Chain
@@ -130,6 +131,11 @@ class Forward:
         others = [one.sigma for one in e.shared]
         return np.array([*speeds, *triggers, *e.gain_rel_sigma, e.modulus_rel_sigma, *others])
 
+    @cached_property
+    def slopes(self) -> Slopes:
+        """How the data change with nuisances."""
+        return Slopes(self.experiment, self.layout, self.nuisance_sigma)
+
     def columns(
         self,
         hypothesis: Hypothesis,
@@ -174,7 +180,7 @@ class Forward:
             steps = np.broadcast_to([c.step for c in hypothesis.coordinates], u.shape)
         orders = (1.0, 2.0) if precise else (1.0,)
         h = accuracy.difference(self._norm)
-        where = () if held else self._simulated
+        where = () if held else self.slopes.simulated
         many_u, many_nu, sets = differences.displaced(hypothesis, u, nu, steps, orders, where, h)
         many_places = None if places is None else np.repeat(places, sets, axis=0)
         found = self.sampled(hypothesis, many_u, many_nu, many_places, rate_of=sets)
@@ -193,105 +199,10 @@ class Forward:
             changes = (value[:, 1:] - value[:, :1]) / size[:, 1:, None]
             slopes = 2.0 * changes[:, :each] - changes[:, each:] if precise else changes
             kept = None if held is None else held[run][:, 1 + p :]
-            result.append(self._columns(hypothesis, run, places, value[:, :1], slopes, timing, kept))
+            columns = self.slopes.columns(hypothesis, run, places, value[:, :1], slopes, timing, kept)
+            columns[:, 1:, self.counts(run)] = 0.0
+            result.append(columns)
         return result
-
-    @property
-    def _simulated(self):
-        """For each simulation that slopes to nuisances take, their places and standard errors."""
-        layout, sigma = self.layout, self.nuisance_sigma
-        speeds = layout.other("speed-common") or range(len(self.experiment.runs))
-        groups = [*([place] for place in layout.simulated), list(speeds)]
-        return [[(place, sigma[place]) for place in group] for group in groups]
-
-    def _columns(self, hypothesis, run, places, base, slopes, timing, held):
-        """(L, c, M) columns of one run from its prediction (L, 1, M), slopes of simulations (L, ·, M) and to
-        times; `held` are columns to its nuisances.
-        """
-        p = len(hypothesis.coordinates)
-        nuisances = self._nuisance_columns(
-            run, base[:, 0], None if held is not None else slopes[:, p:], timing
-        )
-        if held is not None:
-            kept = self._kept(run)
-            nuisances[:, kept] = held[:, kept]
-        slopes = slopes[:, :p].copy()
-        self._like_nuisances(hypothesis, run, places, slopes, nuisances)
-        columns = np.concatenate([base, slopes, nuisances], axis=1)
-        columns[:, 1:, self.counts(run)] = 0.0
-        return columns
-
-    def _nuisance_columns(self, run, value, changes, timing):
-        """(L, S + 3 + others, M) changes of the data of a run with its nuisances, as in `Layout.local`.
-
-        Args:
-            run: index of the run.
-            value: (L, M) predictions.
-            changes: (L, simulated + 1, M) slopes to the simulated ones, relative, and to the speeds; None
-                leaves their columns at zero.
-            timing: (L, 1 + clock + delays, M) slopes to time zero, clock and delays.
-        """
-        layout, sigma = self.layout, self.nuisance_sigma
-        gains = scalars.gain_columns(self.experiment, run, value)
-        if changes is None:
-            changes = np.zeros((len(value), 1 + len(layout.simulated), 1))
-        own = {place: changes[:, k] for k, place in enumerate(layout.simulated)}
-        own |= {layout.speed(run): changes[:, -1], layout.trigger(run): timing[:, 0]}
-        own |= {place: gains[:, s] for s, place in enumerate(layout.gains)}
-        own |= dict.fromkeys(layout.other("speed-common"), changes[:, -1])
-        own |= dict.fromkeys(layout.other("gain-common"), gains.sum(axis=1))
-        timed = [*layout.other("clock"), *layout.other("delay")]
-        own |= {place: timing[:, 1 + k] for k, place in enumerate(timed)}
-        for place in layout.other("shared"):
-            own[place] = scalars.shared_column(self.experiment, run, value, layout.named(place))
-        places = layout.local(run)
-        result = np.empty((len(value), len(places), value.shape[1]))
-        for k, place in enumerate(places):
-            result[:, k] = own[place] * sigma[place]
-        return result
-
-    def _kept(self, run) -> np.ndarray:
-        """Which of the columns to the nuisances of a run, as in `Layout.local`, take simulations."""
-        layout = self.layout
-        own = {*layout.simulated, layout.speed(run), *layout.other("speed-common")}
-        return np.flatnonzero([place in own for place in layout.local(run)])
-
-    def nuisance_column(self, acts_like: str, run: int, place):
-        """Where the nuisance stands that a ratio acts like, and its standard error.
-
-        Args:
-            acts_like: see `effects.Parameter`.
-            run: index of the run.
-            place: (n,) gauges where the effect sits; of no account but for gains.
-
-        Returns:
-            (n,) places in the order of `Layout.local` and (n, 1) standard errors, relative; None where the
-            nuisance is known exactly.
-        """
-        sigma = self.nuisance_sigma
-        if acts_like == "gain":
-            errors = sigma[self.layout.gains]
-            return (3 + place, errors[place][:, None]) if np.all(errors > 0.0) else None
-        common = self.layout.other("speed-common")
-        known = {"modulus": [self.layout.modulus], "speed": [self.layout.speed(run), *common]}[acts_like]
-        own = next((k for k in known if sigma[k]), None)
-        if own is None:
-            return None
-        at = int(np.flatnonzero(self.layout.local(run) == own)[0])
-        return np.full(len(place), at), np.full((len(place), 1), sigma[own])
-
-    def _like_nuisances(self, hypothesis, run, places, slopes, nuisances):
-        """Take the slopes of parameters that act exactly as a nuisance does from its column.
-
-        Differences of simulations would hide that the two are one direction.
-        """
-        lanes = np.arange(len(slopes))
-        for k, (component, own) in enumerate(zip(hypothesis.components, hypothesis.columns, strict=True)):
-            place = np.full(len(slopes), component.place or 0) if places is None else places[:, k]
-            for column, c in enumerate(component.free, start=own.start):
-                like = c.parameter.acts_like
-                if like and (found := self.nuisance_column(like, run, place)):
-                    slopes[:, column] = nuisances[lanes, found[0]] / found[1]
 
     def sampled(self, hypothesis, u, nu, places=None, rate_of: int = 0, change=None):
         """For each run whitened predictions (L, M) and, for every `rate_of`-th lane, slopes (·, n, M) to time

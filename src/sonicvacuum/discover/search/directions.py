@@ -130,7 +130,7 @@ def like_nuisance(forward: Forward, family: Family, base: list[np.ndarray], free
         return None
     unit = family.directions[0].unit
     places = np.array([d.place or 0 for d in family.directions])
-    found = [forward.nuisance_column(family.acts_like, run, places) for run in range(len(base))]
+    found = [forward.slopes.nuisance_column(family.acts_like, run, places) for run in range(len(base))]
     if any(f is None for f in found):
         return None
     return [unit / sigma * c[0, 1 + free + at] for c, (at, sigma) in zip(base, found, strict=True)]

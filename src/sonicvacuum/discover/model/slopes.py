@@ -1,0 +1,118 @@
+"""How the data change with nuisances: the columns of a linear model that stand for them.
+
+Speeds, moduli and masses take a simulation each; times, gains and shared errors act on readings alone.
+"""
+
+import numpy as np
+
+from sonicvacuum.discover.model import scalars
+from sonicvacuum.discover.model.experiment import Experiment
+from sonicvacuum.discover.model.nuisances import Layout
+
+
+class Slopes:
+    """Slopes of the data of an experiment to its nuisances.
+
+    Args:
+        experiment: whose data these are.
+        layout: where the nuisances stand.
+        sigma: (q,) their standard errors, see `Forward.nuisance_sigma`.
+    """
+
+    def __init__(self, experiment: Experiment, layout: Layout, sigma: np.ndarray):
+        self.experiment, self.layout, self.sigma = experiment, layout, sigma
+
+    @property
+    def simulated(self):
+        """For each simulation that slopes to nuisances take, their places and standard errors."""
+        layout, sigma = self.layout, self.sigma
+        speeds = layout.other("speed-common") or range(len(self.experiment.runs))
+        groups = [*([place] for place in layout.simulated), list(speeds)]
+        return [[(place, sigma[place]) for place in group] for group in groups]
+
+    def columns(self, hypothesis, run, places, base, slopes, timing, held):
+        """(L, c, M) columns of one run from its prediction (L, 1, M), slopes of simulations (L, ·, M) and to
+        times; `held` are columns to its nuisances.
+        """
+        p = len(hypothesis.coordinates)
+        nuisances = self._nuisance_columns(
+            run, base[:, 0], None if held is not None else slopes[:, p:], timing
+        )
+        if held is not None:
+            kept = self._simulated_of(run)
+            nuisances[:, kept] = held[:, kept]
+        slopes = slopes[:, :p].copy()
+        self._like_nuisances(hypothesis, run, places, slopes, nuisances)
+        return np.concatenate([base, slopes, nuisances], axis=1)
+
+    def _nuisance_columns(self, run, value, changes, timing):
+        """(L, S + 3 + others, M) changes of the data of a run with its nuisances, as in `Layout.local`.
+
+        Args:
+            run: index of the run.
+            value: (L, M) predictions.
+            changes: (L, simulated + 1, M) slopes to the simulated ones, relative, and to the speeds; None
+                leaves their columns at zero.
+            timing: (L, 1 + clock + delays, M) slopes to time zero, clock and delays.
+        """
+        layout, sigma = self.layout, self.sigma
+        gains = scalars.gain_columns(self.experiment, run, value)
+        if changes is None:
+            changes = np.zeros((len(value), 1 + len(layout.simulated), 1))
+        own = {place: changes[:, k] for k, place in enumerate(layout.simulated)}
+        own |= {layout.speed(run): changes[:, -1], layout.trigger(run): timing[:, 0]}
+        own |= {place: gains[:, s] for s, place in enumerate(layout.gains)}
+        own |= dict.fromkeys(layout.other("speed-common"), changes[:, -1])
+        own |= dict.fromkeys(layout.other("gain-common"), gains.sum(axis=1))
+        timed = [*layout.other("clock"), *layout.other("delay")]
+        own |= {place: timing[:, 1 + k] for k, place in enumerate(timed)}
+        for place in layout.other("shared"):
+            own[place] = scalars.shared_column(self.experiment, run, value, layout.named(place))
+        places = layout.local(run)
+        result = np.empty((len(value), len(places), value.shape[1]))
+        for k, place in enumerate(places):
+            result[:, k] = own[place] * sigma[place]
+        return result
+
+    def _simulated_of(self, run) -> np.ndarray:
+        """Which of the columns to the nuisances of a run, as in `Layout.local`, take simulations."""
+        layout = self.layout
+        own = {*layout.simulated, layout.speed(run), *layout.other("speed-common")}
+        return np.flatnonzero([place in own for place in layout.local(run)])
+
+    def nuisance_column(self, acts_like: str, run: int, place):
+        """Where the nuisance stands that a ratio acts like, and its standard error.
+
+        Args:
+            acts_like: see `effects.Parameter`.
+            run: index of the run.
+            place: (n,) gauges where the effect sits; of no account but for gains.
+
+        Returns:
+            (n,) places in the order of `Layout.local` and (n, 1) standard errors, relative; None where the
+            nuisance is known exactly.
+        """
+        sigma = self.sigma
+        if acts_like == "gain":
+            errors = sigma[self.layout.gains]
+            return (3 + place, errors[place][:, None]) if np.all(errors > 0.0) else None
+        common = self.layout.other("speed-common")
+        known = {"modulus": [self.layout.modulus], "speed": [self.layout.speed(run), *common]}[acts_like]
+        own = next((k for k in known if sigma[k]), None)
+        if own is None:
+            return None
+        at = int(np.flatnonzero(self.layout.local(run) == own)[0])
+        return np.full(len(place), at), np.full((len(place), 1), sigma[own])
+
+    def _like_nuisances(self, hypothesis, run, places, slopes, nuisances):
+        """Take the slopes of parameters that act exactly as a nuisance does from its column.
+
+        Differences of simulations would hide that the two are one direction.
+        """
+        lanes = np.arange(len(slopes))
+        for k, (component, own) in enumerate(zip(hypothesis.components, hypothesis.columns, strict=True)):
+            place = np.full(len(slopes), component.place or 0) if places is None else places[:, k]
+            for column, c in enumerate(component.free, start=own.start):
+                like = c.parameter.acts_like
+                if like and (found := self.nuisance_column(like, run, place)):
+                    slopes[:, column] = nuisances[lanes, found[0]] / found[1]
