@@ -52,8 +52,9 @@ class _Source:
 
     def call(self, term, what, *arguments):
         """The call of one formula of a term, its coefficients read from the table."""
-        key = f"{what}_{len(self.namespace)}"
-        self.namespace[key] = _compiled(getattr(term, what))
+        key = f"{what}_{self.laws.terms.index(term)}"
+        if key not in self.namespace:
+            self.namespace[key] = _compiled(getattr(term, what))
         start = self.composition.first_coefficient + self.laws.first_coefficient[term.name]
         read = [f"read(row, {start + k})" for k in range(term.coefficients)]
         return f"{key}({', '.join([*arguments, *read])})"
