@@ -226,7 +226,8 @@ def _doubts(card, setup, history):
 
 
 def _simulate(card, speeds, contacts, catalogue=CATALOGUE, refine=1.0, audit=False) -> History:
-    from sonicvacuum.physics.run import simulate as integrate  # and with it Numba: not for what is read only
+    # And with it compiled code: not for what is read only.
+    from sonicvacuum.physics.run import simulate as integrate
 
     chain = set_up(card, speeds, catalogue).chain
     _, bodies = needed(sensors(card), card.beads)

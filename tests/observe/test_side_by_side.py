@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from sonicvacuum.forward.columns import Columns
 from sonicvacuum.forward.together import runs_of
 from sonicvacuum.gauges import Gauge
 from sonicvacuum.observe.quantities import measure_run
@@ -34,14 +35,19 @@ def told(quantity, run, options):
     return found.value, found.reason
 
 
-def compare(signals):
-    runs = runs_of(signals, TIME, GEOMETRY)
-    for run in runs:
-        alone = Run(run.readings, TIME, GEOMETRY)
+def compare(signals, geometry=GEOMETRY):
+    """Runs side by side and alone, and whole columns, which may leave a run aside."""
+    runs = runs_of(signals, TIME, geometry)
+    columns = Columns(runs)
+    for lane, run in enumerate(runs):
+        alone = Run(run.readings, TIME, geometry)
         for quantity, options in ASKED:
             # As text, so that NaN equals NaN.
-            assert repr(told(quantity, run, options)) == repr(told(quantity, alone, options))
-    return runs[0].together
+            found = told(quantity, alone, options)
+            assert repr(told(quantity, run, options)) == repr(found)
+            value = columns.of(quantity, options)[lane]
+            assert np.isnan(value) or (value, "") == found
+    return columns
 
 
 def pulse(middle, width, height):
@@ -53,11 +59,24 @@ def test_what_is_usual_is_found_side_by_side():
         [pulse(1e-4 + k * 1e-6, 2e-5, 1.0 + k), pulse(1.6e-4, 2e-5, 2.0), pulse(2.2e-4, 1.5e-5, 3.0)]
         for k in range(9)
     ]
-    together = compare(np.array(rows))
+    columns = compare(np.array(rows))
+    runs = runs_of(np.array(rows), TIME, GEOMETRY)
     for sensor in ("g", "h", "wall"):
-        assert None not in together.pulses(sensor)
+        assert None not in runs[0].together.pulses(sensor)
         for rising in (True, False):
-            assert None not in together.edges(sensor, 0.5, rising)
+            assert None not in runs[0].together.edges(sensor, 0.5, rising)
+    for quantity, options in ASKED:
+        usual = (
+            "nowhere" not in options.values() and quantity != "pulse_count" and 1.5 not in options.values()
+        )
+        assert np.isfinite(columns.of(quantity, options)).all() == usual
+
+
+def test_without_a_wall_gauge_only_the_last_bead_is_overlapped():
+    rows = np.array([[pulse(1e-4 + k * 1e-6, 2e-5, 1.0), pulse(1.6e-4, 2e-5, 2.0)] for k in range(5)])
+    for bead, clear in ((15, True), (20, False)):
+        columns = compare(rows, Geometry(20, 5e-3, (GAUGES[0], Gauge("h", "embedded", bead))))
+        assert np.isfinite(columns.of("amplitude", {"sensor": "h"})).all() == clear
 
 
 @settings(max_examples=40, deadline=None)

@@ -81,7 +81,8 @@ def bounces(chain: Chain, speeds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def _bounce(one, speed):
     """One ball, sampled in its own contact time."""
-    from sonicvacuum.physics.run import simulate  # and with it Numba: not before what is asked is known
+    # And with it compiled code: not before what is asked is known.
+    from sonicvacuum.physics.run import simulate
 
     chain = replace(one, speed=np.array([float(speed)]))
     length = CONTACTS * impact_scales(chain)[1]

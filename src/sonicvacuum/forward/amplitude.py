@@ -125,15 +125,18 @@ def _struck(chain, diameters, sensor, pair, speeds, refine):
     gauges = (replace(sensor, id="(gauge)"), *pair, Gauge("(end)", "wall", None))
     setup, duration = Setup(lanes, gauges), passage_of(lanes, CROSSED)
     seen = see(setup, duration, sampling_of(lanes), refine=refine, forgiving=True, alone=False)
-    from sonicvacuum.forward.together import runs_of  # and with it Numba, as in `motion.see`
+    # And with them compiled code, as in `motion.see`.
+    from sonicvacuum.forward.columns import Columns
+    from sonicvacuum.forward.together import runs_of
 
     runs = runs_of(seen.readings, seen.history.time, Geometry(chain.beads, diameters, gauges))
-    return np.array([_one(run) for run in runs]).T
+    columns, finite = Columns(runs), np.isfinite(seen.readings).all(axis=(1, 2))
 
+    def shown(quantity, **options):
+        def closer(lane):
+            return measure_run(quantity, runs[lane], **options).value if finite[lane] else math.nan
 
-def _one(run):
-    """Amplitude and speed of one chain; NaN where it shows none, or numbers that are not finite."""
-    if not all(np.isfinite(reading).all() for reading in run.readings.values()):
-        return math.nan, math.nan
-    height = measure_run("amplitude", run, sensor="(gauge)").value
-    return height, measure_run("speed", run, from_="(before)", to="(behind)").value
+        return np.where(finite, columns.filled(quantity, options, np.arange(len(runs)), closer), math.nan)
+
+    height = shown("amplitude", sensor="(gauge)")
+    return np.stack([height, shown("speed", **{"from": "(before)", "to": "(behind)"})])

@@ -51,7 +51,8 @@ def see(
     Raises:
         FloatingPointError: for such a lane, unless forgiving.
     """
-    from sonicvacuum.physics.run import simulate  # and with it Numba: not for records without a simulation
+    # And with it compiled code: not for records without a simulation.
+    from sonicvacuum.physics.run import simulate
 
     beads = setup.chain.beads
     contacts, bodies = needed((*setup.sensors, *besides), beads)

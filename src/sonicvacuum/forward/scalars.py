@@ -34,7 +34,7 @@ def passages(
         gauges: where the S gauges sit.
         diameters: of the beads in m.
     """
-    from sonicvacuum.forward.together import runs_of  # and with it Numba, as in `motion.see`
+    from sonicvacuum.forward.together import runs_of  # and with it compiled code, as in `motion.see`
 
     beads, history = seen.setup.chain.beads, seen.history
     extra = virtual(gauges, beads)

@@ -13,7 +13,7 @@ import numpy as np
 from sonicvacuum.observe import pulse, trace
 from sonicvacuum.observe.pulse import MAIN, PROMINENCE, Pulse
 from sonicvacuum.observe.run import Geometry, Run
-from sonicvacuum.observe.trace import DEGREE, TOP, Measured, cubic, grid, maximum, newton, root
+from sonicvacuum.observe.trace import DEGREE, TOP, Measured, cubic, grid, newton, root, summit, value_at
 from sonicvacuum.physics.kernels import Compiled
 
 # Neither reordered nor fused: the same roundings as in Python.
@@ -44,43 +44,78 @@ class Together:
         self.grid = grid(time)
         self._signals = np.ascontiguousarray(signals, dtype=float)
         self._place = {sensor: s for s, sensor in enumerate(sensors)}
+        self._found: dict[str, tuple[np.ndarray, ...]] = {}
         self._pulses: dict[str, list[Pulse | None]] = {}
-        self._edges: dict[tuple[str, float, bool], list[Measured | None]] = {}
+        self._times: dict[tuple[str, float, bool], np.ndarray] = {}
+
+    def __len__(self) -> int:
+        """Number of lanes."""
+        return len(self._signals)
+
+    def __contains__(self, sensor: str) -> bool:
+        """Whether there are signals of a gauge."""
+        return sensor in self._place
+
+    def tops(self, sensor: str) -> tuple[np.ndarray, np.ndarray]:
+        """(L,) times in s and heights in N of the main pulse at a gauge; NaN where one has to look closer."""
+        return self._of(sensor)[1:]
 
     def pulses(self, sensor: str) -> list[Pulse | None]:
         """Main pulse of each lane at a gauge; None where one has to look closer."""
         if sensor not in self._pulses:
-            self._pulses[sensor] = self._tops(self._place[sensor])
+            rows = zip(*(column.tolist() for column in self._of(sensor)), strict=True)
+            self._pulses[sensor] = [
+                Pulse(time, top, peak, seen, right - left + 1) if usual else None
+                for (usual, peak, seen, left, right), time, top in rows
+            ]
         return self._pulses[sensor]
 
-    def edges(self, sensor: str, level: float, rising: bool) -> list[Measured | None]:
-        """Time in s at which each lane's main pulse passes `level` × its peak; None where one has to look
-        closer.
+    def crossings(self, sensor: str, level: float, rising: bool) -> np.ndarray:
+        """(L,) times in s at which each lane's main pulse passes `level` × its peak; NaN where one has to
+        look closer.
         """
         key = sensor, level, rising
-        if key not in self._edges:
-            self._edges[key] = self._crossings(*key)
-        return self._edges[key]
+        if key not in self._times:
+            self._times[key] = self._crossings(*key)
+        return self._times[key]
 
-    def _tops(self, s):
-        found = np.zeros((len(self._signals), 5), dtype=np.int64)
-        _find_tops(self._signals, s, found)
+    def edges(self, sensor: str, level: float, rising: bool) -> list[Measured | None]:
+        """The same lane by lane; None where one has to look closer."""
+        return [Measured(t) if t == t else None for t in self.crossings(sensor, level, rising).tolist()]
+
+    def _of(self, sensor):
+        """What is known of each lane's pulse, its time and its height."""
+        if sensor not in self._found:
+            s, known = self._place[sensor], np.zeros((len(self), 5), dtype=np.int64)
+            _find_tops(self._signals, s, known)
+            self._found[sensor] = (known, *self._summits(s, known))
+        return self._found[sensor]
+
+    def _summits(self, s, known):
+        """(L,) times in s and heights in N of pulses whose tops are known."""
+        lanes = np.flatnonzero(known[:, _USUAL])
+        left, right = known[lanes, _LEFT], known[lanes, _RIGHT]
+        coefficients, bounds = np.empty((len(lanes), DEGREE + 1)), np.empty((len(lanes), 3))
+        for k, (lane, *top) in enumerate(zip(lanes.tolist(), left.tolist(), right.tolist(), strict=True)):
+            coefficients[k], *bounds[k] = summit(self._signals[lane, s], *top)
+        climbed = np.empty(len(lanes))
+        _climb_all(coefficients, bounds, climbed)
         start, interval = self.grid
-        pulses: list[Pulse | None] = [None] * len(found)
-        for lane, (usual, peak, seen, left, right) in enumerate(found.tolist()):
-            if usual:
-                place, top = maximum(self._signals[lane, s], left, right, _newton_compiled)
-                pulses[lane] = Pulse(start + interval * place, top, peak, seen, right - left + 1)
-        return pulses
+        time, height = np.full((2, len(self)), np.nan)
+        time[lanes] = start + interval * (left + 0.5 * (climbed + 1.0) * (right - left))
+        height[lanes] = value_at(coefficients.T, climbed)
+        return time, height
 
     def _crossings(self, sensor, level, rising):
-        known = [(-1, 0.0) if p is None else (p.peak, level * p.force) for p in self.pulses(sensor)]
-        peak, target = (np.array(column) for column in zip(*known, strict=True))
-        places = np.full(len(known), np.nan)
+        known, _, height = self._of(sensor)
+        # Where there is no pulse, its peak is at sample −1.
+        peak = np.where(known[:, _USUAL] > 0, known[:, _PEAK], -1)
+        target = np.where(peak < 0, 0.0, level * height)
+        places = np.full(len(self), np.nan)
         if 0.0 < level < 1.0:
             _find_crossings(self._signals, self._place[sensor], peak, target, rising, places)
         start, interval = self.grid
-        return [Measured(start + interval * x) if x == x else None for x in places.tolist()]
+        return start + interval * places
 
 
 def _with(function, **callees):
@@ -119,9 +154,12 @@ def _tops(signals, s, found):
             before -= 1
         while after < samples and not force[after] < low:
             after += 1
+        left = max(0, peak - max(peak - before - 1, 3))
+        right = min(samples - 1, peak + max(after - peak - 1, 3))
+        if right - left < DEGREE:
+            continue
         found[lane, _PEAK], found[lane, _SEEN] = peak, seen
-        found[lane, _LEFT] = max(0, peak - max(peak - before - 1, 3))
-        found[lane, _RIGHT] = min(samples - 1, peak + max(after - peak - 1, 3))
+        found[lane, _LEFT], found[lane, _RIGHT] = left, right
         found[lane, _USUAL] = 1
 
 
@@ -145,31 +183,23 @@ def _crossings(signals, s, peak, target, rising, places):
         places[lane] = first + root(c, lower, lower + 1.0)
 
 
-def _newton(coefficients, x, lower, upper, found):
-    """`trace.newton` for the coefficients of most pulses."""
-    c = coefficients
-    found[0] = newton((c[0], c[1], c[2], c[3], c[4], c[5], c[6]), x, lower, upper)
+def _climb(coefficients, bounds, places):
+    """`trace.newton` for the polynomial of each lane; where it starts and its bounds beside it."""
+    for k in range(len(places)):
+        c, (start, lower, upper) = coefficients[k], bounds[k]
+        places[k] = newton((c[0], c[1], c[2], c[3], c[4], c[5], c[6]), start, lower, upper)
 
 
 def _made_crossings():
     return _with(_crossings, cubic=cubic, root=_with(root, value_at=trace.value_at)), _OPTIONS
 
 
-def _made_newton():
+def _made_climb():
     steps = _with(newton, slope_and_curvature=trace.slope_and_curvature)
-    return _with(_newton, newton=steps), _OPTIONS
+    return _with(_climb, newton=steps), _OPTIONS
 
 
 _SOURCES = (Path(__file__), Path(trace.__file__), Path(pulse.__file__))
 _find_tops = Compiled(lambda: (_tops, _OPTIONS), "tops", _SOURCES)
 _find_crossings = Compiled(_made_crossings, "crossings", _SOURCES)
-_find_newton = Compiled(_made_newton, "newton", _SOURCES)
-
-
-def _newton_compiled(c, x, lower, upper):
-    """`trace.newton` in compiled code, for the coefficients of most pulses."""
-    if len(c) != DEGREE + 1:
-        return newton(c, x, lower, upper)
-    found = np.empty(1)
-    _find_newton(np.array(c), float(x), float(lower), float(upper), found)
-    return float(found[0])
+_climb_all = Compiled(_made_climb, "climb", _SOURCES)

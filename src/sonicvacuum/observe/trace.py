@@ -122,18 +122,21 @@ def top_of(trace: Trace, peak: int, height: float) -> tuple[int, int]:
     return max(0, peak - max(before, 3)), min(len(force) - 1, peak + max(after, 3))
 
 
-def maximum(force: np.ndarray, first: int, last: int, climb=None) -> tuple[float, float]:
-    """Place (in samples) and value of the maximum of the polynomial fitted to samples `first` to `last`.
+def maximum(force: np.ndarray, first: int, last: int) -> tuple[float, float]:
+    """Place (in samples) and value of the maximum of the polynomial fitted to samples `first` to `last`."""
+    c, start, lower, upper = summit(force, first, last)
+    place = newton(c, start, lower, upper)
+    return first + 0.5 * (place + 1.0) * (last - first), value_at(c, place)
 
-    `climb` may stand for `newton`, compiled.
+
+def summit(force: np.ndarray, first: int, last: int) -> tuple[list[float], float, float, float]:
+    """The polynomial fitted to samples `first` to `last`, lowest power first, over [−1, 1]; where its largest
+    value at a sample is, and the samples beside it.
     """
     x, powers, fit = _polynomial(last - first + 1)
     coefficients = fit @ force[first : last + 1]
     best = int((powers @ coefficients).argmax())
-    lower, upper = x[max(best - 1, 0)], x[min(best + 1, len(x) - 1)]
-    c = coefficients.tolist()
-    place = (climb or newton)(c, x[best], lower, upper)
-    return first + 0.5 * (place + 1.0) * (last - first), value_at(c, place)
+    return coefficients.tolist(), x[best], x[max(best - 1, 0)], x[min(best + 1, len(x) - 1)]
 
 
 def crossing(force: np.ndarray, before: int, level: float) -> float:

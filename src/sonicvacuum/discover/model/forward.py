@@ -245,9 +245,9 @@ class Forward:
                 nu,
                 rate_of or len(nu),
             )
-        for k, run in enumerate(batch.runs):
+        observed = scalars.of_batch(e, self.layout, batch, seen, gain, nu, self._refine)
+        for run, measured in zip(batch.runs, observed, strict=True):
             value, timing = traces[run]
-            measured = scalars.of_run(e, self.layout, batch, k, seen, gain, nu, self._refine)
             flat = e.whitened_on(run, value, measured)
             flat[lost] = np.nan
             rated, times, *shape = timing.shape

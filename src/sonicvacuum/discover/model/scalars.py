@@ -3,6 +3,7 @@
 import numpy as np
 
 from sonicvacuum.forward import measured, of_amplitude, passages
+from sonicvacuum.forward.columns import Columns
 from sonicvacuum.observe.contacts import BALL_QUANTITIES
 from sonicvacuum.physics.scales import WAVE_POWER
 
@@ -75,58 +76,68 @@ def shared_column(experiment, run: int, value: np.ndarray, source: str) -> np.nd
     return columns
 
 
-def of_run(experiment, layout, batch, k: int, seen, gain, nu, refine: float = 1.0) -> np.ndarray:
-    """(L, n) observables of the k-th run of a batch as they are compared.
+def of_batch(experiment, layout, batch, seen, gain, nu, refine: float = 1.0) -> list[np.ndarray]:
+    """For each run of a batch (L, n) observables as they are compared.
 
     Args:
         experiment: the data set.
         layout: of its nuisances.
         batch: what was simulated, its R runs for each of L lanes.
-        k: place of the run in the batch.
         seen: the simulation.
         gain: (L, S) of the gauges.
         nu: (L, q) nuisances over their standard errors.
         refine: divides the step of further simulations.
     """
-    run, own = batch.runs[k], slice(k, None, len(batch.runs))
-    wanted = experiment.runs[run].scalars
-    if not wanted:
-        return np.zeros((len(nu), 0))
-    measured_ = predict(experiment, run, own, seen, seen.readings[own] * gain[..., None], refine)
-    return read(wanted, measured_, {layout.named(p): nu[:, p] for p in layout.other("shared")})
+    wanted = [experiment.runs[run].scalars for run in batch.runs]
+    if not any(wanted):
+        return [np.zeros((len(nu), 0))] * len(wanted)
+    errors = {layout.named(p): nu[:, p] for p in layout.other("shared")}
+    signals = seen.readings * np.repeat(gain, len(wanted), axis=0)[..., None]
+    predicted = predict(experiment, wanted, seen, signals, refine)
+    return [read(scalars, own, errors) for scalars, own in zip(wanted, predicted, strict=True)]
 
 
-def predict(experiment, run: int, lanes: slice, seen, signals: np.ndarray, refine: float = 1.0) -> np.ndarray:
-    """(L, n) values of the scalars of a run in SI, 0 where the readings show no such thing.
+def predict(experiment, wanted, seen, signals: np.ndarray, refine: float = 1.0) -> list[np.ndarray]:
+    """For each of R runs (L, n) values of its scalars in SI, 0 where the readings show no such thing.
 
     Args:
         experiment: the data set.
-        run: index of the run.
-        lanes: the run's lanes in the simulation.
-        seen: the simulation.
-        signals: (L, S, T') readings of this run in N.
+        wanted: the n scalars of each run.
+        seen: the simulation, R runs for each of L lanes.
+        signals: (L R, S, T') readings in N.
         refine: divides the step of further simulations.
     """
-    wanted = experiment.runs[run].scalars
-    if not wanted:
-        return np.zeros((len(signals), 0))
-    inside = any(s.quantity not in (*BALL_QUANTITIES, SOLITARY) for s in wanted)
     runs = [None] * len(signals)
-    if inside:
-        runs = passages(seen, lanes, signals, experiment.gauges, experiment.diameter)
-    chosen = np.arange(seen.setup.chain.lanes)[lanes]
-    columns = [_column(experiment, one, seen, chosen, runs, refine) for one in wanted]
-    return np.nan_to_num(np.array(columns, dtype=float).T, nan=0.0, posinf=0.0, neginf=0.0)
+    if any(_inside(one) for scalars in wanted for one in scalars):
+        runs = passages(seen, slice(None), signals, experiment.gauges, experiment.diameter)
+    columns, found = Columns(runs) if runs[0] else None, []
+    for k, scalars in enumerate(wanted):
+        lanes = np.arange(k, len(signals), len(wanted))
+        own = [_column(experiment, one, seen, lanes, runs, columns, refine) for one in scalars]
+        values = np.array(own, dtype=float).reshape(len(scalars), len(lanes)).T
+        found.append(np.nan_to_num(values, nan=0.0, posinf=0.0, neginf=0.0))
+    return found
 
 
-def _column(experiment, scalar, seen, lanes, passages, refine):
-    """One scalar of all lanes."""
+def _inside(scalar):
+    """Whether a scalar is measured on readings of gauges in the chain."""
+    return scalar.quantity not in (*BALL_QUANTITIES, SOLITARY)
+
+
+def _column(experiment, scalar, seen, lanes, runs, columns, refine):
+    """One scalar of some lanes."""
+
+    def closer(lane):
+        return _value(experiment, scalar, seen, lane, runs[lane], refine)
+
     if scalar.quantity == SOLITARY:
         try:
             return [one.value for one in of_amplitude(scalar, seen, lanes, experiment.diameter, refine)]
         except ValueError:
             pass  # of which lane, is found one by one
-    return [_value(experiment, scalar, seen, k, p, refine) for k, p in zip(lanes, passages, strict=True)]
+    if _inside(scalar):
+        return columns.filled(scalar.quantity, scalar.options, lanes, closer)
+    return [closer(lane) for lane in lanes.tolist()]
 
 
 def _value(experiment, scalar, seen, lane, passage, refine):
