@@ -13,7 +13,7 @@ from sonicvacuum.discover import session
 from sonicvacuum.discover.faults import changes, policy
 from sonicvacuum.discover.faults.competition import Search
 from sonicvacuum.discover.faults.found import Bench
-from sonicvacuum.discover.faults.judging import Judge, Model, obvious, suspicious
+from sonicvacuum.discover.faults.judging import Judge, Model, excess, obvious, suspicious
 from sonicvacuum.discover.faults.slips import hypotheses
 from sonicvacuum.discover.fit.enough import data
 from sonicvacuum.discover.rounds import investigate
@@ -205,6 +205,20 @@ def test_slips_without_size_are_tried_where_slopes_promise_nothing(empty, monkey
     _, _, ranked = search(change(empty))
     found = ranked[0].slip.finding(ranked[0].size)
     assert (found.fault, found.run, found.sensor, found.value) == (fault, run, gauge, value)
+
+
+@pytest.mark.parametrize(("times", "fitted"), [(0.9, True), (1.1, False)])
+def test_a_slip_that_leaves_far_more_than_there_is_is_not_fitted(empty, monkeypatch, times, fitted):
+    look = Judge.look
+
+    def far(judge, slip):
+        found, there = look(judge, slip), excess(judge.model)
+        left = there - times * policy.REACH * there
+        return replace(found, gain=left, log_bayes=-10.0) if slip.fault == "gauges-swapped" else found
+
+    monkeypatch.setattr(Judge, "look", far)
+    _, _, ranked = search(OBVIOUS["gauges-swapped"][0](empty))
+    assert ("gauges-swapped" in {j.slip.fault for j in ranked}) == fitted
 
 
 def test_a_bead_less_is_not_looked_for_beside_an_effect_at_the_last():

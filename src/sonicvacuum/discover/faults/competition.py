@@ -27,6 +27,7 @@ from sonicvacuum.discover.faults.judging import (
     most_of,
     obvious,
     of_the_chain,
+    out_of_reach,
     suspicious,
 )
 from sonicvacuum.discover.faults.lines import drifts
@@ -194,15 +195,16 @@ class Search:
             looked = [judge.from_afar(j) if FAULTS[j.slip.fault].curved else j for j in looked]
         looked.sort(key=lambda j: -j.log_odds)
         worth = [j for j in looked if j.gain > policy.LEAST_GAIN][: policy.FOLLOWED]
+        # A pulse that comes a bead earlier, or with another run's speed, overlaps none of what was measured:
+        # slopes know nothing of it.
+        apart = [j for j in looked if not (j.slip.continuous or j in worth or out_of_reach(j, model))]
         if far:
-            # A pulse that comes a bead earlier, or with another run's speed, overlaps none of what was
-            # measured: slopes know nothing of it.
             pairs = both_off(worth)
-            worth += [j for j in looked if (of_the_chain(j.slip) or j.slip.run in pairs) and j not in worth]
+            worth += [j for j in apart if of_the_chain(j.slip) or j.slip.run in pairs]
         whole = [judge.look(s) for s in shown if (s.fault, s.run, s.sensor) not in done]
         followed = [judge.follow(j) for j in [*worth, *whole]]
         if far and not any(obvious(j, model) for j in followed):
-            followed += [judge.follow(j) for j in looked if not (j.slip.continuous or j in worth)]
+            followed += [judge.follow(j) for j in apart if j not in worth]
         self.simulations += judge.simulations
         kept = [j for j in followed if j.gain > policy.LEAST_GAIN and j.log_odds > 0.0]
         return sorted(kept, key=lambda j: -j.log_odds)

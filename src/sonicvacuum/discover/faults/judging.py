@@ -88,6 +88,11 @@ def obvious(judged: Judged, model: Model) -> bool:
     )
 
 
+def out_of_reach(judged: Judged, model: Model) -> bool:
+    """Whether a slip, looked at, leaves so much more misfit than there is that no fit would mend it."""
+    return excess(model) - judged.gain > policy.REACH * max(excess(model), 1.0)
+
+
 def of_the_chain(slip: Slip) -> bool:
     """Whether a slip has no size and moves all pulses at once: another number of beads."""
     return not slip.continuous and FAULTS[slip.fault].stretches

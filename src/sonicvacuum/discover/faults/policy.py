@@ -16,6 +16,10 @@ SURE_GAIN = 200.0
 LEFT = 0.3
 # Slips that are followed to their minimum after a linear look at all of them.
 FOLLOWED = 4
+# Where slopes know nothing of a slip, a fit may take away much of what its correction leaves at first: all
+# but a 180th where two runs had been swapped, a 330th where they had not. One that leaves more than so many
+# times the misfit as it is explains nothing, and is not fitted.
+REACH = 300.0
 # No more slips than this are put right in one record: a record with more should be made anew.
 MOST = 3
 # Probabilities below this are not worth a line.
