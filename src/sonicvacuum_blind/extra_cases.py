@@ -39,9 +39,9 @@ class ExtraCase:
         return self.spec.id
 
 
-def cases() -> list[ExtraCase]:
-    """All cases; the order tells nothing."""
-    random = np.random.default_rng(np.random.SeedSequence(SEED))
+def cases(seed: int = SEED) -> list[ExtraCase]:
+    """All cases of a seed; the order tells nothing."""
+    random = np.random.default_rng(np.random.SeedSequence(seed))
     rows = [("null", (), 0.0, size) for size in SIZES for _ in range(NULLS)]
     for k, name in enumerate(STUDIED):
         rows += [("single", (name,), STRENGTHS[(k + j) % 4], size) for j, size in enumerate(SIZES)]
@@ -50,12 +50,12 @@ def cases() -> list[ExtraCase]:
             chosen = sorted(random.choice(len(STUDIED), count, replace=False).tolist())
             rows.append(("set", tuple(STUDIED[i] for i in chosen), OF_EACH, 0.0))
     order = random.permutation(len(rows)).tolist()
-    return [_case(place, *rows[i]) for place, i in enumerate(order)]
+    return [_case(seed, place, *rows[i]) for place, i in enumerate(order)]
 
 
-def _case(place, kind, effects, strength, size):
+def _case(seed, place, kind, effects, strength, size):
     return ExtraCase(
-        Spec(f"extras-{place:04d}", kind, "traces", "white", effects, strength, SEED, place), size
+        Spec(f"extras-{place:04d}", kind, "traces", "white", effects, strength, seed, place), size
     )
 
 

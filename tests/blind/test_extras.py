@@ -67,6 +67,10 @@ def test_the_list_holds_every_effect_with_every_size_and_is_the_same_each_time()
     assert {len(s.effects) for s in sets} == {3, 4}
     assert {s.d_prime for s in sets} == {20.0}
     assert all(not c.size for c in made if c.spec.kind == "set")
+    other = extra_cases.cases(7)
+    assert other != made
+    assert sorted(c.size for c in other) == sorted(c.size for c in made)
+    assert {c.spec.seed for c in other} == {7}
 
 
 TRUTH = {"id": "x", "kind": "single", "effects": ["tsuji"], "size": 0.01, "d_prime": 50.0}

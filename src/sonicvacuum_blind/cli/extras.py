@@ -18,13 +18,15 @@ from sonicvacuum_blind.cli.options import batch_of, counted_into, held_against, 
 @click.option(
     "--first", type=click.IntRange(min=1), help="So many of the list, whose order is drawn; all if not given."
 )
-def extras(batch, first, records_folder, truth_folder):
+@click.option("--seed", type=click.IntRange(min=0), help="Another list, all of it drawn anew.")
+def extras(batch, first, seed, records_folder, truth_folder):
     """Make records with smooth systematic errors, and with three and four effects."""
     from sonicvacuum.records.guard import check_collection
     from sonicvacuum_blind import extra_cases
     from sonicvacuum_blind.study import batch as part
 
-    chosen = part(extra_cases.cases()[:first], *batch_of(batch))
+    every = extra_cases.cases() if seed is None else extra_cases.cases(seed)
+    chosen = part(every[:first], *batch_of(batch))
     check_truth(truth_folder, records_folder)
     check_collection(records_folder, [c.id for c in chosen], lambda name: Path(truth_folder) / name / TRUTH)
     for case in chosen:
