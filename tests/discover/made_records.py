@@ -72,7 +72,7 @@ def made(effects=(), seed=0, speeds=(0.3, 0.9), noise=1.0, departures=(), sensor
     found = forward.sampled(Hypothesis(), np.zeros((1, 0)), nu, change=change)
     sigma = np.array([g.sigma for g in Record(content).gauges])[:, None]
     signals = {}
-    for run, (value, _) in zip(content.runs, found, strict=True):
+    for run, value in zip(content.runs, found, strict=True):
         clean = value[0].reshape(len(ids), -1) * forward.experiment.sigma[:, None]
         noisy = clean + noise * sigma * rng.normal(size=clean.shape)
         signals[run.id] = Signals(time, dict(zip(ids, noisy, strict=True)))

@@ -33,7 +33,7 @@ def test_the_batch_fit_finds_what_scipy_finds(hidden, setup):
 
     def residuals(x):
         values = forward.sampled(one, x[None, :1], x[None, 1:])
-        parts = [forward.data(run) - value[0] for run, (value, _) in enumerate(values)]
+        parts = [forward.data(run) - value[0] for run, value in enumerate(values)]
         return np.concatenate([*parts, x[1:]])
 
     start = np.concatenate([[-2.0], np.zeros(forward.layout.size)])

@@ -157,3 +157,8 @@ def test_beside_what_is_left_the_likelier_is_named_though_another_was_found(monk
     made = decision.Case._beside(case, grown, 10.0, {}, left, [])
     assert made.named == [*([named] if named else []), "unknown"]
     assert made.final is (fits[named] if named else None)
+    # Each half as likely as both together; none is e^59 times less.
+    told = "something of the catalogue is there with probability 1.00, which is open: "
+    assert [r for r in made.reasons if r.startswith(told)] == (
+        [] if named else [told + "tsuji 0.50, kuwabara-kono 0.50"]
+    )

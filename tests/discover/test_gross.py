@@ -92,7 +92,7 @@ def made(effects, systematics, seed=1) -> Record:
     found = forward.sampled(Hypothesis(), np.zeros((1, 0)), nothing, change=change)
     both = smooth(rng, len(time))
     signals = {}
-    for run, (value, _) in zip(content.runs, found, strict=True):
+    for run, value in zip(content.runs, found, strict=True):
         clean = value[0] * forward.experiment.sigma[0]
         error = systematics * clean.max() * (both + smooth(rng, len(time))) / np.sqrt(2.0)
         signals[run.id] = Signals(

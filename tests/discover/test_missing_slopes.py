@@ -50,7 +50,7 @@ def test_what_no_laboratory_has_is_not_simulated(hidden, far):
     nu = np.zeros((3, forward.layout.size))
     nu[1, forward.layout.speed(0)] = far / forward.nuisance_sigma[forward.layout.speed(0)]
     found = forward.sampled(Hypothesis(), np.zeros((3, 0)), nu)
-    for value, _ in found:
+    for value in found:
         assert np.isnan(value[1]).all()
         assert np.array_equal(value[0], value[2]) and np.isfinite(value[0]).all()
 

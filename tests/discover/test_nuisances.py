@@ -57,7 +57,7 @@ def test_every_column_is_the_slope_of_the_predictions(quiet):
     step = 1e-3
     around = np.concatenate([at + step * np.eye(at.size), at - step * np.eye(at.size)])
     values = forward.sampled(Hypothesis(), np.zeros((len(around), 0)), around)
-    for run, (value, _) in enumerate(values):
+    for run, value in enumerate(values):
         slopes = (value[: at.size] - value[at.size :]) / (2.0 * step)
         for column, place in enumerate(forward.layout.local(run)):
             error = np.linalg.norm(found[run][0, 1 + column] - slopes[place])

@@ -43,7 +43,7 @@ def shown(forward, hypothesis=None, nu=0.0, place=None):
     """The whitened predictions, one nuisance off."""
     at = np.zeros((1, forward.layout.size))
     at[0, place if place is not None else 0] = nu
-    return forward.sampled(hypothesis or Hypothesis(), np.zeros((1, 0)), at)[0][0][0]
+    return forward.sampled(hypothesis or Hypothesis(), np.zeros((1, 0)), at)[0][0]
 
 
 def with_layer(thickness):

@@ -37,6 +37,9 @@ class Valley:
         self.period = random.uniform(0.009, 0.013, (jumps, 2))
         self.phase = random.uniform(0.0, 1.0, (jumps, 2))
 
+    def local(self, run):
+        return self.layout.local(run)
+
     def counts(self, run):
         return np.zeros(0, dtype=int)
 
@@ -55,14 +58,14 @@ class Valley:
         assert all(
             c.low <= x.min() and x.max() <= c.high for c, x in zip(hypothesis.coordinates, u.T, strict=True)
         )
-        return [(self.values(u, np.asarray(nu)), None)]
+        return [self.values(u, np.asarray(nu))]
 
     def columns(self, hypothesis, u, nu, places=None, precise=False, steps=None, held=None, step=0.02):
         moves = np.concatenate([np.zeros((1, 2)), step * np.eye(2)])
         value = self.values(u + moves, np.repeat(nu, 3, axis=0))
         own = np.concatenate([value[:1], (value[1:] - value[0]) / step])
         rest = np.zeros((self.layout.size, value.shape[1]))
-        rest[list(self.layout.local(0)).index(0), 0] = 0.3
+        rest[list(self.local(0)).index(0), 0] = 0.3
         return [np.concatenate([own, rest])[None]]
 
     def fit(self, hypothesis, u):

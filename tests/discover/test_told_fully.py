@@ -34,7 +34,7 @@ def record(*observables, sensors=(), **changes) -> Record:
 def shown(one: Record) -> np.ndarray:
     """Values in SI that the nominal model shows of its observables."""
     forward = Forward(experiment(one))
-    values = forward.sampled(Hypothesis(), np.zeros((1, 0)), np.zeros((1, forward.layout.size)))[0][0][0]
+    values = forward.sampled(Hypothesis(), np.zeros((1, 0)), np.zeros((1, forward.layout.size)))[0][0]
     return values * [s.sigma for s in forward.experiment.runs[0].scalars]
 
 
@@ -104,7 +104,7 @@ def test_columns_of_shared_errors_and_bounds_are_slopes(nominal):
     found = forward.columns(Hypothesis(), np.zeros((1, 0)), at, precise=True)[0][0, 1:]
     step = 1e-3
     around = np.concatenate([at + step * np.eye(at.size), at - step * np.eye(at.size)])
-    value = forward.sampled(Hypothesis(), np.zeros((len(around), 0)), around)[0][0]
+    value = forward.sampled(Hypothesis(), np.zeros((len(around), 0)), around)[0]
     slopes = (value[: at.size] - value[at.size :]) / (2.0 * step)
     np.testing.assert_allclose(found, slopes[forward.layout.local(0)], atol=2e-3)
     assert not found[:, 2].any() and found[:, 1].any()

@@ -51,7 +51,7 @@ from sonicvacuum.physics import compiled, run
 
 timed(run, "prepare", "prepare")
 timed(run._Batch, "run", "stepper")
-timed(Forward, "sampled", "sampled")
+timed(Forward, "_sampled" if hasattr(Forward, "_sampled") else "sampled", "sampled")
 timed(session, "discover", "discover")
 timed(session, "write", "tables")
 timed(page, "illustrate", "pictures")

@@ -165,7 +165,7 @@ def _with(experiment, batch, run, chain, faster: float = 1.0):
 
 def predicted(old: Forward, new: Forward, fit) -> np.ndarray:
     """(M,) data of a new run over their noise, as a fit of the old runs has them."""
-    return new.sampled(fit.hypothesis, fit.u[None], _shared(old, new, fit)[None])[0][0][0]
+    return new.sampled(fit.hypothesis, fit.u[None], _shared(old, new, fit)[None])[0][0]
 
 
 def separation(old: Forward, new: Forward, truth: np.ndarray, rival, known: np.ndarray) -> float:

@@ -36,11 +36,22 @@ TOLD = 0.05
 # No more effects than this are named together: a set of more is not looked through in any sense.
 MOST_EFFECTS = 6
 
-# Smooth misfit. Its correlation in time, over the pulse's width at half height: less would be a ripple on the
-# pulse, more a change of its height.
-SMOOTH_LENGTH = 0.5
+# Smooth misfit. Correlation times tried, over the pulse's width at half height, the first one first: less
+# would be a ripple on the pulse, more a change of its height.
+SMOOTH_LENGTHS = (0.5, 0.35, 0.8, 1.2)
+# It sets in with the pulse, or ahead of it: when it begins, from the peak, and for how long it rises, in
+# widths; both are tried.
+SMOOTH_ONSETS = ((-1.5, 1.0), (-1.75, 0.75))
+# Shares of its variance tried that are alike in runs of like speeds, and how far apart such speeds lie (in
+# their logarithm): a factor of two.
+SMOOTH_ALIKE, SMOOTH_SPEEDS = (0.0, 0.9), 0.7
+# Around the size found first others are tried as far as this factor; what varies by less than this share of
+# the largest variance is left out.
+SMOOTH_NEAR, SMOOTH_FAINT = 4.0, 1e-9
 # Knots per trace at most; longer traces are given a longer correlation.
 SMOOTH_KNOTS = 48
+# Memory that all kernels of a record may take.
+SMOOTH_BYTES = 400_000_000
 # Sizes tried, as shares of the peak: from what the simulation itself errs by to where no model is left.
 SMOOTH_LEAST, SMOOTH_MOST, SMOOTH_SIZES = 2e-4, 0.5, 34
 # It is at most so many times the root mean square of what a model leaves in a trace: of sixty directions
@@ -49,12 +60,12 @@ SMOOTH_TAKEN_UP = 1.5
 # What is rougher than its kernel is counted as white: tried are noises so many times, and powers of it, as
 # large as they are.
 EXCESS_STEP = 1.3
-# A systematic error tends to be the same in every run, so that runs do not average it away: of its variance
-# this share is taken as common to all.
+# A systematic error tends to be the same in every run, so that runs do not average it away: where the data
+# are not asked, this share of its variance is taken as common.
 SMOOTH_SHARED = 0.5
-# Where it explains more than any effect, an effect has to gain so many times what else suffices: a
-# discrepancy that is twice as long as the kernel has more than twice its variance along slow effects.
-OUT_OF_SMOOTH = 3.0
+# Beside it the first effect has to gain so many times what else suffices, and a further one so many times: no
+# kernel is quite what the discrepancy is.
+BESIDE_SMOOTH = (1.0, 3.0)
 # Log prior odds of a smooth misfit against none, and its Occam factor: one size, known to a fifth, out of
 # three decades.
 SMOOTH_LOG_PRIOR = -5.0

@@ -161,17 +161,17 @@ def _misfit(forward, fit, point):
     """(n,) χ² and the penalty of the nuisances, and (n, p + q) minus half its slopes, with the columns of the
     fit, at (n, p + q) points; a batch at a time.
     """
-    layout, p = forward.layout, len(fit.u)
+    p = len(fit.u)
     low, high = _bounds(fit)
     u, nu = point[:, :p].clip(low, high), point[:, p:]
     columns = forward.columns(fit.hypothesis, fit.u[None], fit.nu[None])
     objective, gradient = np.square(nu).sum(axis=1), np.concatenate([np.zeros_like(u), -nu], axis=1)
-    lanes = max(1, CHUNK // layout.runs)
+    lanes = max(1, CHUNK // forward.layout.runs)
     for part in (slice(first, first + lanes) for first in range(0, len(u), lanes)):
-        for run, (value, _) in enumerate(forward.sampled(fit.hypothesis, u[part], nu[part])):
+        for run, value in enumerate(forward.sampled(fit.hypothesis, u[part], nu[part])):
             left = forward.data(run) - value
             objective[part] += np.square(left).sum(axis=1)
-            own = np.concatenate([np.arange(p), p + layout.local(run)])
+            own = np.concatenate([np.arange(p), p + forward.local(run)])
             gradient[part, own] += left @ columns[run][0, 1:].T
     return objective, gradient
 

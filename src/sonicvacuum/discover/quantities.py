@@ -71,7 +71,7 @@ def _shown(forward, fit):
     free = _unbounded(forward)
     found = free.sampled(fit.hypothesis, fit.u[None], fit.nu[None])
     result = []
-    for run, (value, _) in zip(free.experiment.runs, found, strict=True):
+    for run, value in zip(free.experiment.runs, found, strict=True):
         sigma = np.array([one.sigma for one in run.scalars])
         result.append(value[0, value.shape[1] - len(sigma) :] * sigma)
     return result
@@ -88,6 +88,6 @@ def _shares(forward, fit):
     for run, found in enumerate(columns):
         count = len(forward.experiment.runs[run].scalars)
         slopes = found[0, 1:, found.shape[2] - count :]
-        own = np.array([*range(len(fit.u)), *(len(fit.u) + forward.layout.local(run))])
+        own = np.array([*range(len(fit.u)), *(len(fit.u) + forward.local(run))])
         result.append(np.einsum("in,ij,jn->n", slopes, covariance[np.ix_(own, own)], slopes))
     return result

@@ -76,7 +76,7 @@ class Investigation:
 
 def investigate(experiment: Experiment, threads: int = 1, null: Fit | None = None) -> Investigation:
     """Find what is missing from the nominal model of a data set; `null` is its fit, where at hand."""
-    known = smooth.blocks(experiment)
+    known = smooth.Shapes(experiment)
     if experiment.model_floor_rel:
         experiment = smooth.with_size(experiment, experiment.model_floor_rel, known)
     if experiment.model_floor_rel is not None:

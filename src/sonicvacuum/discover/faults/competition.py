@@ -123,7 +123,7 @@ class Search:
         """The same with the smooth misfit that the record states counted as noise, as the search has it."""
         experiment = self.make(bench)
         size = experiment.model_floor_rel
-        return smooth.with_size(experiment, size, smooth.blocks(experiment)) if size else experiment
+        return smooth.with_size(experiment, size) if size else experiment
 
     def run(self) -> Outcome:
         """Slips that leave nothing to doubt, then effects, then the rest of the slips against them."""

@@ -72,7 +72,7 @@ def predicted(experiment: Experiment, threads: int = 1) -> dict[str, dict[str, n
     forward = Forward(replace(experiment, runs=bare, correlation=np.zeros(len(experiment.gauges))), threads)
     found = forward.sampled(Hypothesis(), np.zeros((1, 0)), np.zeros((1, forward.layout.size)))
     result = {}
-    for run, (value, _) in zip(experiment.runs, found, strict=True):
+    for run, value in zip(experiment.runs, found, strict=True):
         rows = value[0].reshape(len(experiment.gauges), -1) * experiment.sigma[:, None]
         result[run.id] = {
             g.id: row

@@ -183,13 +183,13 @@ class Judge:
 
     def _normal(self, parts, nu, extra=None):
         """Gradient, Hessian and χ² over all runs; the size of a slip is the last unknown."""
-        one, layout = self.model.fit, self.model.forward.layout
-        p, q = len(one.u), layout.size
+        one, forward = self.model.fit, self.model.forward
+        p, q = len(one.u), forward.layout.size
         n = p + q + (extra is not None)
         gradient, hessian, chi2 = np.zeros(n), np.zeros((n, n)), 0.0
         for run, part in enumerate(parts):
             rows = part[1:] if extra is None else np.vstack([part[1:], extra[run]])
-            where = np.concatenate([np.arange(p), p + layout.local(run), np.arange(p + q, n)])
+            where = np.concatenate([np.arange(p), p + forward.local(run), np.arange(p + q, n)])
             gradient[where] += rows @ part[0]
             hessian[np.ix_(where, where)] += rows @ rows.T
             chi2 += float(part[0] @ part[0])

@@ -80,7 +80,7 @@ def sloped(forward: Forward, hypothesis: Hypothesis, now: Normal, columns: list[
     moves = np.concatenate([np.zeros((1, now.free)), *(x * axes for x in POINTS)])
     u = hypothesis.inside(now.u + moves)
     u[0] = now.u[0]
-    found = [value for value, _ in forward.sampled(hypothesis, u, np.repeat(now.nu, len(u), axis=0))]
+    found = forward.sampled(hypothesis, u, np.repeat(now.nu, len(u), axis=0))
     sound = np.isfinite(sum(value.sum(axis=1) for value in found))
     # In units of the axes, so that the shortest counts like the longest.
     along = np.linalg.solve(axes.T, (u - now.u).T).T[sound]

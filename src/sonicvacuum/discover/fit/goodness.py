@@ -95,7 +95,7 @@ def residuals(forward: Forward, fit: Fit) -> list[tuple[int, int, np.ndarray]]:
     """(run, gauge, (T,) whitened residual) of every trace."""
     found = forward.sampled(fit.hypothesis, fit.u[None], fit.nu[None])
     result = []
-    for run, (value, _) in enumerate(found):
+    for run, value in enumerate(found):
         samples = len(forward.experiment.runs[run].time)
         left = forward.data(run) - value[0]
         for s in range(len(forward.experiment.gauges) if samples else 0):
@@ -114,7 +114,7 @@ def _scalars(forward, fit):
     """χ² of all scalars."""
     found = forward.sampled(fit.hypothesis, fit.u[None], fit.nu[None])
     total = 0.0
-    for run, (value, _) in enumerate(found):
+    for run, value in enumerate(found):
         count = len(forward.experiment.runs[run].scalars)
         if count:
             total += float(np.square(forward.data(run) - value[0])[-count:].sum())

@@ -106,7 +106,7 @@ def from_slopes(forward: Forward, free: int, u, nu, columns) -> Normal:
         parts = parts.copy()
         parts[:, 0] = forward.data(run) - parts[:, 0]
         products = parts @ parts.transpose(0, 2, 1)
-        where = np.concatenate([np.arange(free), free + forward.layout.local(run)])
+        where = np.concatenate([np.arange(free), free + forward.local(run)])
         chi2[run] = products[:, 0, 0]
         gradient[run][:, where] = products[:, 0, 1:]
         hessian[run][np.ix_(np.arange(lanes), where, where)] = products[:, 1:, 1:]

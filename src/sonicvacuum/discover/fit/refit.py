@@ -159,7 +159,7 @@ def _promising(forward, hypothesis, u, nu, places, keep):
     if len(u) <= keep:
         return np.arange(len(u))
     found = forward.sampled(hypothesis, u, nu, places)
-    chi2 = sum(np.square(forward.data(run) - value).sum(axis=1) for run, (value, _) in enumerate(found))
+    chi2 = sum(np.square(forward.data(run) - value).sum(axis=1) for run, value in enumerate(found))
     chi2 = np.where(np.isfinite(chi2), chi2, np.inf) + np.square(nu).sum(axis=1)
     return np.sort(np.argsort(chi2, kind="stable")[:keep])
 

@@ -195,7 +195,7 @@ class _Walk:
         apart = np.diag(many[1 : 1 + p] - many[1 + p :])
         found = self.forward.sampled(self.hypothesis, many, np.repeat(nu[None], len(many), axis=0))
         parts = []
-        for run, (value, _) in enumerate(found):
+        for run, value in enumerate(found):
             part = self.columns[run].copy()
             part[0, 0] = value[0]
             part[0, 1 : 1 + p] = (value[1 : 1 + p] - value[1 + p :]) / apart[:, None]

@@ -59,7 +59,7 @@ class Case:
     null: Fit
     scores: screen.Screen
     found: list[Candidate]
-    known: tuple | None
+    known: smooth.Shapes | None
     setup: Setup
 
     def nothing(self, few: Sequence[str] = ()) -> Decision:
@@ -80,7 +80,7 @@ class Case:
         return Decision([UNKNOWN], self.null, alarms, reasons, seen.p, list(tried), size, view)
 
     def _view(self, one: smooth.Size, final: Fit) -> View:
-        counted = smooth.with_size(self.forward.experiment, one.size, self.known, one.excess)
+        counted = smooth.with_size(self.forward.experiment, one.size, self.known, one.excess, one.kernel)
         forward = Forward(counted, self.forward.threads)
         null = several.moved(forward, self.null)
         return View(forward, null, null if final is self.null else several.moved(forward, final))
@@ -93,7 +93,7 @@ class Case:
         shape, most = unknown.simplest(self.forward, self.null)
         seen = left(self.forward, best.fit, self.known, scores, _behind(best.gain, most))
         alarms = {"single": seen.p}
-        if self._smooth_instead(best, seen) and not gross.gross(self.forward, best.fit):
+        if self._smooth_instead(best, seen) and not gross.gross(self.forward, best.fit, self.known):
             return self._out_of_smooth(best, scores.threshold(policy.FALSE_ALARM), most, alarms)
         if seen.shapes.failed or seen.fit.failed or seen.size.found:
             return self._more(scores.threshold(policy.FALSE_ALARM), most, shape, alarms, seen)
@@ -116,8 +116,7 @@ class Case:
         """Effects that earn their evidence with a smooth misfit of the nominal model counted as noise; else
         unknown.
         """
-        asked = policy.OUT_OF_SMOOTH * needed
-        grown = several.Turns(self.forward, self.known, asked, self.setup).grow(self.null, self.null)
+        grown = several.Turns(self.forward, self.known, needed, self.setup).grow(self.null, self.null)
         without = left(self.forward, self.null, self.known)
         size = 100.0 * without.size.size
         reason = f"a smooth misfit of {size:.2g} % of the peak explains more than {best.effect}"
@@ -126,7 +125,7 @@ class Case:
         final = several.moved(self.forward, grown.best.fit)
         behind = _behind(self.null.objective - final.objective, most)
         after = left(self.forward, final, self.known, behind=behind)
-        return self._beside(grown, asked, {**alarms, "set": after.p}, after, [])
+        return self._beside(grown, needed, {**alarms, "set": after.p}, after, [])
 
     def _more(self, needed, most, shape, alarms, seen: Left) -> Decision:
         """Name the first pair that leaves nothing and gains enough over the best single; else go on."""
@@ -137,7 +136,7 @@ class Case:
             better = evidence.ranked(lower, self.forward.experiment.prior_odds)
             return replace(replace(self, found=better).decide(), singles=better)
         passed, start, lowest = self._passing(tried, needed, most, alarms, seen)
-        if passed is None and not gross.gross(self.forward, start):
+        if passed is None and not gross.gross(self.forward, start, self.known):
             asked, tried = tried[:ASKED], of_two.again()
             if [id(pair) for pair in tried[:ASKED]] != [id(pair) for pair in asked]:
                 passed, start, lowest = self._passing(tried, needed, most, alarms, seen)
@@ -168,11 +167,11 @@ class Case:
     def _set(self, needed, most, shape, alarms, start: Fit, seen: Left, tried) -> Decision:
         """Effects added and taken away; what is found is kept, and said beside what is left."""
         nearest = min([start, *(c.fit for c in tried)], key=lambda f: f.objective)
-        if self.known is not None and gross.gross(self.forward, nearest):
+        if self.known is not None and gross.gross(self.forward, nearest, self.known):
             found = [pairs.combination(self.null, c.fit, self.setup) for c in self.found]
             prior = self.forward.experiment.prior_odds
             standing = gross.standing_out(self.forward, self.null, [*found, *tried], self.setup, prior)
-            if standing.fit is None or gross.gross(self.forward, standing.fit):
+            if standing.fit is None or gross.gross(self.forward, standing.fit, self.known):
                 return self._standing_out(standing, alarms, seen, tried, shape, most)
             start = standing.fit
         whole = self._without_smooth(needed, most, alarms, start, seen, tried)
@@ -255,6 +254,8 @@ class Case:
             if not named or _clear(whole, named):
                 break
             reasons.append(f"{' + '.join(named)}: not clearly the best beside what is left")
+        if not named:
+            reasons += _one_of(weights)
         weights = whole if named else weights
         final = several.moved(self.forward, fit_) if named else self.null
         view = View(grown.forward, grown.null, fit_) if grown.size.size else None
@@ -316,6 +317,18 @@ def _clear(weights, named) -> bool:
     own = weights.get(explanations.key(named), -np.inf)
     others = [w for name, w in weights.items() if name != explanations.key(named)]
     return own - np.logaddexp.reduce(others) > np.log(policy.CLEAR) if others else True
+
+
+def _one_of(weights) -> list[str]:
+    """That something of the catalogue is there, where only which is open; [] where that is not so sure."""
+    total = np.logaddexp.reduce(list(weights.values()))
+    odds = {name: float(np.exp(w - total)) for name, w in weights.items()}
+    none = odds.pop(explanations.NONE, 0.0)
+    if none > 1.0 - policy.STANDS_OUT:
+        return []
+    likely = sorted(((p, name) for name, p in odds.items() if p > policy.TOLD), reverse=True)
+    told = ", ".join(f"{name} {p:.2f}" for p, name in likely)
+    return [f"something of the catalogue is there with probability {1.0 - none:.2f}, which is open: {told}"]
 
 
 def _behind(gain: float, most: float) -> float:

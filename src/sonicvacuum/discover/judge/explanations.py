@@ -57,7 +57,7 @@ def aliases(forward: Forward, null: Fit, found: list[Candidate]) -> list[str]:
 def _predicted(forward, fit):
     """Whitened predictions of all data, with what nuisances take up."""
     found = forward.sampled(fit.hypothesis, fit.u[None], fit.nu[None])
-    return np.concatenate([value[0] for value, _ in found])
+    return np.concatenate([value[0] for value in found])
 
 
 def log_weights(

@@ -19,7 +19,7 @@ from functools import partial
 import numpy as np
 
 from sonicvacuum.discover import policy
-from sonicvacuum.discover.fit import enough, evidence, places, wide
+from sonicvacuum.discover.fit import enough, evidence, places, smooth, wide
 from sonicvacuum.discover.fit.evidence import Combination
 from sonicvacuum.discover.fit.normal import linearise
 from sonicvacuum.discover.fit.refit import Fit, fit
@@ -37,16 +37,22 @@ LEADING, TIMES, STAYS = 6, 3, 0.98
 _PROFILES = {effect.id for effect in profiles.effects()}
 
 
-def gross(forward: Forward, fit: Fit) -> bool:
-    """Whether a fit leaves so much that the noise no longer counts."""
-    return float(fit.normal.chi2.sum()) > policy.GROSS * enough.data(forward)
+def gross(forward: Forward, fit: Fit, known: smooth.Shapes | None = None) -> bool:
+    """Whether a fit leaves so much that the noise no longer counts, nor does it with something smooth.
+
+    `known` are the shapes of a smooth discrepancy, where one may be inferred. Where speeds or walls are
+    hardly known these would take up what a discrepancy does, so that none is asked for.
+    """
+    if not float(fit.normal.chi2.sum()) > policy.GROSS * enough.data(forward):
+        return False
+    return known is None or wide.wide(forward) or smooth.infer(forward, fit, known).rest > policy.GROSS
 
 
 def pieces(forward: Forward, fit: Fit) -> float:
     """Number of independent pieces of what a fit leaves, over all gauges of all runs; 1 at least."""
     e, total = forward.experiment, 0.0
     found = forward.sampled(fit.hypothesis, fit.u[None], fit.nu[None])
-    for run, (value, _) in enumerate(found):
+    for run, value in enumerate(found):
         left, samples = forward.data(run) - value[0], len(e.runs[run].time)
         total += sum(_pieces(left[s * samples : (s + 1) * samples]) for s in range(len(e.gauges)))
         total += len(e.runs[run].scalars)

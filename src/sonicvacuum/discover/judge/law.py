@@ -128,7 +128,7 @@ def nearest(law: FreeLaw, null: Fit, plain: Forward, found: list[Candidate]) -> 
 
 def _predicted(forward, one):
     value = forward.sampled(one.hypothesis, one.u[None], one.nu[None])
-    return np.concatenate([v[0] for v, _ in value])
+    return np.concatenate([v[0] for v in value])
 
 
 def formula(seen: Surface) -> str:

@@ -118,7 +118,7 @@ def _features(forward, fit):
         alone = np.zeros((1, len(e.gauges), len(shape)))
         alone[0, s] = shape
         slopes[run][k] = e.whiten(run, alone, np.zeros((1, len(e.runs[run].scalars))))[0]
-    return directions, slopes
+    return directions, e.divided(slopes)
 
 
 def shapes(trace: np.ndarray, interval: float) -> dict[str, np.ndarray]:

@@ -2,11 +2,12 @@
 gauges.
 
 Signals of a run are whitened once: divided by the gauge's noise and, where the noise before the arrival is
-correlated from sample to sample, by the AR(1) recursion (`whiten`).
+correlated from sample to sample, by the AR(1) recursion (`whiten`). A smooth discrepancy joins the runs, so
+that it is divided out of all of them at once (`divided`).
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -92,27 +93,79 @@ class Batch:
 
 
 @dataclass(frozen=True)
+class Slow:
+    """Baselines and drifts, which count as noise (`slow`).
+
+    Attributes:
+        blocks: for each run and gauge, orthonormal directions (T, r) of the whitened trace and the variances
+            (r,) of their weights.
+    """
+
+    blocks: tuple
+
+    def whiten(self, run: int, white: np.ndarray) -> np.ndarray:
+        """(L, S, T) traces of a run, noise white, with baselines and drifts divided out as well."""
+        result = white.copy()
+        for s, (directions, variances) in enumerate(self.blocks[run]):
+            result[:, s] -= ((white[:, s] @ directions) * _taken_up(variances)) @ directions.T
+        return result
+
+
+def _taken_up(variances):
+    """By how much the inverse root of 1 + variances is below 1."""
+    return 1.0 - 1.0 / np.sqrt(1.0 + variances)
+
+
+@dataclass(frozen=True)
+class Part:
+    """What a smooth discrepancy may do to the readings of one gauge in all R runs together.
+
+    Attributes:
+        directions: (T, r) orthonormal columns of the whitened trace of each run.
+        mixing: (Σ r, n) orthonormal, over the directions of all runs: what varies independently.
+        variances: (n,) of these, for a discrepancy of one peak.
+    """
+
+    directions: tuple[np.ndarray, ...]
+    mixing: np.ndarray
+    variances: np.ndarray
+
+    def along(self, traces: Sequence[np.ndarray]) -> np.ndarray:
+        """(L, n) of (L, T) whitened traces of each run."""
+        seen = [trace @ own for trace, own in zip(traces, self.directions, strict=True)]
+        return np.concatenate(seen, axis=1) @ self.mixing
+
+    def traces(self, along: np.ndarray) -> list[np.ndarray]:
+        """(L, T) of each run: those that lie so far (L, n) along."""
+        own = along @ self.mixing.T
+        ends = np.cumsum([d.shape[1] for d in self.directions])[:-1]
+        return [part @ d.T for part, d in zip(np.split(own, ends, axis=1), self.directions, strict=True)]
+
+
+@dataclass(frozen=True)
 class Smooth:
-    """What varies slowly and counts as noise: a discrepancy between model and data (`smooth`), baselines and
-    drifts (`slow`).
+    """A discrepancy between model and data that varies slowly with time and speed, and counts as noise
+    (`fit.smooth`). What it has in common in several runs makes their data depend on one another.
 
     Attributes:
         size: its standard deviation as a share of each trace's peak.
-        variance: that of the weights of its directions, in squared peaks.
-        blocks: for each run and gauge, orthonormal directions (T, r) of the whitened trace and their
-            variances (r,) for weights of one squared peak.
+        variance: the same in the units of single samples' noise, squared.
+        parts: of each gauge.
     """
 
     size: float
     variance: float
-    blocks: tuple
+    parts: tuple[Part, ...]
 
-    def whiten(self, run: int, white: np.ndarray) -> np.ndarray:
-        """(L, S, T) traces of a run, noise white, with the discrepancy divided out as well."""
-        result = white.copy()
-        for s, (directions, variances) in enumerate(self.blocks[run]):
-            less = 1.0 - 1.0 / np.sqrt(1.0 + self.variance * variances)
-            result[:, s] -= ((white[:, s] @ directions) * less) @ directions.T
+    def divided(self, values: Sequence[np.ndarray]) -> list[np.ndarray]:
+        """(L, M) data of every run, noise white, with the discrepancy divided out as well."""
+        result = [value.copy() for value in values]
+        for s, part in enumerate(self.parts):
+            own = [slice(s * len(d), (s + 1) * len(d)) for d in part.directions]
+            along = part.along([value[:, at] for value, at in zip(values, own, strict=True)])
+            taken = part.traces(along * _taken_up(self.variance * part.variances))
+            for value, at, less in zip(result, own, taken, strict=True):
+                value[:, at] -= less
         return result
 
 
@@ -165,7 +218,7 @@ class Experiment:
     smooth: Smooth | None = None
     model_floor_rel: float | None = None
     shared: tuple[Shared, ...] = ()
-    slow: Smooth | None = None
+    slow: Slow | None = None
     notes: tuple[str, ...] = ()
 
     @property
@@ -173,14 +226,23 @@ class Experiment:
         """Number of beads."""
         return self.batches[0].chain.beads
 
+    @property
+    def coupled(self) -> bool:
+        """Whether the data of all runs depend on one another."""
+        return self.smooth is not None and not self.integrated
+
+    def divided(self, values: Sequence[np.ndarray]) -> Sequence[np.ndarray]:
+        """(L, M) numbers of every run over their noise, with what couples the runs divided out; linear."""
+        return self.smooth.divided(values) if self.coupled else values
+
     def whitened(self, run: int) -> np.ndarray:
-        """(M,) data of a run over their noise: gauge after gauge, then the scalars."""
+        """(M,) data of a run over their noise: gauge after gauge, then the scalars; not `divided`."""
         data = self.runs[run]
         values = np.array([s.value for s in data.scalars])
         return self.whiten(run, data.readings[None], values[None])[0]
 
     def whiten(self, run: int, readings: np.ndarray, scalars: np.ndarray) -> np.ndarray:
-        """(L, M) readings (L, S, T) and scalars (L, n) of a run over their noise; linear."""
+        """(L, M) readings (L, S, T) and scalars (L, n) of a run over their noise, not `divided`; linear."""
         return self.whitened_on(run, self.noise_whitened(run, readings), scalars)
 
     def whitened_on(self, run: int, white: np.ndarray, scalars: np.ndarray) -> np.ndarray:
@@ -194,8 +256,6 @@ class Experiment:
         if self.integrated:
             white = np.cumsum(white, axis=-1) / math.sqrt(white.shape[-1])
             white = white if data.present is None else white * data.present
-        elif self.smooth:
-            white = self.smooth.whiten(run, white)
         white = white.reshape(lanes, -1)
         if not data.scalars:
             return white

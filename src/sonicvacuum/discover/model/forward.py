@@ -114,7 +114,12 @@ class Forward:
 
     @cached_property
     def _whitened(self):
-        return [self.experiment.whitened(run) for run in range(len(self.experiment.runs))]
+        own = [self.experiment.whitened(run)[None] for run in range(len(self.experiment.runs))]
+        return [data[0] for data in self.experiment.divided(own)]
+
+    def local(self, run: int) -> np.ndarray:
+        """Places of the nuisances that move the data of a run, as their columns stand."""
+        return np.arange(self.layout.size) if self.experiment.coupled else self.layout.local(run)
 
     def counts(self, run: int) -> np.ndarray:
         """Places of the data of a run that are whole numbers: they jump, and have no slopes."""
@@ -160,7 +165,7 @@ class Forward:
                 (speeds, moduli, masses) are taken as they are; None: simulated.
 
         Returns:
-            For each run (L, c, M): prediction, p derivatives to u, those to nuisances as in `Layout.local`.
+            For each run (L, c, M): prediction, p derivatives to u, those to nuisances as in `local`.
         """
         u, nu = np.atleast_2d(u), np.atleast_2d(nu)
         if len(u) == 1 and steps is None and places is None and held is None:
@@ -174,8 +179,9 @@ class Forward:
         return self._taken(hypothesis, u, nu, places, precise, steps, held)
 
     def _taken(self, hypothesis, u, nu, places=None, precise=False, steps=None, held=None):
-        """The columns, taken afresh."""
+        """The columns, taken afresh; slopes of runs that are coupled are not those from nearby."""
         lanes, p = u.shape
+        held = None if self.experiment.coupled else held
         if steps is None:
             steps = np.broadcast_to([c.step for c in hypothesis.coordinates], u.shape)
         orders = (1.0, 2.0) if precise else (1.0,)
@@ -183,7 +189,7 @@ class Forward:
         where = () if held else self.slopes.simulated
         many_u, many_nu, sets = differences.displaced(hypothesis, u, nu, steps, orders, where, h)
         many_places = None if places is None else np.repeat(places, sets, axis=0)
-        found = self.sampled(hypothesis, many_u, many_nu, many_places, rate_of=sets)
+        found = self._sampled(hypothesis, many_u, many_nu, many_places, sets)
         each = (sets - 1) // len(orders)
         # What each lane departs by, to divide its change by.
         size = np.full((lanes, sets), h)
@@ -202,11 +208,27 @@ class Forward:
             columns = self.slopes.columns(hypothesis, run, places, value[:, :1], slopes, timing, kept)
             columns[:, 1:, self.counts(run)] = 0.0
             result.append(columns)
-        return result
+        return self._joined(result, p) if self.experiment.coupled else result
 
-    def sampled(self, hypothesis, u, nu, places=None, rate_of: int = 0, change=None):
-        """For each run whitened predictions (L, M) and, for every `rate_of`-th lane, slopes (·, n, M) to time
-        zero, clock and delays.
+    def _joined(self, columns, p):
+        """The columns of coupled runs: each run's data move with the nuisances of all."""
+        lanes, whole = len(columns[0]), 1 + p + self.layout.size
+        every = []
+        for run, own in enumerate(columns):
+            wide = np.zeros((lanes, whole, own.shape[2]))
+            wide[:, : 1 + p] = own[:, : 1 + p]
+            wide[:, 1 + p + self.layout.local(run)] = own[:, 1 + p :]
+            every.append(wide.reshape(lanes * whole, -1))
+        return [v.reshape(lanes, whole, -1) for v in self.experiment.divided(every)]
+
+    def sampled(self, hypothesis, u, nu, places=None, change=None):
+        """For each run whitened predictions (L, M)."""
+        values = [value for value, _ in self._sampled(hypothesis, u, nu, places, change=change)]
+        return self.experiment.divided(values)
+
+    def _sampled(self, hypothesis, u, nu, places=None, rate_of: int = 0, change=None):
+        """For each run whitened predictions (L, M), not divided, and, for every `rate_of`-th lane, slopes
+        (·, n, M) to time zero, clock and delays.
         """
         begun, change = perf_counter(), change or hypothesis.change(u, places)
         runs = len(self.experiment.runs)

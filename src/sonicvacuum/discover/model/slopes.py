@@ -81,7 +81,7 @@ class Slopes:
         return np.flatnonzero([place in own for place in layout.local(run)])
 
     def nuisance_column(self, acts_like: str, run: int, place):
-        """Where the nuisance stands that a ratio acts like, and its standard error.
+        """The nuisance that a ratio acts like, and its standard error.
 
         Args:
             acts_like: see `effects.Parameter`.
@@ -89,30 +89,35 @@ class Slopes:
             place: (n,) gauges where the effect sits; of no account but for gains.
 
         Returns:
-            (n,) places in the order of `Layout.local` and (n, 1) standard errors, relative; None where the
-            nuisance is known exactly.
+            (n,) places in the layout and (n, 1) standard errors, relative; None where the nuisance is known
+            exactly.
         """
         sigma = self.sigma
         if acts_like == "gain":
             errors = sigma[self.layout.gains]
-            return (3 + place, errors[place][:, None]) if np.all(errors > 0.0) else None
+            return (self.layout.gains[place], errors[place][:, None]) if np.all(errors > 0.0) else None
         common = self.layout.other("speed-common")
         known = {"modulus": [self.layout.modulus], "speed": [self.layout.speed(run), *common]}[acts_like]
         own = next((k for k in known if sigma[k]), None)
         if own is None:
             return None
-        at = int(np.flatnonzero(self.layout.local(run) == own)[0])
-        return np.full(len(place), at), np.full((len(place), 1), sigma[own])
+        return np.full(len(place), own), np.full((len(place), 1), sigma[own])
 
     def _like_nuisances(self, hypothesis, run, places, slopes, nuisances):
         """Take the slopes of parameters that act exactly as a nuisance does from its column.
 
         Differences of simulations would hide that the two are one direction.
         """
-        lanes = np.arange(len(slopes))
+        lanes, local = np.arange(len(slopes)), self.layout.local(run)
         for k, (component, own) in enumerate(zip(hypothesis.components, hypothesis.columns, strict=True)):
             place = np.full(len(slopes), component.place or 0) if places is None else places[:, k]
             for column, c in enumerate(component.free, start=own.start):
                 like = c.parameter.acts_like
                 if like and (found := self.nuisance_column(like, run, place)):
-                    slopes[:, column] = nuisances[lanes, found[0]] / found[1]
+                    slopes[:, column] = nuisances[lanes, among(local, found[0])] / found[1]
+
+
+def among(places: np.ndarray, wanted: np.ndarray) -> np.ndarray:
+    """Where some numbers stand among others."""
+    order = np.argsort(places)
+    return order[np.searchsorted(places, wanted, sorter=order)]

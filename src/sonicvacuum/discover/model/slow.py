@@ -14,7 +14,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from sonicvacuum.discover.model.experiment import Experiment, Smooth
+from sonicvacuum.discover.model.experiment import Experiment, Slow
 
 # Terms of the series: 90 % of the variance with two, 95 % with four.
 TERMS = 4
@@ -24,14 +24,14 @@ TERMS = 4
 Lines = Mapping[tuple[str, str], tuple[float, float]]
 
 
-def slow(experiment: Experiment, lines: Lines | None = None) -> Smooth | None:
+def slow(experiment: Experiment, lines: Lines | None = None) -> Slow | None:
     """Baselines, drifts and rests of pick-up of all runs and gauges; None where there are none."""
     lines = lines or {}
     if not lines and not any(g.baseline_sigma or g.drift_sigma for g in experiment.gauges):
         return None
     runs = range(len(experiment.runs))
     gauges = range(len(experiment.gauges))
-    return Smooth(0.0, 1.0, tuple(tuple(_block(experiment, run, s, lines) for s in gauges) for run in runs))
+    return Slow(tuple(tuple(_block(experiment, run, s, lines) for s in gauges) for run in runs))
 
 
 def columns(time: np.ndarray, baseline: float, drift: float) -> np.ndarray:

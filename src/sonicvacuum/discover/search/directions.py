@@ -13,6 +13,7 @@ import numpy as np
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Hypothesis, is_law, with_common_laws
 from sonicvacuum.discover.model.parameters import coordinate, shape_grid
+from sonicvacuum.discover.model.slopes import among
 from sonicvacuum.effects import Effect, Setup
 
 # The first trial strength (typical deviations), and the change of all data, in standard errors, that is
@@ -126,14 +127,17 @@ def like_nuisance(forward: Forward, family: Family, base: list[np.ndarray], free
 
     Differences of simulations would leave a trace of such a direction where nothing of it is left.
     """
-    if family.acts_like is None:
-        return None
+    if family.acts_like is None or (forward.experiment.coupled and family.acts_like == "speed"):
+        return None  # where runs are coupled, speeds of all of them move the data of each
     unit = family.directions[0].unit
     places = np.array([d.place or 0 for d in family.directions])
     found = [forward.slopes.nuisance_column(family.acts_like, run, places) for run in range(len(base))]
     if any(f is None for f in found):
         return None
-    return [unit / sigma * c[0, 1 + free + at] for c, (at, sigma) in zip(base, found, strict=True)]
+    return [
+        unit / sigma * columns[0, 1 + free + among(forward.local(run), places)]
+        for run, (columns, (places, sigma)) in enumerate(zip(base, found, strict=True))
+    ]
 
 
 def simulate(forward: Forward, hypothesis: Hypothesis, u, nu, family: Family, rough: bool = False):
@@ -200,5 +204,5 @@ def finite(forward: Forward, hypothesis: Hypothesis, u, nu, family: Family, stre
         setup = hypothesis.change(many_u)(setup, index)
         return family.change(setup, which[index], strengths[index])
 
-    found = [value for value, _ in forward.sampled(hypothesis, many_u, many_nu, None, change=change)]
+    found = forward.sampled(hypothesis, many_u, many_nu, change=change)
     return [(v[:-1] - v[-1]) for v in found]

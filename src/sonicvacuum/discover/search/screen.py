@@ -141,7 +141,7 @@ def from_columns(forward, fit, directions, base, slopes) -> Screen:
     products = np.empty((runs, count, count))
     normal = from_slopes(forward, free, fit.u[None], fit.nu[None], base)
     for run, (columns, slope) in enumerate(zip(base, slopes, strict=True)):
-        where = np.concatenate([np.arange(free), free + forward.layout.local(run)])
+        where = np.concatenate([np.arange(free), free + forward.local(run)])
         score[run] = slope @ (forward.data(run) - columns[0, 0])
         cross[run, where] = columns[0, 1:] @ slope.T
         products[run] = slope @ slope.T

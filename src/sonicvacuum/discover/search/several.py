@@ -23,8 +23,9 @@ from sonicvacuum.discover.search import pairs, restart
 from sonicvacuum.discover.search.unknown import ShapeTest
 from sonicvacuum.effects import Setup
 
-# Starts that are fitted jointly at each turn, by what they should gain; rounds of exchanges.
-TRIED, EXCHANGES = 2, 1
+# Starts that are fitted jointly at each turn, by what they should gain; those of the first effect beside a
+# smooth misfit, where no single fit tells what it is; rounds of exchanges.
+TRIED, FIRST, EXCHANGES = 2, 5, 1
 # What slopes promise may fall short of what a fit gains by this share.
 PROMISE = 0.6
 # One more effect is hoped to gain so many times the log evidence of the one before it.
@@ -68,7 +69,7 @@ def less(forward: Forward, null: Fit, one: Fit, k: int, setup: Setup, iterations
 
 
 class Turns:
-    """One search; `forward` has no discrepancy, `known` are its `smooth.blocks`, `needed` is the Δχ² that an
+    """One search; `forward` has no discrepancy, `known` are its `smooth.Shapes`, `needed` is the Δχ² that an
     effect has to gain, `rival` a log evidence that a set has to come to, or is not asked for.
     """
 
@@ -99,7 +100,11 @@ class Turns:
                 fewer, exchanges = True, 0
                 more = self._one_for_two(fit)
             if more is None:
-                break
+                before = self.size
+                fit = self._counted(plain_null, fit)
+                if before.same(self.size):
+                    break
+                continue  # what was taken away leaves another discrepancy, beside which more may be seen
             fit = more
         return self._grown(self._pruned(self._counted(plain_null, fit)))
 
@@ -117,10 +122,12 @@ class Turns:
         """The fit with the discrepancy at it counted as noise; what was tried under another is forgotten."""
         size = smooth.infer(self.plain, fit, self.known) if self.infer else smooth.Size(0.0, 0.0)
         size = size if size.found else smooth.Size(0.0, size.drop)
-        if self.null is None or (size.size, size.excess) != (self.size.size, self.size.excess):
+        if self.null is None or not size.same(self.size):
             self.forward = self.plain
             if size.size:
-                counted = smooth.with_size(self.plain.experiment, size.size, self.known, size.excess)
+                counted = smooth.with_size(
+                    self.plain.experiment, size.size, self.known, size.excess, size.kernel
+                )
                 self.forward = Forward(counted, self.plain.threads)
             self.null = moved(self.forward, plain_null) if size.size else plain_null
             self.tried = {}
@@ -169,11 +176,17 @@ class Turns:
         gain = before.objective - after.objective
         ratio = self._evidence(after) - self._evidence(before)
         return (
-            gain > self.needed
+            gain > self._asked(before)
             and ratio > policy.LEAST_LOG10_BAYES * np.log(10.0)
             and enough.suffice(self.forward, after)
             and heldout.better(before, after)
         )
+
+    def _asked(self, before: Fit) -> float:
+        """Δχ² that one more effect has to gain."""
+        if not self.size.size:
+            return self.needed
+        return policy.BESIDE_SMOOTH[bool(before.hypothesis.components)] * self.needed
 
     def _evidence(self, fit):
         return pairs.combination(self.null, fit, self.setup).log_bayes if fit.hypothesis.components else 0.0
@@ -184,14 +197,15 @@ class Turns:
             return None
         scores = pairs.screened(self.forward, fit, self.setup)
         promised = pairs.beside(self.forward, self.null, fit, self.setup, scores)
-        enough = self.null.objective - fit.objective + PROMISE * self.needed
+        enough = self.null.objective - fit.objective + PROMISE * self._asked(fit)
         best = self._likeliest(promised, enough)
         return best if best is not None and self._earned(fit, best) else None
 
     def _likeliest(self, starts, enough) -> Fit | None:
         """The likeliest of the most promising starts, fitted; what was tried before is not tried again."""
         chosen = [s for s in starts if s.gain > enough and s.effects not in self.tried]
-        chosen = sorted(chosen, key=lambda s: -s.gain)[:TRIED]
+        first = self.size.size and all(len(s.effects) == 1 for s in chosen)
+        chosen = sorted(chosen, key=lambda s: -s.gain)[: FIRST if first else TRIED]
         found = abreast.each(self.forward, pairs.fitted, chosen)
         found = [one for one in found if np.isfinite(one.objective)]
         for one in found:
@@ -203,9 +217,12 @@ class Turns:
         return best
 
     def _exchanged(self, fit):
-        """The fit with one effect exchanged for a likelier one, None where there is none."""
+        """The fit with one effect exchanged for a likelier one, None where there is none.
+
+        One alone has had its rivals, but beside a smooth misfit under another one than there is with it.
+        """
         own, count = self._evidence(fit), len(fit.hypothesis.components)
-        for k in range(count if count > 1 else 0):
+        for k in range(count if count > 1 or self.size.size else 0):
             less = self._less(fit, k)
             starts = pairs.beside(self.forward, self.null, less, self.setup)
             enough = PROMISE * (self.null.objective - fit.objective)

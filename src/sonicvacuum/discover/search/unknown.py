@@ -256,7 +256,7 @@ def _by_gauge(group, name, e, shapes):
     for run, shape in enumerate(shapes):
         alone = np.einsum("st,gs->gst", shape, np.eye(count))
         columns.append(e.whiten(run, alone, np.zeros((count, len(e.runs[run].scalars)))))
-    return directions, columns
+    return directions, e.divided(columns)
 
 
 def scalar_directions(forward: Forward):
@@ -286,5 +286,5 @@ def raw(forward: Forward, fit: Fit) -> list[np.ndarray]:
     forward.simulations += white.simulations
     return [
         value[0, : len(e.gauges) * len(run.time)].reshape(len(e.gauges), len(run.time)) * e.sigma[:, None]
-        for (value, _), run in zip(found, e.runs, strict=True)
+        for value, run in zip(found, e.runs, strict=True)
     ]
