@@ -42,12 +42,14 @@ def test_a_set_has_a_probability_of_its_own():
 
 
 def test_a_set_may_stand_for_something_unknown_where_one_effect_hardly_does():
-    """Of 48 sets of two fresh samples 32 were right and 5 stood for something outside the catalogue."""
+    """Of 104 sets of five fresh samples 79 were right and 7 stood for something outside the catalogue, of the
+    last 52 one.
+    """
     one = explanations.log_weights([single("tsuji", 80.0)], [])
     two = explanations.log_weights([single("tsuji", 80.0)], [several(("tsuji", "gravity"), 200.0)])
     alone, together = (explanations.probabilities(logs, 0.5)["unknown"] for logs in (one, two))
     assert alone < 0.01
-    assert 0.05 < together < 0.25
+    assert 0.02 < together < 0.09
 
 
 def test_something_left_goes_to_the_set_that_stands_beside_it():
