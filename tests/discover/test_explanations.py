@@ -42,8 +42,8 @@ def test_a_set_has_a_probability_of_its_own():
 
 
 def test_a_set_may_stand_for_something_unknown_where_one_effect_hardly_does():
-    """Of 104 sets of five fresh samples 79 were right and 7 stood for something outside the catalogue, of the
-    last 52 one.
+    """Of 108 sets of five fresh samples 79 were right and 7 stood for something outside the catalogue, of the
+    last 56 one.
     """
     one = explanations.log_weights([single("tsuji", 80.0)], [])
     two = explanations.log_weights([single("tsuji", 80.0)], [several(("tsuji", "gravity"), 200.0)])
