@@ -7,7 +7,7 @@ import pytest
 from made_records import made
 
 from sonicvacuum.discover import session
-from sonicvacuum.discover.fit import smooth
+from sonicvacuum.discover.fit import discrepancy, smooth
 from sonicvacuum.discover.fit.normal import linearise
 from sonicvacuum.discover.fit.refit import Fit, polish
 from sonicvacuum.discover.fit.wide import nominal
@@ -36,15 +36,15 @@ def test_whitening_is_the_inverse_root_of_the_covariance():
     np.testing.assert_allclose(root @ covariance @ root.T, np.eye(51), atol=1e-12)  # rounding only
 
 
-@pytest.mark.parametrize("kernel", [smooth.KERNELS[0], smooth.STATED, smooth.KERNELS[-1]])
+@pytest.mark.parametrize("kernel", [discrepancy.KERNELS[0], discrepancy.STATED, discrepancy.KERNELS[-1]])
 def test_the_covariance_is_that_of_bumps_alike_in_like_runs(empty, kernel):
     """Trace by trace from the bumps themselves: the peak's share squared, and as much less between runs."""
     e = experiment(empty)
-    (part, *_), (speed, other) = smooth.Shapes(e).parts(kernel), e.batches[0].chain.speed
+    (part, *_), (speed, other) = discrepancy.Shapes(e).parts(kernel), e.batches[0].chain.speed
     ends = np.cumsum([d.shape[1] for d in part.directions])[:-1]
     rows = np.split(part.mixing, ends)
     own, others = (d @ r for d, r in zip(part.directions, rows, strict=True))
-    traces = [smooth._Trace(e, run, 0) for run in range(2)]
+    traces = [discrepancy._Trace(e, run, 0) for run in range(2)]
     bumps = [t.height * t._bumps(*kernel.onset, kernel.length) / e.sigma[0] for t in traces]
     common = min(b.shape[1] for b in bumps)
     alike = kernel.shared * np.exp(-0.5 * (np.log(speed / other) / 0.7) ** 2)
@@ -58,7 +58,7 @@ def test_the_covariance_is_that_of_bumps_alike_in_like_runs(empty, kernel):
 def test_fits_beside_a_discrepancy_are_those_of_the_dense_gaussian(empty):
     """Gradient and Hessian of speeds, gains and all else, whose data hang together."""
     plain = experiment(empty)
-    counted = smooth.with_size(plain, 0.02, None, 1.0, smooth.KERNELS[-1])
+    counted = smooth.with_size(plain, 0.02, None, 1.0, discrepancy.KERNELS[-1])
     nothing, u, nu = Hypothesis(), np.zeros((1, 0)), np.full((1, Forward(plain).layout.size), 0.1)
     forward = Forward(plain)
     columns = forward.columns(nothing, u, nu)
@@ -115,14 +115,14 @@ def test_no_discrepancy_leaves_everything_as_it_is(empty):
 
 def test_nothing_smooth_is_found_in_noise(empty):
     forward = Forward(experiment(empty))
-    assert not smooth.infer(forward, nominal(forward), smooth.Shapes(forward.experiment)).found
+    assert not smooth.infer(forward, nominal(forward), discrepancy.Shapes(forward.experiment)).found
 
 
 @pytest.mark.parametrize("size", [0.02, 0.05])
 def test_a_smooth_misfit_is_found_with_its_size(empty, size):
     record = with_systematics(empty, size)
     forward = Forward(experiment(record))
-    seen = smooth.infer(forward, nominal(forward), smooth.Shapes(forward.experiment))
+    seen = smooth.infer(forward, nominal(forward), discrepancy.Shapes(forward.experiment))
     assert seen.found
     assert size / 2.0 < seen.size < size * 2.0  # some sixty directions, part of which nuisances take up
 
@@ -131,12 +131,12 @@ def test_a_misfit_far_above_the_noise_is_none_beside_what_is_smooth(empty):
     """Unless speeds are hardly known, which take up what a discrepancy does."""
     record = with_systematics(empty, 0.03)
     forward = Forward(experiment(record))
-    null, known = nominal(forward), smooth.Shapes(forward.experiment)
+    null, known = nominal(forward), discrepancy.Shapes(forward.experiment)
     assert gross.gross(forward, null)
     assert not gross.gross(forward, null, known)
     # Two thirds of the samples are five times as noisy: χ² per datum of 18 beside whatever is smooth.
     rough = Forward(experiment(roughened(record, 5.0)))
-    assert gross.gross(rough, nominal(rough), smooth.Shapes(rough.experiment))
+    assert gross.gross(rough, nominal(rough), discrepancy.Shapes(rough.experiment))
     runs = tuple(replace(run, speed_rel_sigma=0.3) for run in forward.experiment.runs)
     unsure = replace(forward.experiment, runs=runs)
     assert gross.gross(Forward(unsure), null, known)
@@ -145,7 +145,7 @@ def test_a_misfit_far_above_the_noise_is_none_beside_what_is_smooth(empty):
 def test_a_rough_misfit_is_no_larger_smooth_one(empty):
     forward = Forward(experiment(roughened(with_systematics(empty, 0.02), 5.0)))
     null = nominal(forward)
-    seen = smooth.infer(forward, null, smooth.Shapes(forward.experiment))
+    seen = smooth.infer(forward, null, discrepancy.Shapes(forward.experiment))
     assert 0.01 < seen.size < 0.04  # within twice what is there
     assert 3.0 < seen.excess < 6.0  # noise of √(1 + 5²) in two thirds of the samples, tried in steps of 1.3
     counted = smooth.with_size(forward.experiment, seen.size, None, seen.excess, seen.kernel)
@@ -178,7 +178,7 @@ def with_systematics(record: Record, size: float, seed=5) -> Record:
     for run, one in record.signals.items():
         readings = {}
         for gauge, trace in one.readings.items():
-            wide = smooth.width(np.abs(trace))
+            wide = discrepancy.width(np.abs(trace))
             kernel = np.exp(-np.square(np.arange(-4 * wide, 4 * wide + 1) / (0.6 * wide)))
             kernel /= np.linalg.norm(kernel)
             drawn = np.convolve(rng.normal(size=len(trace) + 8 * wide), kernel, mode="valid")[: len(trace)]
@@ -208,7 +208,7 @@ def roughened(record: Record, sigmas: float) -> Record:
 def test_a_pulse_that_is_reflected_higher_is_not_taken_for_the_first():
     time = np.arange(300.0)
     arriving, reflected = (np.exp(-4.0 * np.log(2.0) * np.square((time - t) / 20.0)) for t in (80.0, 190.0))
-    peak, wide = smooth.first_pulse(0.7 * arriving + reflected)
+    peak, wide = discrepancy.first_pulse(0.7 * arriving + reflected)
     assert peak == 80
     # To a sample at either end.
     assert wide == pytest.approx(20, abs=1)
@@ -216,7 +216,7 @@ def test_a_pulse_that_is_reflected_higher_is_not_taken_for_the_first():
 
 def test_the_width_of_a_pulse_is_that_at_half_height():
     time = np.arange(200.0)
-    assert smooth.width(np.exp(-4.0 * np.log(2.0) * np.square((time - 90.0) / 20.0))) == pytest.approx(
+    assert discrepancy.width(np.exp(-4.0 * np.log(2.0) * np.square((time - 90.0) / 20.0))) == pytest.approx(
         20, abs=1
     )
 

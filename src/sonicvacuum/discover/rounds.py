@@ -7,7 +7,7 @@ import numpy as np
 
 from sonicvacuum import stages
 from sonicvacuum.discover import policy
-from sonicvacuum.discover.fit import bounds, enough, evidence, places, smooth, wide
+from sonicvacuum.discover.fit import bounds, discrepancy, enough, evidence, places, smooth, wide
 from sonicvacuum.discover.fit.evidence import Candidate, Combination
 from sonicvacuum.discover.fit.refit import Fit, polish
 from sonicvacuum.discover.judge import explanations
@@ -76,7 +76,7 @@ class Investigation:
 
 def investigate(experiment: Experiment, threads: int = 1, null: Fit | None = None) -> Investigation:
     """Find what is missing from the nominal model of a data set; `null` is its fit, where at hand."""
-    known = smooth.Shapes(experiment)
+    known = discrepancy.Shapes(experiment)
     if experiment.model_floor_rel:
         experiment = smooth.with_size(experiment, experiment.model_floor_rel, known)
     if experiment.model_floor_rel is not None:

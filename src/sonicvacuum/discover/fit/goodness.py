@@ -14,8 +14,8 @@ import numpy as np
 
 from sonicvacuum.discover import policy
 from sonicvacuum.discover.fit import tails
+from sonicvacuum.discover.fit.discrepancy import width
 from sonicvacuum.discover.fit.refit import Fit
-from sonicvacuum.discover.fit.smooth import width
 from sonicvacuum.discover.model.forward import Forward
 
 LAGS = 20

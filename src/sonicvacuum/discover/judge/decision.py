@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from sonicvacuum.discover import policy
-from sonicvacuum.discover.fit import enough, evidence, heldout, smooth
+from sonicvacuum.discover.fit import discrepancy, enough, evidence, heldout, smooth
 from sonicvacuum.discover.fit.evidence import Candidate, Combination
 from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.judge import explanations, gross
@@ -59,7 +59,7 @@ class Case:
     null: Fit
     scores: screen.Screen
     found: list[Candidate]
-    known: smooth.Shapes | None
+    known: discrepancy.Shapes | None
     setup: Setup
 
     def nothing(self, few: Sequence[str] = ()) -> Decision:

@@ -19,7 +19,7 @@ from functools import partial
 import numpy as np
 
 from sonicvacuum.discover import policy
-from sonicvacuum.discover.fit import enough, evidence, places, smooth, wide
+from sonicvacuum.discover.fit import discrepancy, enough, evidence, places, smooth, wide
 from sonicvacuum.discover.fit.evidence import Combination
 from sonicvacuum.discover.fit.normal import linearise
 from sonicvacuum.discover.fit.refit import Fit, fit
@@ -37,7 +37,7 @@ LEADING, TIMES, STAYS = 6, 3, 0.98
 _PROFILES = {effect.id for effect in profiles.effects()}
 
 
-def gross(forward: Forward, fit: Fit, known: smooth.Shapes | None = None) -> bool:
+def gross(forward: Forward, fit: Fit, known: discrepancy.Shapes | None = None) -> bool:
     """Whether a fit leaves so much that the noise no longer counts, nor does it with something smooth.
 
     `known` are the shapes of a smooth discrepancy, where one may be inferred. Where speeds or walls are

@@ -64,7 +64,7 @@ _WORDS = {
 def left(forward: Forward, fit: Fit, known, scores: screen.Screen | None = None, behind: float = 0.0) -> Left:
     """All three.
 
-    `known` are the `smooth.Shapes`, None where no discrepancy is to be inferred; `scores` is the catalogue's
+    `known` are the `discrepancy.Shapes`, None where none is to be inferred; `scores` is the catalogue's
     screen at the fit, where at hand.
     """
     size = smooth.Size(0.0, 0.0) if known is None else smooth.infer(forward, fit, known)

@@ -69,8 +69,8 @@ def less(forward: Forward, null: Fit, one: Fit, k: int, setup: Setup, iterations
 
 
 class Turns:
-    """One search; `forward` has no discrepancy, `known` are its `smooth.Shapes`, `needed` is the Δχ² that an
-    effect has to gain, `rival` a log evidence that a set has to come to, or is not asked for.
+    """One search; `forward` has no discrepancy, `known` are its `discrepancy.Shapes`, `needed` is the Δχ²
+    that an effect has to gain, `rival` a log evidence that a set has to come to, or is not asked for.
     """
 
     def __init__(
