@@ -195,8 +195,7 @@ class Search:
             looked = [judge.from_afar(j) if FAULTS[j.slip.fault].curved else j for j in looked]
         looked.sort(key=lambda j: -j.log_odds)
         worth = [j for j in looked if j.gain > policy.LEAST_GAIN][: policy.FOLLOWED]
-        # A pulse that comes a bead earlier, or with another run's speed, overlaps none of what was measured:
-        # slopes know nothing of it.
+        # Slopes know nothing of a pulse that comes a bead earlier, or with another run's speed.
         apart = [j for j in looked if not (j.slip.continuous or j in worth or out_of_reach(j, model))]
         if far:
             pairs = both_off(worth)
