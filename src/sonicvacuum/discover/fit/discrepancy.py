@@ -114,7 +114,7 @@ class _Trace:
     @property
     def shortest(self) -> float:
         """Correlation time in widths below which too many bumps would be needed."""
-        first = max(0.0, self.peak - 1.5 * self.wide)
+        first = max(0.0, self.peak + policy.SMOOTH_ONSETS[0][0] * self.wide)
         return (self.samples - first) / (_APART * policy.SMOOTH_KNOTS) / self.wide
 
     def split(self, onset: tuple[float, float], length: float) -> tuple[np.ndarray, np.ndarray]:

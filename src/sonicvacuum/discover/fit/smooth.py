@@ -134,23 +134,23 @@ class _Model:
         self.columns = forward.columns(fit.hypothesis, fit.u[None], fit.nu[None])
         self.normal = from_slopes(forward, fit.normal.free, fit.u[None], fit.nu[None], self.columns)
         self.free = np.concatenate([~fit.at_bound(), np.ones(len(fit.nu), dtype=bool)])
+        self._whole = [self._of_run(run, columns[0]) for run, columns in enumerate(self.columns)]
+
+    def _of_run(self, run, columns):
+        """(1 + unknowns, M) residual of a run and its columns of all unknowns."""
+        free = self.normal.free
+        whole = np.zeros((1 + self.normal.gradient.shape[2], columns.shape[1]))
+        whole[0] = self.forward.data(run) - columns[0]
+        whole[1 : 1 + free] = columns[1 : 1 + free]
+        whole[1 + free + self.forward.local(run)] = columns[1 + free :]
+        return whole
 
     def along(self, parts: Iterable[Part]) -> np.ndarray:
         """(n, 1 + unknowns) residual and columns of the unknowns along what a discrepancy may be."""
-        e, free = self.forward.experiment, self.normal.free
-        unknowns = self.normal.gradient.shape[2]
-        wide = []
-        for run, columns in enumerate(self.columns):
-            own = np.zeros((1 + unknowns, columns.shape[2]))
-            own[: 1 + free] = columns[0, : 1 + free]
-            own[1 + free + self.forward.local(run)] = columns[0, 1 + free :]
-            own[0] = self.forward.data(run) - own[0]
-            wide.append(own)
-        rows = []
+        times, rows = [len(run.time) for run in self.forward.experiment.runs], []
         for s, part in enumerate(parts):
-            times = (len(run.time) for run in e.runs)
-            own = [all_[:, s * n : (s + 1) * n] for all_, n in zip(wide, times, strict=True)]
-            rows.append(part.along(own).T)
+            traces = [w[:, s * n : (s + 1) * n] for w, n in zip(self._whole, times, strict=True)]
+            rows.append(part.along(traces).T)
         return np.concatenate(rows)[:, np.concatenate([[True], self.free])]
 
 
