@@ -2,6 +2,9 @@
 and true effects raise none.
 """
 
+from dataclasses import replace
+
+import msgspec
 import numpy as np
 import pytest
 from made_records import SIGMA, made
@@ -11,7 +14,8 @@ from sonicvacuum.discover.faults import traces
 from sonicvacuum.discover.faults.examine import examine
 from sonicvacuum.discover.faults.expected import predicted
 from sonicvacuum.discover.model.masks import cut, spikes
-from sonicvacuum.discover.model.problem import together
+from sonicvacuum.discover.model.problem import noise, together
+from sonicvacuum.report.bench import slip
 
 TIME = np.arange(700.0)
 RNG = np.random.default_rng(np.random.SeedSequence(11))
@@ -53,6 +57,23 @@ def test_a_slip_in_a_trace_is_found_with_its_place(empty, model, fault):
     assert (one.fault, one.run, one.sensor) == (fault, run, gauge)
     # The quiet stretch has 100 to 300 samples: noise to a fifteenth, a slope to a fifth of what was added.
     assert value is None or one.value == pytest.approx(value, rel=0.2)
+
+
+@pytest.mark.parametrize("stated", [True, False])
+def test_a_zero_that_is_off_in_all_runs_is_taken_off(empty, model, stated):
+    record = altered(empty, "g7", lambda y: y + 0.05)
+    if not stated:
+        sensors = [msgspec.structs.replace(s, sigma_N=None) for s in record.block.sensors]
+        record = replace(record, block=msgspec.structs.replace(record.block, sensors=sensors))
+    bench, (one,) = examine(record, model)
+    assert (one.fault, one.run, one.sensor) == ("baseline", None, "g7")
+    assert one.value == pytest.approx(0.05, rel=0.2)  # a hundred quiet samples and more know it to a tenth
+    assert slip(one).startswith("g7 does not rest at 0 but at 0.0")
+    for run, signals in bench.record.signals.items():
+        left = signals.readings["g7"] - empty.signals[run].readings["g7"]
+        assert np.abs(left).max() < 0.01  # the mean of the quiet stretch's own noise
+    sigma, _ = noise([bench.record])
+    assert sigma[1] == pytest.approx(SIGMA, rel=0.1)  # and not the root of noise and zero
 
 
 @pytest.mark.parametrize("ratio", [0.3, 0.08])

@@ -45,6 +45,8 @@ def with_noise_of(findings: list[Finding], record: Record, gauges: Sequence[str]
     return kept + [f for f in examine(record)[1] if f.fault == "noise-misstated" and f.sensor in gauges]
 
 
+# Slips of which a level is part.
+UNLEVEL = ("drift", "pickup", "gauge-dead")
 # Share of a level that differs from run to run by which it may change within a run.
 MOVING = 0.3
 
@@ -56,6 +58,7 @@ class _Look:
         self.record, self.predicted = record, predicted
         self.readings = {k: dict(s.readings) for k, s in record.signals.items()}
         self.lost, self.seen, self.rests = {}, defaultdict(dict), defaultdict(dict)
+        self.levels = defaultdict(dict)
         self.silent, self.blank, self.lines = set(), [], {}
         # Gauge → what is known of its level and of its drift only so well, in its unit.
         self.unsure = defaultdict(dict)
@@ -166,6 +169,7 @@ class _Look:
         if ratio is not None:
             self.seen["noise-misstated", gauge.id][run.id] = ratio
         self.rests[gauge.id][run.id] = traces.rest(stretch, gauge.sigma)
+        self.levels[gauge.id][run.id] = len(stretch), traces.level(stretch, gauge.sigma)
         self.readings[run.id][gauge.id] = trace
 
     def _unsure(self, gauge, what, error):
@@ -173,6 +177,7 @@ class _Look:
 
     def bench(self) -> Bench:
         """The record without what is wrong in its traces."""
+        self._levels()
         self._baselines()
         if self.blank and len(self.blank) == len(self.predicted):
             # Nothing was measured at all: there is nothing to put right.
@@ -192,8 +197,36 @@ class _Look:
             return Bench(self.record, lost)
         return Bench(changes.looser(_without_runs(self.record, signals, gone), self.unsure), lost, lines)
 
+    def _levels(self):
+        """One level in all runs: readings count from rest, so that the recorder's zero is off."""
+        for gauge in self.record.gauges:
+            id = gauge.id
+            told = self._one_level(gauge)
+            if not told or any((slip, id) in self.seen for slip in UNLEVEL):
+                continue
+            self.rests.pop(id)
+            for run, (mean, error) in told.items():
+                self.seen["baseline", id][run] = mean
+                self.readings[run][id] = self.readings[run][id] - mean
+                self._unsure(id, "baseline", error)
+            # What differs from run to run need not stand still within one.
+            self._unsure(id, "drift", float(np.std([mean for mean, _ in told.values()])))
+
+    def _one_level(self, gauge) -> dict[str, tuple[float, float]]:
+        """Run → level and its error, of a gauge that surely rests off 0, and alike in all runs."""
+        found = self.levels[gauge.id]
+        told = {run: level for run, (_, level) in found.items() if level is not None}
+        if len(told) < len(found) or sum(count for count, _ in found.values()) < traces.LEVEL_FEWEST:
+            return {}
+        means, errors = np.array(list(told.values())).T
+        together = float((errors**-2.0).sum()) ** -0.5
+        common = float(np.average(means, weights=errors**-2.0))
+        alike = np.all(np.abs(means - common) < np.maximum(traces.SURE * errors, MOVING * abs(common)))
+        sure = abs(common) > traces.SURE * max(together, gauge.baseline_sigma)
+        return told if alike and sure else {}
+
     def _baselines(self):
-        """Levels that differ from run to run; one level in all runs is no slip of a run."""
+        """Levels that differ from run to run."""
         for id, found in self.rests.items():
             sure = {k: (m, e) for k, (m, e) in found.items() if np.isfinite(e)}
             if len(sure) < 2:

@@ -52,7 +52,7 @@ FAULTS: dict[str, Fault] = {
         ),
         Fault(
             "baseline",
-            "{sensor} in run {run} does not rest at 0 but at {value}",
+            "{sensor} does not rest at 0 but at {value}",
             "check the channel's zero before each run",
         ),
         Fault(

@@ -12,6 +12,8 @@ from sonicvacuum.discover.model.problem import QUIET_PEAK, QUIET_SHARE, QUIET_SI
 
 # Samples of a quiet stretch that can be judged.
 FEWEST = 40
+# Samples that suffice for a level, of all runs together and of each.
+LEVEL_FEWEST, _LEVEL_EACH = 40, 12
 # Sure deviations of a quiet stretch, in standard errors.
 SURE = 6.0
 # Noise is misstated where it differs by this factor, and surely.
@@ -112,8 +114,23 @@ def rest(stretch: np.ndarray, sigma: float) -> tuple[float, float]:
     """Mean of a quiet stretch and its standard error."""
     if len(stretch) < FEWEST:
         return 0.0, math.inf
+    return float(stretch.mean()), _error_of_mean(stretch, sigma)
+
+
+def _error_of_mean(stretch, sigma):
     error = max(sigma, float(stretch.std())) / math.sqrt(len(stretch))
-    return float(stretch.mean()), error * coloured.wider(stretch - line(stretch))
+    return error * coloured.wider(stretch - line(stretch))
+
+
+def level(stretch: np.ndarray, sigma: float) -> tuple[float, float] | None:
+    """Mean of a quiet stretch and its standard error; None where it is too short, without noise, or does not
+    stand still: the foot of a slow pulse shows in the second half, a level in both.
+    """
+    if len(stretch) < _LEVEL_EACH or not max(sigma, float(np.ptp(stretch))) > 0.0:
+        return None
+    mean, error = float(stretch.mean()), _error_of_mean(stretch, sigma)
+    halves = [float(half.mean()) for half in np.array_split(stretch, 2)]
+    return (mean, error) if max(abs(h - mean) for h in halves) < max(0.5 * abs(mean), 3.0 * error) else None
 
 
 def pickup(stretch: np.ndarray, sigma: float = 0.0) -> tuple[float, np.ndarray] | None:
