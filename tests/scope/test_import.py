@@ -13,7 +13,7 @@ from sonicvacuum.cli import cli
 from sonicvacuum.files import InputError
 from sonicvacuum.records import read as read_record
 from sonicvacuum.records.checks import check
-from sonicvacuum.scope import listing
+from sonicvacuum.scope import draft, listing
 from sonicvacuum.scope.importing import import_files
 from sonicvacuum.scope.options import options
 
@@ -49,6 +49,23 @@ def test_traces_come_back_in_newtons_from_the_impact(imported):
             # Six standard deviations of the noise of one sample, and the baseline's error.
             assert np.abs(off).max() < 6.0 * gauge.sigma
             assert gauge.gain_rel_sigma == 0.02
+
+
+def test_one_speed_is_that_of_all_runs_but_those_named(tmp_path):
+    files, like = raw_files(tmp_path)
+    chosen = options(
+        channel=CHANNELS, scale=SCALES, speed=("0.3±20%", "fast=0.44 +- 2 %"), impact_at=("30us",)
+    )
+    import_files(files, tmp_path / "record", chosen, like=like)
+    struck = {run.id: run.striker for run in read_record(tmp_path / "record").runs}
+    assert (struck["slow"].speed_m_s, struck["slow"].speed_rel_sigma) == (0.3, 0.2)
+    assert (struck["fast"].speed_m_s, struck["fast"].speed_rel_sigma) == (0.44, 0.02)
+
+
+def test_a_title_names_as_many_runs_as_a_line_holds():
+    assert draft._title(["slow", "fast"]) == "Imported: slow, fast"
+    assert draft._title([f"shot-{k}" for k in range(30)]).endswith("shot-6 and 23 more")
+    assert len(draft._title(["x" * 300])) < 80
 
 
 def test_noise_is_that_of_the_thinned_samples(imported):
@@ -165,6 +182,7 @@ REFUSED = [
     ({"channel": ("CH9=g9",)}, "named by --channel"),
     ({"place": ("CH1=first",)}, "number of its bead"),
     ({"speed": ("v9=1",)}, "no run is 'v9'"),
+    ({"speed": ("-1",)}, "must be above 0"),
     ({"impact_at": ("3 V",)}, "number in s"),
     ({"run": ("v 1=a.csv",)}, "letters, digits"),
 ]

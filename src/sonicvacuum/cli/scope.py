@@ -30,7 +30,7 @@ from sonicvacuum.files import in_one_line
     "--scale", multiple=True, metavar="GAUGE=12.5N/V", help="Sensitivity, also -12.5N/V, 80mV/N, 12.5N/V±2%."
 )
 @click.option("--place", multiple=True, metavar="GAUGE=BEAD", help="Bead that holds a gauge, or wall.")
-@click.option("--speed", multiple=True, metavar="RUN=M/S", help="Speed of a run's striker.")
+@click.option("--speed", multiple=True, metavar="[RUN=]M/S", help="Speed of the striker, as in 0.44±2%.")
 @click.option(
     "--impact-at",
     multiple=True,

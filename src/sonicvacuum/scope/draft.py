@@ -18,6 +18,8 @@ GAIN_REL_SIGMA = 0.05
 _LARGEST = {"gain_rel_sigma": 2.0, "trigger_sigma_us": 1e4}
 # Blocks of the template that go into the record as they are.
 _KEPT = ("chain", "materials", "tolerances", "priors", "apparatus")
+# Letters of a title that names the runs.
+_LONG = 60
 _SIGMA_KEY = {"m/s": "sigma_m_s", "m/s^2": "sigma_m_s2"}
 _KIND = {"m/s": "velocity", "m/s^2": "acceleration"}
 _CHAIN = """\
@@ -58,12 +60,21 @@ def unknown(kind: type, key: str) -> str | float:
 def content(runs: list[CleanRun], given: dict, options: Options, title: str | None) -> dict:
     """The mapping of record.yaml; what neither files nor template tell is left out."""
     kept = {k: given[k] for k in ("source", *_KEPT) if k in given}
-    named = title or given.get("title") or f"Imported: {', '.join(r.id for r in runs)}"[:100]
+    named = title or given.get("title") or _title([r.id for r in runs])
     result = {"format": 1, "title": named} | kept
     result["sensors"] = [_sensor(g, runs, given, options) for g in _gauges(runs)]
     result["trigger_sigma_us"] = _trigger(runs)
     result["runs"] = [_run(r, given, options) for r in runs]
     return result
+
+
+def _title(ids):
+    """As many runs as the line holds, and how many more there are."""
+    shown = len(ids)
+    while shown > 1 and len(", ".join(ids[:shown])) > _LONG:
+        shown -= 1
+    more = f" and {len(ids) - shown} more" if shown < len(ids) else ""
+    return f"Imported: {', '.join(ids[:shown])[:_LONG]}{more}"
 
 
 def _gauges(runs):
@@ -111,8 +122,9 @@ def _run(run, given, options):
     striker = dict((same or (listed[0] if listed else {})).get("striker") or {})
     if same is None:
         striker.pop("speed_m_s", None)
-    if run.id in options.speeds:
-        striker["speed_m_s"] = options.speeds[run.id]
+    for key, stated in (("speed_m_s", options.speeds), ("speed_rel_sigma", options.speed_rel_sigma)):
+        if run.id in stated or "" in stated:
+            striker[key] = stated.get(run.id, stated.get(""))
     return {"id": run.id, "striker": striker, "signals": f"{run.id}.csv"}
 
 

@@ -21,7 +21,8 @@ class Options:
         scales: gauge → sensitivity; gain_rel_sigma: gauge → its relative standard error, where stated.
         runs: run → names of its files; files that no run names are runs of their own.
         places: gauge → number of its bead, or None for the wall.
-        speeds: run → speed of the striker in m/s.
+        speeds: run, or "" for all → speed of the striker in m/s.
+        speed_rel_sigma: run, or "" for all → its relative standard error, where stated.
         impacts: run, or "" for all → moment of impact in s on the recorder's clock.
         interval_s, start_s: time base of files that have none.
         keep_all: neither trim nor thin.
@@ -33,6 +34,7 @@ class Options:
     runs: dict[str, list[Path]] = field(default_factory=dict)
     places: dict[str, int | None] = field(default_factory=dict)
     speeds: dict[str, float] = field(default_factory=dict)
+    speed_rel_sigma: dict[str, float] = field(default_factory=dict)
     impacts: dict[str, float] = field(default_factory=dict)
     interval_s: float | None = None
     start_s: float | None = None
@@ -44,20 +46,34 @@ def options(
 ) -> Options:
     """Options of the command line; InputError names the option, the value and the cure."""
     scales = _pairs("--scale", scale, "g9=12.5N/V")
-    sigmas = {g: float(m.group(1)) / 100.0 for g, t in scales.items() if (m := _PERCENT.search(t))}
-    given = _pairs("--impact-at", [t if "=" in t else f"={t}" for t in impact_at], "12us or v044=12us", "")
+    given = _pairs("--impact-at", _of_all(impact_at), "12us or v044=12us", "")
+    speeds = _pairs("--speed", _of_all(speed), "0.44, v044=0.44 or v044=0.44±2%", "")
     return Options(
         {c: name("--channel", g) for c, g in _pairs("--channel", channel, "CH1=g9").items()},
         {g: _scale(g, _PERCENT.sub("", t)) for g, t in scales.items()},
-        sigmas,
+        _errors(scales),
         {name("--run", r): _files(r, t) for r, t in _pairs("--run", run, "v044=A.csv,B.csv").items()},
         {g: _place(g, t) for g, t in _pairs("--place", place, "g9=13 or wall=wall").items()},
-        {r: _number("--speed", t, "m/s") for r, t in _pairs("--speed", speed, "v044=0.44").items()},
+        {
+            r: _positive("--speed", _number("--speed", _PERCENT.sub("", t), "m/s"), t)
+            for r, t in speeds.items()
+        },
+        _errors(speeds),
         {r: _number("--impact-at", t, "s") for r, t in given.items()},
         None if interval is None else _positive("--interval", _number("--interval", interval, "s"), interval),
         None if start is None else _number("--start", start, "s"),
         keep_all,
     )
+
+
+def _of_all(texts):
+    """What names no run is of all."""
+    return [t if "=" in t else f"={t}" for t in texts]
+
+
+def _errors(texts):
+    """Name → relative standard error, where a text ends in one."""
+    return {k: float(m.group(1)) / 100.0 for k, t in texts.items() if (m := _PERCENT.search(t))}
 
 
 def _scale(gauge, text):
