@@ -87,6 +87,18 @@ def test_a_gauge_is_not_dead_where_the_pulse_is_still_to_come(ratio):
     assert (one.fault, one.run, one.sensor) == ("gauge-dead", "v1", "g4")
 
 
+def test_a_gauge_is_not_dead_where_the_pulse_dies_out_before_it(empty, model):
+    """Friction that stops the weaker pulse short of the wall; where it arrives ahead, the gauge is dead."""
+    silent = altered(empty, "wall", lambda _: SIGMA * NOISE, "v0")
+    weaker = altered(silent, "g4", lambda y: 0.4 * y, "v0")
+    stopped = altered(weaker, "g7", lambda y: 0.1 * y, "v0")
+
+    def dead(record):
+        return [f.sensor for f in examine(record, model)[1] if f.fault == "gauge-dead"]
+
+    assert (dead(silent), dead(weaker), dead(stopped)) == (["wall"], ["wall"], [])
+
+
 def test_a_run_without_impact_is_left_out(empty, model):
     record = empty
     for gauge in ("g4", "g7", "wall"):

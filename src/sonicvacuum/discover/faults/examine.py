@@ -12,6 +12,7 @@ from sonicvacuum.discover.faults.found import Bench, Finding
 from sonicvacuum.discover.faults.table import FAULTS
 from sonicvacuum.discover.model.masks import cut, spikes
 from sonicvacuum.discover.model.problem import flicker
+from sonicvacuum.gauges import position
 from sonicvacuum.records import Record, Signals
 
 
@@ -143,16 +144,32 @@ class _Look:
                 self.readings[run][id] = -self.readings[run][id]
 
     def _await(self, run, judged):
-        """Nothing is said of gauges whose pulse comes after the record's end if it is as late as others."""
+        """Nothing is said of gauges whose pulse comes after the record's end if it is as late as others, or
+        dies out before it arrives if it falls as it does ahead of them.
+        """
         time, model = self.record.signals[run].time_us, self.predicted.get(run, {})
+        ways = {g.id: self._way(g) for g in self.record.gauges if g.id in judged}
+        ahead = [
+            (ways[id], expected.share(self.readings[run][id], model[id]))
+            for id, word in judged.items()
+            if word != "silent"
+        ]
         delays = [
             expected.delay(self.readings[run][id], model[id], time)
             for id, word in judged.items()
             if word != "silent" and np.abs(model[id]).max() > 0.0
         ]
         for id, word in judged.items():
-            if word == "silent" and expected.still_to_come(model[id], time, delays):
+            if word != "silent":
+                continue
+            sigma = next(g.sigma for g in self.record.gauges if g.id == id)
+            late = expected.still_to_come(model[id], time, delays)
+            if late or expected.fades(ways[id], model[id], sigma, ahead):
                 judged[id] = ""
+
+    def _way(self, gauge):
+        """From the bead that is struck to a gauge, in beads."""
+        return self.record.beads - position(gauge, self.record.beads, 1.0)
 
     def _quiet_slips(self, run, gauge):
         """What the stretch before the pulse shows: a slope, a level, the size of the noise."""

@@ -17,6 +17,8 @@ SILENT, SHARE = 7.0, 0.05
 # Of a gauge without a pulse nothing can be said where the model's own pulse, as late as the pulses of the
 # other gauges are, would end after this share of the record.
 WITHIN = 0.95
+# Losses that take a pulse away before it arrives leave less than this of it at the gauge before.
+FADED = 0.6
 # Upside down: the matched filter finds more below than above, by this factor.
 INVERTED = 1.5
 
@@ -40,6 +42,31 @@ def verdict(trace: np.ndarray, model: np.ndarray, sigma: float) -> str:
     own = correlated(model, model) / power
     swing = max(1.0, INVERTED * max(float(-own.min()), 0.0))
     return "inverted" if down > INVERTED * up and down * swing > SHARE and down > up else ""
+
+
+def share(trace: np.ndarray, model: np.ndarray) -> float:
+    """How much of the model's pulse, either way up and wherever in time, (T,) measured readings hold."""
+    power = float(model @ model)
+    found = np.abs(correlated(trace - np.median(trace), model))
+    return float(found.max()) / power if power > 0.0 else 0.0
+
+
+def fades(place: float, model: np.ndarray, sigma: float, ahead: list[tuple[float, float]]) -> bool:
+    """Whether a pulse may have died out on its way to a gauge.
+
+    Args:
+        place: way from the impact to the gauge.
+        model: (T,) its predicted readings.
+        sigma: noise of one sample.
+        ahead: (way, `share`) of gauges that the pulse passes first. The whole pulse is there at the impact;
+            what is left of it falls with the way as it does up to the last of them.
+    """
+    line = sorted([(0.0, 1.0), *((way, s) for way, s in ahead if 0.0 < way < place)])
+    if len(line) < 2 or not line[-1][1] < FADED:
+        return False
+    (way, last), (before, first) = line[-1], line[-2]
+    left = last - (first - last) / (way - before) * (place - way)
+    return left * float(np.abs(model).max()) < SILENT * sigma
 
 
 def delay(trace: np.ndarray, model: np.ndarray, time: np.ndarray) -> float:
