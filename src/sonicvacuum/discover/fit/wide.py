@@ -1,7 +1,9 @@
 """Starts for fits in which something is hardly known: a wall's modulus, the speed of the shots.
 
 Where an echo of the simulation does not overlap the measured one, χ² has no slope towards it, so that a fit
-from the middle of a wide prior ends in the nearest of several minima. Fits start all over the prior instead.
+from the middle of a wide prior ends in the nearest of several minima. Fits start all over the prior instead,
+each with its pulses put where the measured ones are and as high, where time zero and gain are not known:
+another speed would else be judged by when its pulse arrives.
 """
 
 import math
@@ -11,6 +13,7 @@ from itertools import product
 import numpy as np
 
 from sonicvacuum.discover import policy
+from sonicvacuum.discover.correlation import correlated
 from sonicvacuum.discover.fit.enough import data
 from sonicvacuum.discover.fit.refit import Fit, fit
 from sonicvacuum.discover.model.forward import Forward
@@ -19,23 +22,25 @@ from sonicvacuum.discover.model.hypothesis import Hypothesis
 # Known no better than this, a modulus or a speed may put an echo beside the measured one.
 WIDE = 0.1
 # Distance of starts in the logarithm; how far they go, in standard errors and at most.
-STEP, REACH, MOST = 0.5, 2.0, 1.0
+STEP, REACH, MOST = 0.5, 3.0, 1.5
+# A gain's logarithm with such an error is one that nobody knows; pulses are looked for within so many widths.
+UNKNOWN, ALONG = 1.0, 2
 # Starts that are followed to their minimum; steps of all before these are chosen; minima that the fits of
 # effects start from.
-FOLLOWED, FIRST, MINIMA = 8, 4, 3
+FOLLOWED, FIRST, MINIMA = 8, 8, 3
 # Steps on running integrals, where a fit of nuisances alone starts once more from these.
 COARSE = 6
 
 
 def starts(forward: Forward) -> np.ndarray:
-    """(L, q) nuisances over the priors of the wide ones, speeds of all runs together; the middle first."""
+    """(L, q) nuisances over the priors of the wide ones, speeds of all runs together, their own ones and what
+    they have in common; the middle first.
+    """
     layout, sigma = forward.layout, forward.nuisance_sigma
     axes = [(k, _offsets(sigma[k])) for k in layout.simulated if sigma[k] > WIDE]
     speeds = [layout.speed(run) for run in range(layout.runs)]
-    fastest = float(np.min(sigma[speeds], initial=np.inf))
-    if WIDE < fastest < np.inf:
-        several = [0.0, -fastest, fastest, -REACH * fastest, REACH * fastest]
-        axes.append((speeds, several if REACH * fastest < MOST else _offsets(fastest)))
+    together = [at for at in (speeds, layout.other("speed-common")) if min(sigma[at], default=0.0) > WIDE]
+    axes += [(at, _of_speeds(float(min(sigma[at])))) for at in together]
     rows = []
     for offsets in product(*(values for _, values in axes)):
         row = np.zeros(layout.size)
@@ -45,9 +50,59 @@ def starts(forward: Forward) -> np.ndarray:
     return np.array(rows)
 
 
+def _of_speeds(sigma):
+    """The same of speeds, all of which move together."""
+    several = [0.0, -sigma, sigma, -REACH * sigma, REACH * sigma]
+    return several if REACH * sigma < MOST else _offsets(sigma)
+
+
 def _offsets(sigma):
     reach = int(min(REACH * sigma, MOST) / STEP)
     return sorted((STEP * k for k in range(-reach, reach + 1)), key=abs)
+
+
+def aligned(forward: Forward, hypothesis: Hypothesis, u: np.ndarray, nu: np.ndarray) -> np.ndarray:
+    """(L, q) nuisances with time zeros and gains that nobody knows as the data ask for, the rest as it is.
+
+    Args:
+        forward: the predictor.
+        hypothesis: with (L, p) coordinates `u`.
+        u: see there.
+        nu: (L, q) nuisances.
+    """
+    layout, sigma, runs = forward.layout, forward.nuisance_sigma, forward.experiment.runs
+    traced = [k for k, one in enumerate(runs) if one.has_signals]
+    shifted = [k for k in traced if sigma[layout.trigger(k)] > runs[k].interval]
+    open_ = np.flatnonzero(sigma[layout.gains] > UNKNOWN)
+    if not shifted and not len(open_):
+        return nu
+    result, found = nu.copy(), forward.sampled(hypothesis, u, nu)
+    product, power = np.zeros((2, len(nu), layout.gauges))
+    for run in traced:
+        samples = len(runs[run].time)
+        data = forward.data(run)[: layout.gauges * samples].reshape(layout.gauges, samples)
+        for lane, value in enumerate(found[run]):
+            model = value[: data.size].reshape(data.shape)
+            if not np.isfinite(model).all():
+                continue
+            alike = np.array([correlated(*pair) for pair in zip(data, model, strict=True)])
+            at = _near(alike.sum(axis=0), model) if run in shifted else samples - 1
+            if run in shifted:
+                late = (at - (samples - 1)) * runs[run].interval
+                result[lane, layout.trigger(run)] += late / sigma[layout.trigger(run)]
+            product[lane] += alike[:, at]
+            power[lane] += np.square(model).sum(axis=1)
+    ratio = np.where((product > 0.0) & (power > 0.0), product / np.maximum(power, 1e-300), 1.0)
+    result[:, layout.gains[open_]] += np.log(ratio[:, open_]) / sigma[layout.gains[open_]]
+    return result
+
+
+def _near(alike, model):
+    """Place of the shift at which (S, T) readings are most alike, within some widths of their pulse."""
+    size = np.abs(model).max(axis=0)
+    room = ALONG * max(1, int(np.count_nonzero(size > 0.5 * size.max(initial=0.0))))
+    first = max(0, model.shape[1] - 1 - room)
+    return first + int(np.argmax(alike[first : first + 2 * room + 1]))
 
 
 def wide(forward: Forward) -> bool:
@@ -79,7 +134,9 @@ def nominal(forward: Forward, held: Hypothesis | None = None) -> Fit:
     tried = [direct, fit(forward, held, np.zeros((1, 0)), start, coarse=COARSE)]
     if direct.objective > 2.0 * data(forward) and wide(forward):
         rows = starts(forward)
-        tried.append(fit(forward, held, np.zeros((len(rows), 0)), rows, keep=FOLLOWED, halved=FIRST))
+        u = np.zeros((len(rows), 0))
+        rows = aligned(forward, held, u, rows)
+        tried.append(fit(forward, held, u, rows, keep=FOLLOWED, halved=FIRST))
     best = min(tried, key=lambda f: f.objective)
     best = best if best.objective < direct.objective - policy.SAME_MINIMUM else direct
     return replace(best, elsewhere=tried[-1].elsewhere)
@@ -97,5 +154,6 @@ def again(forward: Forward, one: Fit, more: np.ndarray | None = None) -> Fit:
     """
     rows = starts(forward) if more is None else np.concatenate([starts(forward), more])
     u = np.repeat(one.u[None], len(rows), axis=0)
+    rows = aligned(forward, one.hypothesis, u, rows)
     other = fit(forward, one.hypothesis, u, rows, keep=FOLLOWED, halved=FIRST)
     return min((one, other), key=lambda f: f.objective)
