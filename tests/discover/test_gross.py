@@ -226,6 +226,29 @@ def test_explanations_with_more_count_as_what_is_named_and_unknown():
     assert shares["a"] == pytest.approx((np.exp(1) + np.exp(2)) / (1 + np.exp(1) + np.exp(2) + np.exp(0.5)))
 
 
+def test_of_losses_that_do_the_same_the_likeliest_is_told(found):
+    """In a real foam a gauge that discharges is sure, and a loss is; that it is plastic has 0.83."""
+    setup, ids = setup_of(found.forward), ("sensor-droop", "plastic-contact", "viscous-drag", "sensor-offset")
+    droop, plastic, drag, offset = (
+        Component(CATALOGUE.effect(name), variants(CATALOGUE.effect(name), setup)[0]) for name in ids
+    )
+    logs = {"sensor-droop": 0.0, "plastic-contact + sensor-droop": 50.0, "sensor-droop + viscous-drag": 48.4}
+    odds, loss = gross.shares(logs), gross.loss_share(logs, setup)
+    assert loss == pytest.approx(1.0, abs=1e-9)  # e^-48 of what has none
+    assert odds["plastic-contact"] == pytest.approx(0.832, abs=1e-3)  # 1/(1 + e^-1.6)
+
+    def told(*components):
+        hypothesis = Hypothesis(components)
+        return [gross._surely_there(hypothesis, k, odds, loss) for k in range(len(components))]
+
+    assert told(droop, plastic) == [True, True]
+    assert told(droop, drag) == [True, False]
+    assert told(plastic) == [False]  # beside nothing that stands out, which it is is all there is to tell
+    assert gross.loss_share({"none": 0.0, "sensor-offset": 50.0}, setup) < 1e-9
+    odds |= {"sensor-offset": 0.832}
+    assert told(droop, offset) == [True, False]
+
+
 def test_what_every_explanation_has_is_clear_though_none_of_them_is():
     """An offset of 20 % beside something smooth was called unknown: each explanation had one effect more."""
     weights = {"none": 0.0, "a": 90.0, "a + b": 100.0, "a + c": 100.0, "b": 20.0}

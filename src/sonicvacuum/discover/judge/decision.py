@@ -232,12 +232,16 @@ class Case:
             for name, p in sorted(standing.shares.items(), key=lambda x: -x[1])
             if p > policy.TOLD
         ]
+        names = one.hypothesis.ids if one is not None else ()
+        if any(standing.shares[name] <= policy.STANDS_OUT for name in names):
+            reasons.append(f"a law that takes energy, whichever: with probability {standing.loss:.2f}")
         if one is None:
             return self._unknown(alarms, [*reasons, "no effect stands out of it"], after, tried)
         alarms["set"] = after.p
         view = View(*gross.widened(self.forward, self.null, one))
-        named = [*one.hypothesis.ids, UNKNOWN]
-        return Decision(named, one, alarms, reasons, after.p, tried, after.size.size, view, standing.weights)
+        return Decision(
+            [*names, UNKNOWN], one, alarms, reasons, after.p, tried, after.size.size, view, standing.weights
+        )
 
     def _beside(self, grown: several.Grown, needed, alarms, after: Left, tried) -> Decision:
         """What stays named beside something unknown."""

@@ -9,7 +9,9 @@ Stat. Soc. Suppl. 8, 184, 1946), and runs by how much of a systematic error they
 what the record states counts besides, as it is: one that takes a modulus known to 5 % to half of it explains
 nothing, however little that is beside χ². Only where walls or speeds are hardly known it counts as χ² does:
 there moduli and speeds make up for each other and for all that is missing. An effect is named where the
-explanations that have it are together clearly the likelier.
+explanations that have it are together clearly the likelier. Laws that take energy do much the same beside so
+much that is not understood: where one of them is surely there, the likeliest is named, with its own
+probability.
 """
 
 from collections.abc import Iterable, Mapping
@@ -77,11 +79,13 @@ class Standing:
     Attributes:
         fit: with the effects that do, None where none does.
         shares: effect → probability that it is there.
+        loss: probability that one at least takes energy.
         weights: log weights of explanations, those that have all that stands out as one.
     """
 
     fit: Fit | None
     shares: dict[str, float]
+    loss: float
     weights: dict[str, float]
 
 
@@ -99,13 +103,13 @@ def standing_out(
     while True:
         ranked = sorted(weighed(forward, null, found), key=lambda c: -c.log_bayes)
         weights = explanations.log_weights((), ranked, prior)
-        odds = shares(weights)
+        odds, loss = shares(weights), loss_share(weights, setup)
         if set(ranked[0].effects) & _PROFILES:
-            return first or Standing(None, odds, {})
-        fit = _told_apart(forward, null, ranked, odds, setup)
+            return first or Standing(None, odds, loss, {})
+        fit = _told_apart(forward, null, ranked, odds, loss, setup)
         if fit is None:
-            return first or Standing(None, odds, weights)
-        now = Standing(fit, odds, merged(weights, fit.hypothesis.ids))
+            return first or Standing(None, odds, loss, weights)
+        now = Standing(fit, odds, loss, merged(weights, fit.hypothesis.ids))
         if not gross(forward, fit):
             return now
         first = first or now
@@ -187,7 +191,7 @@ def _more(forward, null, fit: Fit, setup: Setup, found) -> list[Combination]:
     return [pairs.combination(null, one, setup) for one in fits if np.isfinite(one.objective)]
 
 
-def _told_apart(forward, null, ranked, odds, setup) -> Fit | None:
+def _told_apart(forward, null, ranked, odds, loss, setup) -> Fit | None:
     """The best explanation without the effects that do not stand out, are hardly seen, or gain no more than
     one shape outside the catalogue would in their place, unless to do without strains what is stated.
     """
@@ -196,10 +200,17 @@ def _told_apart(forward, null, ranked, odds, setup) -> Fit | None:
     seen = [z > policy.SEEN for z in fit.hypothesis.strengths(fit.u, prior.sigma(fit))]
     for k in reversed(range(len(ranked[0].effects))):
         less = _less(forward, null, fit, k, ranked, setup)
-        likely = seen[k] and odds[fit.hypothesis.ids[k]] > policy.STANDS_OUT
-        if not likely or not (prior.strains(less, fit) or _ahead(forward, less, fit)):
+        likely = _surely_there(fit.hypothesis, k, odds, loss)
+        if not (seen[k] and likely) or not (prior.strains(less, fit) or _ahead(forward, less, fit)):
             fit = less
     return fit if fit.hypothesis.components else None
+
+
+def _surely_there(hypothesis, k: int, odds: Mapping[str, float], loss: float) -> bool:
+    """Whether effect k stands out, or is the likeliest of losses beside others, of which one surely acts."""
+    own = odds[hypothesis.ids[k]]
+    one_of = hypothesis.components[k].effect.dissipative and len(hypothesis.components) > 1
+    return own > policy.STANDS_OUT or (one_of and loss > policy.STANDS_OUT and own > policy.LIKELIEST)
 
 
 def _less(forward, null, fit: Fit, k: int, ranked, setup) -> Fit:
@@ -315,6 +326,17 @@ def shares(weights: dict[str, float]) -> dict[str, float]:
         name: float(sum(p for key, p in zip(weights, odds, strict=True) if name in explanations.effects(key)))
         for name in names
     }
+
+
+def loss_share(weights: Mapping[str, float], setup: Setup) -> float:
+    """Probability that one effect at least takes energy, by the log weights of all explanations."""
+    known = setup.catalogue
+
+    def loses(key):
+        return any(name in known and known.effect(name).dissipative for name in explanations.effects(key))
+
+    total = np.logaddexp.reduce(list(weights.values()))
+    return float(sum(np.exp(value - total) for key, value in weights.items() if loses(key)))
 
 
 def merged(weights: dict[str, float], named: Iterable[str]) -> dict[str, float]:
