@@ -25,8 +25,6 @@ CLEAR = 1.0
 GROSS = 4.0
 # ... and an effect is named that is so surely part of what explains the data.
 STANDS_OUT = 0.95
-# ... or, of laws that take energy, of which one is so surely there beside others, the likeliest at least so.
-LIKELIEST = 0.5
 # Its strength then stands off from zero by more than so many standard errors.
 SEEN = 3.0
 # Beside one effect, and beside more, it takes away this share of what they leave: in nine records of real

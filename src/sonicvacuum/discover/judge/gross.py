@@ -207,10 +207,13 @@ def _told_apart(forward, null, ranked, odds, loss, setup) -> Fit | None:
 
 
 def _surely_there(hypothesis, k: int, odds: Mapping[str, float], loss: float) -> bool:
-    """Whether effect k stands out, or is the likeliest of losses beside others, of which one surely acts."""
-    own = odds[hypothesis.ids[k]]
-    one_of = hypothesis.components[k].effect.dissipative and len(hypothesis.components) > 1
-    return own > policy.STANDS_OUT or (one_of and loss > policy.STANDS_OUT and own > policy.LIKELIEST)
+    """Whether effect k of the best explanation stands out, or is a loss, of which one does, beside another
+    effect that stands out.
+    """
+    own = hypothesis.ids[k]
+    beside = any(odds[name] > policy.STANDS_OUT for name in hypothesis.ids if name != own)
+    one_of = hypothesis.components[k].effect.dissipative and beside
+    return max(odds[own], loss if one_of else 0.0) > policy.STANDS_OUT
 
 
 def _less(forward, null, fit: Fit, k: int, ranked, setup) -> Fit:
