@@ -32,6 +32,16 @@ def test_spikes_are_found_and_nothing_else(at):
     np.testing.assert_array_equal(np.flatnonzero(spikes(trace, SIGMA)), at)
 
 
+@pytest.mark.parametrize("seed", range(10))
+def test_echoes_that_are_sampled_too_coarsely_are_no_spikes(seed):
+    """Late in real traces neighbours differ by many times the noise: no spikes, as five of nine had there."""
+    trace, rng = pulse(4.0, seed=seed), np.random.default_rng(np.random.SeedSequence(seed))
+    trace[290:] += 20.0 * SIGMA * rng.normal(size=110)
+    assert not spikes(trace, SIGMA).any()
+    trace[[60, 350]] += np.array([1.0, 15.0])  # a spike stands out of the noise, or of what is as rough
+    np.testing.assert_array_equal(np.flatnonzero(spikes(trace, SIGMA)), [60, 350])
+
+
 @pytest.mark.parametrize("width", [4.0, 10.0, 40.0])
 def test_a_record_may_begin_or_end_within_a_pulse(width):
     for seed, cut_at in enumerate(range(80, 130)):

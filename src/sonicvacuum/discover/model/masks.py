@@ -10,6 +10,9 @@ import numpy as np
 SPIKE_SIGMAS = 7.0
 # ... and by more than the neighbours differ among themselves: a steep or narrow pulse is no spike.
 SPIKE_RANGE = 1.0
+# What is rough for so many samples on one side, as echoes that are sampled too coarsely are, has no spikes
+# but those that stand out of that as well.
+AROUND = 12
 # The cubic's value is (−a + 4 b + 4 c − d)/6; with the sample's own noise its variance is 1 + 34/36.
 _SPREAD = np.sqrt(1.0 + 34.0 / 36.0)
 # A pair of spikes side by side is found in two passes.
@@ -39,8 +42,30 @@ def spikes(trace: np.ndarray, sigma: float) -> np.ndarray:
 
 def _standing_out(trace, sigma):
     """Places where a trace departs from its neighbours."""
-    last = len(trace) - 1 - _at_start(trace[::-1], sigma)
-    return np.unique(np.concatenate([_at_start(trace, sigma), _within(trace, sigma), last]))
+    far = _off_the_cubic(trace)
+    last = len(trace) - 1 - _at_start(trace[::-1], max(sigma, _roughness(far[-AROUND:])))
+    first = _at_start(trace, max(sigma, _roughness(far[:AROUND])))
+    return np.unique(np.concatenate([first, _within(trace, far, sigma), last]))
+
+
+def _off_the_cubic(trace):
+    """(T − 4,) distance of samples with two neighbours on either side from the cubic through these."""
+    one, two, three, four = trace[:-4], trace[1:-3], trace[3:-1], trace[4:]
+    return np.abs(trace[2:-2] - (4.0 * (two + three) - one - four) / 6.0)
+
+
+def _roughness(far):
+    """Standard deviation of white noise as rough as a stretch of such distances: most of them are no spikes,
+    and 0.6745 is the median of a standard normal number's size.
+    """
+    return float(np.median(far)) / (0.6745 * _SPREAD)
+
+
+def _rough_beside(far, k):
+    """Roughness on the rougher side of a place: where a trace begins to be rough, one is."""
+    sides = [far[max(0, k - AROUND) : k + 1], far[k : k + AROUND + 1]]
+    whole = [side for side in sides if len(side) > AROUND] or [far[max(0, k - AROUND) : k + AROUND + 1]]
+    return max(map(_roughness, whole))
 
 
 def _at_start(trace, sigma):
@@ -56,15 +81,15 @@ def _at_start(trace, sigma):
     return np.flatnonzero([False, second > np.sqrt(20.0 / 9.0) * spread + SPIKE_RANGE * around])
 
 
-def _within(trace, sigma):
+def _within(trace, far, sigma):
     """Places with two neighbours on either side, the farthest of any that touch."""
-    one, two, three, four = trace[:-4], trace[1:-3], trace[3:-1], trace[4:]
-    far = np.abs(trace[2:-2] - (4.0 * (two + three) - one - four) / 6.0)
-    around = np.stack([one, two, three, four])
+    around = np.stack([trace[:-4], trace[1:-3], trace[3:-1], trace[4:]])
     room = SPIKE_SIGMAS * _SPREAD * sigma + SPIKE_RANGE * (around.max(axis=0) - around.min(axis=0))
     excess = np.pad(np.where(far > room, far, 0.0), 2)
     highest = np.max([excess[:-4], excess[1:-3], excess[3:-1], excess[4:]], axis=0)
-    return 2 + np.flatnonzero((excess[2:-2] > 0.0) & (excess[2:-2] >= highest))
+    found = np.flatnonzero((excess[2:-2] > 0.0) & (excess[2:-2] >= highest))
+    rough = np.array([_rough_beside(far, k) for k in found])
+    return 2 + found[far[found] > SPIKE_SIGMAS * _SPREAD * rough]
 
 
 def cut(trace: np.ndarray, sigma: float) -> np.ndarray:
