@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from sonicvacuum.forward import measured, of_amplitude, passages
-from sonicvacuum.forward.columns import Columns
+from sonicvacuum.forward import measured, of_amplitude, passages, striker
+from sonicvacuum.forward.columns import Columns, filled
 from sonicvacuum.observe.contacts import BALL_QUANTITIES
 from sonicvacuum.physics.scales import WAVE_POWER
 
@@ -130,14 +130,15 @@ def _column(experiment, scalar, seen, lanes, runs, columns, refine):
     def closer(lane):
         return _value(experiment, scalar, seen, lane, runs[lane], refine)
 
-    if scalar.quantity == SOLITARY:
-        try:
-            return [one.value for one in of_amplitude(scalar, seen, lanes, experiment.diameter, refine)]
-        except ValueError:
-            pass  # of which lane, is found one by one
     if _inside(scalar):
-        return columns.filled(scalar.quantity, scalar.options, lanes, closer)
-    return [closer(lane) for lane in lanes.tolist()]
+        return filled(columns.of(scalar.quantity, scalar.options)[lanes], lanes, closer)
+    try:
+        if scalar.quantity == SOLITARY:
+            return [one.value for one in of_amplitude(scalar, seen, lanes, experiment.diameter, refine)]
+        found = striker.told(scalar.quantity, seen.history, seen.setup.chain, lanes)
+    except ValueError:
+        return [closer(lane) for lane in lanes.tolist()]  # of which lane, is found one by one
+    return filled(found, lanes, closer)
 
 
 def _value(experiment, scalar, seen, lane, passage, refine):
