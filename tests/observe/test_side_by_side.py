@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sonicvacuum.forward import striker
 from sonicvacuum.forward.columns import Columns
+from sonicvacuum.forward.striker import Strikers
 from sonicvacuum.forward.together import runs_of
 from sonicvacuum.gauges import Gauge
 from sonicvacuum.observe.contacts import contact_duration, restitution
@@ -138,16 +138,16 @@ class _History:
 
 
 def test_contacts_of_strikers_are_those_found_one_by_one():
-    lanes, chain = np.array([12, *range(12)]), _Chain()
-    for quantity in ("contact_duration", "restitution"):
-        found, sure = striker.told(quantity, _History(), chain, lanes), 0
-        for value, lane in zip(found, lanes, strict=True):
-            numbers = (chain.striker_mass[lane], chain.speed[lane], chain.gravity[lane])
-            ask = {"contact_duration": contact_duration, "restitution": restitution}[quantity]
-            try:
-                alone = ask(TIME, _contacts()[lane], *(numbers if quantity == "restitution" else ())).value
-            except ValueError:
-                alone = np.nan
-            assert np.isnan(value) or value == alone
-            sure += bool(np.isfinite(value))
-        assert sure == 9
+    strikers = Strikers(_History(), _Chain())
+    for found, alone in (
+        (strikers.contact_duration, lambda lane, force: contact_duration(TIME, force)),
+        (
+            strikers.restitution,
+            lambda lane, force: restitution(
+                TIME, force, _Chain.striker_mass[lane], _Chain.speed[lane], _Chain.gravity[lane]
+            ),
+        ),
+    ):
+        for lane, force in enumerate(_contacts()):
+            assert np.isnan(found[lane]) or found[lane] == alone(lane, force).value
+        assert np.count_nonzero(np.isfinite(found)) == 9
