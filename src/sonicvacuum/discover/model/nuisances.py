@@ -174,8 +174,7 @@ class Layout:
         """(S + 3 + others,) places of the nuisances that touch one run: modulus, speed, trigger, gains,
         others.
         """
-        modulus, *others = self.shared
-        return np.array([modulus, self.speed(run), self.trigger(run), *others])
+        return np.concatenate([self.shared[:1], [self.speed(run), self.trigger(run)], self.shared[1:]])
 
 
 def shared(record: Record, chain: Chain) -> tuple[Shared, ...]:
