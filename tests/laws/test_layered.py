@@ -229,3 +229,9 @@ def test_a_chain_with_layers_keeps_its_energy_and_converges():
     # Fourth order; the default step is made for 1e-4 of a peak or better.
     assert errors[0] < 1e-4
     assert errors[1] > 6.0 * errors[0]
+
+
+def test_coefficients_that_were_kept_are_those_worked_out():
+    node = layer_law._at_node.__wrapped__
+    worked_out = layer_law.fitted(Layer(0.37, float(np.exp(layer_law.STEP * -3)), 0.3))
+    assert [node(0.37, -3, 0.3).tobytes() for _ in range(2)] == 2 * [worked_out.tobytes()]

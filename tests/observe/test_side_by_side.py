@@ -6,8 +6,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sonicvacuum.forward.columns import Columns
+from sonicvacuum.forward.striker import Strikers
 from sonicvacuum.forward.together import runs_of
 from sonicvacuum.gauges import Gauge
+from sonicvacuum.observe.contacts import contact_duration, restitution
 from sonicvacuum.observe.quantities import measure_run
 from sonicvacuum.observe.run import Geometry, Run
 
@@ -105,3 +107,47 @@ def test_what_is_not_finite_is_said_as_ever(value):
     signals = np.array([[pulse(1e-4, 2e-5, 1.0)] * 3] * 2)
     signals[1, 0, 7] = value
     compare(signals)
+
+
+def _contacts():
+    """Forces of strikers: usual ones, several, cut off at either end, none, no numbers."""
+    usual = [pulse((20 + 37 * k) * 1e-6, 1e-5 * (1 + k), 10.0 + k) for k in range(4)]
+    again = usual[0] + np.roll(usual[0], 150) - 1.0
+    steep = np.where((TIME > 5e-5) & (TIME < 9e-5), 1.0 + 1e-3 * np.sin(TIME * 1e5), 0.0)
+    at_once, never_open = np.maximum(1e-4 - TIME, 0.0), TIME * 1e4
+    one_sample = np.where(np.arange(400) == 50, 3.0, -1.0)
+    first_sample = np.where(np.arange(400) == 0, 3.0, 0.0)
+    broken = np.where(np.arange(400) == 70, np.nan, at_once)
+    rows = [*(u - 1e-3 * u.max() for u in usual), again, steep, at_once, one_sample, first_sample]
+    return np.array([*rows, never_open, 0.0 * TIME, broken, np.where(np.isnan(broken), np.inf, at_once)])
+
+
+class _Chain:
+    """What is asked of a chain."""
+
+    striker_mass, speed, gravity = np.linspace(1e-4, 2e-4, 13), np.linspace(0.1, 2.0, 13), np.full(13, 9.81)
+
+
+class _History:
+    """What is asked of a history."""
+
+    time = TIME
+
+    def of(self, contact):
+        return _contacts().T
+
+
+def test_contacts_of_strikers_are_those_found_one_by_one():
+    strikers = Strikers(_History(), _Chain())
+    for found, alone in (
+        (strikers.contact_duration, lambda lane, force: contact_duration(TIME, force)),
+        (
+            strikers.restitution,
+            lambda lane, force: restitution(
+                TIME, force, _Chain.striker_mass[lane], _Chain.speed[lane], _Chain.gravity[lane]
+            ),
+        ),
+    ):
+        for lane, force in enumerate(_contacts()):
+            assert np.isnan(found[lane]) or found[lane] == alone(lane, force).value
+        assert np.count_nonzero(np.isfinite(found)) == 9

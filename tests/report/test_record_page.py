@@ -17,6 +17,7 @@ from sonicvacuum.effects import CATALOGUE, Catalogue, Effect, Source
 from sonicvacuum.figures import disagreement, discovery, posterior, raster
 from sonicvacuum.figures.drawing import Curve
 from sonicvacuum.files import InputError
+from sonicvacuum.physics import compiled
 from sonicvacuum.report import plots, record, words
 from sonicvacuum.report.record import write_page
 from sonicvacuum.tables import read_csv
@@ -324,3 +325,18 @@ def test_hostile_names_of_runs_gauges_and_the_rest_are_text(folders, tmp_path):
     assert "onerror=alert(1)" in " ".join(Page(page).words)
     ids = Page(page).ids
     assert len(ids) == len(set(ids)) and all(re.fullmatch(r"[A-Za-z0-9_.-]+", id) for id in ids)
+
+
+def test_a_page_of_kept_templates_is_the_same(tmp_path, monkeypatch):
+    folder = write(tmp_path / "found", "single")
+    monkeypatch.setattr(compiled, "cache_folder", lambda: None)
+    plain = write_page(folder).read_bytes()
+    monkeypatch.setattr(compiled, "cache_folder", lambda: tmp_path)
+    pages = [write_page(folder).read_bytes()]
+    kept = sorted(tmp_path.glob("page-*.bin"))
+    pages.append(write_page(folder).read_bytes())
+    for one in kept:
+        one.write_bytes(b"damaged")
+    pages.append(write_page(folder).read_bytes())
+    assert kept
+    assert pages == 3 * [plain]

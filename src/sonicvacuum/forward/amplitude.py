@@ -126,7 +126,7 @@ def _struck(chain, diameters, sensor, pair, speeds, refine):
     setup, duration = Setup(lanes, gauges), passage_of(lanes, CROSSED)
     seen = see(setup, duration, sampling_of(lanes), refine=refine, forgiving=True, alone=False)
     # And with them compiled code, as in `motion.see`.
-    from sonicvacuum.forward.columns import Columns
+    from sonicvacuum.forward.columns import Columns, filled
     from sonicvacuum.forward.together import runs_of
 
     runs = runs_of(seen.readings, seen.history.time, Geometry(chain.beads, diameters, gauges))
@@ -136,7 +136,7 @@ def _struck(chain, diameters, sensor, pair, speeds, refine):
         def closer(lane):
             return measure_run(quantity, runs[lane], **options).value if finite[lane] else math.nan
 
-        return np.where(finite, columns.filled(quantity, options, np.arange(len(runs)), closer), math.nan)
+        return np.where(finite, filled(columns.of(quantity, options), np.arange(len(runs)), closer), math.nan)
 
     height = shown("amplitude", sensor="(gauge)")
     return np.stack([height, shown("speed", **{"from": "(before)", "to": "(behind)"})])

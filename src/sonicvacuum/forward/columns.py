@@ -21,20 +21,6 @@ class Columns:
         self._mains: dict[str, tuple[np.ndarray, np.ndarray]] = {}
         self._found: dict[tuple, np.ndarray] = {}
 
-    def filled(
-        self, quantity: str, options: Mapping, lanes: np.ndarray, closer: Callable[[int], float]
-    ) -> np.ndarray:
-        """A quantity in SI of the runs at some places; `closer` gives that of a place where one has to look
-        closer.
-
-        `quantity` is any that `observe` knows, `options` what it needs and allows, as in a record's
-        observable.
-        """
-        found = self.of(quantity, options)[lanes]
-        for k in np.flatnonzero(np.isnan(found)).tolist():
-            found[k] = closer(int(lanes[k]))
-        return found
-
     def of(self, quantity: str, options: Mapping) -> np.ndarray:
         """(L,) values in SI, NaN where one has to look closer: at unusual runs, or at what is asked for."""
         key = quantity, *sorted(options.items())
@@ -105,6 +91,14 @@ class Columns:
 
     def _edge(self, sensor, level, rising):
         return self._together.crossings(sensor, level, rising)
+
+
+def filled(found: np.ndarray, lanes: np.ndarray, closer: Callable[[int], float]) -> np.ndarray:
+    """(n,) values of n lanes, NaN taken from `closer`, which looks closer at the lane of that place."""
+    found = found.copy()
+    for k in np.flatnonzero(np.isnan(found)).tolist():
+        found[k] = closer(int(lanes[k]))
+    return found
 
 
 _FOUND = {

@@ -18,7 +18,9 @@ def contacts(gauge, beads: int) -> tuple[int, ...]:
 def feel(gauge, motion, beads: int) -> np.ndarray:
     """(½ + ε) F_before + (½ − ε) F_after in N."""
     before, behind = (np.asarray(motion.of(c)) for c in contacts(gauge, beads))
-    return (0.5 + gauge.offset_fraction) * before + (0.5 - gauge.offset_fraction) * behind
+    felt = (0.5 + gauge.offset_fraction) * before
+    felt += (0.5 - gauge.offset_fraction) * behind
+    return felt
 
 
 def distance(gauge, beads: int, diameter) -> float:

@@ -1,9 +1,10 @@
-"""A cache of compiled code that is never stale and that many processes may use at once.
+"""A cache of compiled code, and of what else takes long, that is never stale and that many processes may use
+at once.
 
 Numba's own cache looks at the file of one function only: an edit of any function that it calls goes
 unseen, and processes that write together may mix their files up. Here each stepper (`kept`), and each
 signature of another function, is one file, named by a digest of what it is and the processor,
-in a folder named by a digest of the source of `sonicvacuum.physics` and of the versions of what compiles it.
+in a folder named by a digest of the source of `sonicvacuum.physics` and of the versions of what works it out.
 Force laws from elsewhere (effects) stand in the name with a digest of their own formulas. Nothing is ever
 overwritten with something else, and nothing is loaded that another user could have written.
 
@@ -37,8 +38,8 @@ _DIGEST = hashlib.sha256().digest_size
 
 
 def source_digest(package: Path = _PACKAGE) -> str:
-    """Digest of all Python files of a package and of the versions of what compiles them."""
-    versions = (sys.version, *(version(name) for name in ("numba", "llvmlite", "numpy")))
+    """Digest of all Python files of a package and of the versions of what compiles and calls them."""
+    versions = (sys.version, *(version(name) for name in ("numba", "llvmlite", "numpy", "scipy")))
     return files_digest(tuple(sorted(package.rglob("*.py"))), package, repr(versions))
 
 

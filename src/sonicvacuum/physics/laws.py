@@ -217,6 +217,8 @@ def depth_at(laws: LawSet, coefficients: np.ndarray, load: np.ndarray) -> np.nda
     ln F(ln δ), which is straight for power laws and nearly so for all contact laws.
     """
     borne = load > 0.0
+    if not borne.any():
+        return np.zeros_like(load)
     wanted = np.log(np.where(borne, load, 1.0))
     x, slope = np.full_like(load, np.log(1e-6)), np.full_like(load, 1.5)
     miss = np.log(elastic_at(laws, coefficients, np.exp(x))) - wanted

@@ -7,8 +7,8 @@ With chi = √(R* delta)/t and u = 1/(1 + chi/SCALE), Hertz force over force on 
 which is Hertz of the coating for narrow contacts and Hertz of the core for wide ones, exactly. The
 coefficients are least squares of the exact solution (`layered`), relative to 1/g, up to a contact radius of
 WIDEST thicknesses. They are linear in 1/g, so that interpolating them interpolates 1/g: they are worked out
-at fixed ratios c, STEP apart in ln c, once for each pair of Poisson's ratios (some 20 ms each, as needed),
-and interpolated by fifth powers between. No table has to be kept.
+at fixed ratios c, STEP apart in ln c, once for each pair of Poisson's ratios (some 20 ms each, as needed, and
+then kept beside compiled code), and interpolated by fifth powers between.
 
 A facing body of its own elasticity is put in series at equal chi, 1/g becoming (1/g + e)/(1 + e) with e =
 E1'/E' of that body: exact where one of the two rules.
@@ -83,7 +83,12 @@ def fitted(layer: Layer, refine: float = COARSE) -> np.ndarray:
 
 @lru_cache(maxsize=4096)
 def _at_node(poisson, node, core_poisson):
-    return fitted(Layer(poisson, float(np.exp(STEP * node)), core_poisson))
+    from sonicvacuum.physics.compiled import kept  # and with it LLVM: not for a chain without a layer
+
+    def made():
+        return fitted(Layer(poisson, float(np.exp(STEP * node)), core_poisson)).tobytes()
+
+    return np.frombuffer(kept(f"layer {poisson!r} {node} {core_poisson!r}", made))
 
 
 def _lagrange(x):

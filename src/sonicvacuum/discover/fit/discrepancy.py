@@ -55,6 +55,9 @@ class Shapes:
     def __init__(self, experiment: Experiment):
         self.experiment = replace(experiment, smooth=None)
         self._parts: dict[Kernel, tuple[Part, ...]] = {}
+        runs, gauges = range(len(experiment.runs)), range(len(experiment.gauges))
+        self._traces = [[_Trace(self.experiment, run, s) for run in runs] for s in gauges]
+        self._splits: dict[tuple, tuple] = {}
         samples = sum(len(run.time) for run in experiment.runs)
         each = 8 * max(1, samples * len(experiment.gauges) * policy.SMOOTH_KNOTS)
         self.kernels = KERNELS[: max(FEWEST, policy.SMOOTH_BYTES // each)]
@@ -62,23 +65,29 @@ class Shapes:
     def parts(self, kernel: Kernel) -> tuple[Part, ...]:
         """Of each gauge."""
         if kernel not in self._parts:
-            gauges = range(len(self.experiment.gauges))
-            self._parts[kernel] = tuple(_part(self.experiment, s, kernel) for s in gauges)
+            self._parts[kernel] = tuple(self._part(s, kernel) for s in range(len(self._traces)))
         return self._parts[kernel]
 
+    def _part(self, s, kernel):
+        """What a discrepancy may do to the readings of one gauge."""
+        directions, factors = self._split(s, kernel.onset, kernel.length)
+        if not kernel.shared:
+            variances = np.concatenate([np.square(f).sum(axis=1) for f in factors])
+            return Part(directions, np.eye(len(variances)), variances)
+        alike = _alike(self.experiment, kernel.shared)
+        crossed = np.block([_crossed(factors, alike, run) for run in range(len(factors))])
+        variances, mixing = np.linalg.eigh(crossed)
+        kept = variances > policy.SMOOTH_FAINT * variances.max(initial=0.0)
+        return Part(directions, mixing[:, kept], variances[kept])
 
-def _part(experiment, s, kernel):
-    """What a discrepancy may do to the readings of one gauge."""
-    found = [_Trace(experiment, run, s) for run in range(len(experiment.runs))]
-    length = max([kernel.length, *(one.shortest for one in found if one.loud)])
-    directions, factors = zip(*(one.split(kernel.onset, length) for one in found), strict=True)
-    if not kernel.shared:
-        variances = np.concatenate([np.square(f).sum(axis=1) for f in factors])
-        return Part(directions, np.eye(len(variances)), variances)
-    alike = _alike(experiment, kernel.shared)
-    variances, mixing = np.linalg.eigh(np.block([_crossed(factors, alike, run) for run in range(len(found))]))
-    kept = variances > policy.SMOOTH_FAINT * variances.max(initial=0.0)
-    return Part(directions, mixing[:, kept], variances[kept])
+    def _split(self, s, onset, length):
+        """Directions of all runs of a gauge and what bumps have along them, whatever runs have in common."""
+        key = (s, onset, length)
+        if key not in self._splits:
+            own = self._traces[s]
+            enough = max([length, *(one.shortest for one in own if one.loud)])
+            self._splits[key] = tuple(zip(*(one.split(onset, enough) for one in own), strict=True))
+        return self._splits[key]
 
 
 def _crossed(factors, alike, run):

@@ -123,9 +123,17 @@ class Forward:
 
     def counts(self, run: int) -> np.ndarray:
         """Places of the data of a run that are whole numbers: they jump, and have no slopes."""
-        scalars_ = self.experiment.runs[run].scalars
-        first = self.experiment.length(run) - len(scalars_)
-        return np.array([first + k for k, s in enumerate(scalars_) if s.quantity == "pulse_count"], dtype=int)
+        return self._counts[run]
+
+    @cached_property
+    def _counts(self) -> list[np.ndarray]:
+        """The same of all runs."""
+        found = []
+        for run, data in enumerate(self.experiment.runs):
+            first = self.experiment.length(run) - len(data.scalars)
+            own = [first + k for k, one in enumerate(data.scalars) if one.quantity == "pulse_count"]
+            found.append(np.array(own, dtype=int))
+        return found
 
     @cached_property
     def nuisance_sigma(self) -> np.ndarray:

@@ -131,5 +131,5 @@ def traces(e, layout, sigma, batch, places, readings, gain, nu, rate_of: int):
         times = 1 + len(layout.other("clock")) + len(layout.other("delay"))
         timing = np.zeros((len(rated), times, len(e.gauges), 0))
     value, timing = (e.noise_whitened(runs[0], x) for x in (value, timing))
-    parts = zip(runs, np.split(value, len(runs)), np.split(timing, len(runs)), strict=True)
-    return {run: (own, slopes) for run, own, slopes in parts}
+    parts = (x.reshape(len(runs), len(x) // len(runs), *x.shape[1:]) for x in (value, timing))
+    return dict(zip(runs, zip(*parts, strict=True), strict=True))

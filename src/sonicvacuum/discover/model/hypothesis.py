@@ -67,7 +67,7 @@ class Hypothesis:
     @property
     def columns(self) -> tuple[slice, ...]:
         """Where the free parameters of each effect stand among the coordinates."""
-        ends = np.cumsum([0, *(len(c.free) for c in self.components)]).tolist()
+        ends = itertools.accumulate((len(c.free) for c in self.components), initial=0)
         return tuple(slice(*ab) for ab in itertools.pairwise(ends))
 
     @property

@@ -174,8 +174,14 @@ class Layout:
         """(S + 3 + others,) places of the nuisances that touch one run: modulus, speed, trigger, gains,
         others.
         """
-        modulus, *others = self.shared
-        return np.array([modulus, self.speed(run), self.trigger(run), *others])
+        return self._local[run]
+
+    @cached_property
+    def _local(self) -> list[np.ndarray]:
+        """The same of all runs, which searches ask for all the time."""
+        modulus, others = self.shared[:1], self.shared[1:]
+        own = [[self.speed(run), self.trigger(run)] for run in range(self.runs)]
+        return [np.concatenate([modulus, speeds, others]) for speeds in own]
 
 
 def shared(record: Record, chain: Chain) -> tuple[Shared, ...]:

@@ -6,6 +6,7 @@ linearly; bounds are those of the catalogue.
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -126,6 +127,12 @@ def shape_grid(effect: Effect) -> tuple[dict[str, float], ...]:
     if not shapes:
         return ({},)
     (one,) = shapes
-    spread = np.geomspace if one.prior.startswith("log") else np.linspace
-    low, high = (max(one.low, one.scale / 30.0), min(one.high, one.scale * 30.0))
-    return tuple({one.name: float(v)} for v in spread(low, high, 5 if one.prior.startswith("log") else 3))
+    return tuple({one.name: value} for value in _grid(one))
+
+
+@lru_cache
+def _grid(shape: Parameter) -> tuple[float, ...]:
+    """Values of one parameter that only shapes; kept, as every screen asks again."""
+    low, high = (max(shape.low, shape.scale / 30.0), min(shape.high, shape.scale * 30.0))
+    spread = np.geomspace(low, high, 5) if shape.prior.startswith("log") else np.linspace(low, high, 3)
+    return tuple(spread.tolist())

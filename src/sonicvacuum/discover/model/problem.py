@@ -116,7 +116,7 @@ def together(records: Sequence[Record], catalogue: Catalogue = CATALOGUE) -> Exp
     turned = len({r.specimen.gravity_m_s2 for r in records}) > 1
     unasked = tuple(e.id for e in catalogue if turned and e.depends_on_orientation)
     excluded = tuple(dict.fromkeys((*first.excluded, *unasked)))
-    sigma, correlation = noise(records)
+    sigma, correlation = noise(records) if others else (first.sigma, first.correlation)
     whole = replace(first, sigma=sigma, correlation=correlation, excluded=excluded)
     return _ready(whole, records)
 
@@ -236,8 +236,10 @@ def _as_long(batch: Batch, record: Record) -> Batch:
 
 def noise(records: Sequence[Record]) -> tuple[np.ndarray, np.ndarray]:
     """(S,) standard deviation of one sample and correlation of its neighbours, stated or seen."""
-    quiet = [_quiet_of(records, g) for g in records[0].gauges]
-    sigma = [_sigma(records, g, q) for g, q in zip(records[0].gauges, quiet, strict=True)]
+    gauges = records[0].gauges
+    traces = [_traces(records, g) for g in gauges]
+    quiet = [_quiet_of(own, g) for own, g in zip(traces, gauges, strict=True)]
+    sigma = [_sigma(own, g, q) for own, g, q in zip(traces, gauges, quiet, strict=True)]
     return np.array(sigma), _correlations(quiet)
 
 
@@ -248,9 +250,8 @@ def _traces(records, gauge):
     return [t[believed(t, gauge.sigma)] for t in traces]
 
 
-def _quiet_of(records, gauge):
+def _quiet_of(traces, gauge):
     """The quiet stretches of a gauge that are long enough."""
-    traces = _traces(records, gauge)
     sigma = gauge.sigma or max(map(flicker, traces), default=0.0)
     quiet = [q for t in traces if len(q := _quiet(t, sigma)) >= _LEAST]
     if gauge.baseline_sigma or gauge.drift_sigma:
@@ -265,9 +266,8 @@ def _off_its_line(stretch):
     return stretch - stretch.mean() - place * (place @ stretch / (place @ place))
 
 
-def _sigma(records, gauge, quiet):
+def _sigma(traces, gauge, quiet):
     """What the record states, or more where the quiet stretches are surely louder."""
-    traces = _traces(records, gauge)
     peak = max((float(np.abs(t).max()) for t in traces), default=0.0)
     floor = max(math.hypot(gauge.sigma or _estimated(traces, quiet), MODEL_FLOOR * peak), 1e-12)
     if not quiet:

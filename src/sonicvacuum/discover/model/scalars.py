@@ -3,7 +3,8 @@
 import numpy as np
 
 from sonicvacuum.forward import measured, of_amplitude, passages
-from sonicvacuum.forward.columns import Columns
+from sonicvacuum.forward.columns import Columns, filled
+from sonicvacuum.forward.striker import Strikers
 from sonicvacuum.observe.contacts import BALL_QUANTITIES
 from sonicvacuum.physics.scales import WAVE_POWER
 
@@ -110,10 +111,12 @@ def predict(experiment, wanted, seen, signals: np.ndarray, refine: float = 1.0) 
     runs = [None] * len(signals)
     if any(_inside(one) for scalars in wanted for one in scalars):
         runs = passages(seen, slice(None), signals, experiment.gauges, experiment.diameter)
+    of_ball = any(one.quantity in BALL_QUANTITIES for scalars in wanted for one in scalars)
+    strikers = Strikers(seen.history, seen.setup.chain) if of_ball else None
     columns, found = Columns(runs) if runs[0] else None, []
     for k, scalars in enumerate(wanted):
         lanes = np.arange(k, len(signals), len(wanted))
-        own = [_column(experiment, one, seen, lanes, runs, columns, refine) for one in scalars]
+        own = [_column(experiment, one, seen, lanes, runs, columns, strikers, refine) for one in scalars]
         values = np.array(own, dtype=float).reshape(len(scalars), len(lanes)).T
         found.append(np.nan_to_num(values, nan=0.0, posinf=0.0, neginf=0.0))
     return found
@@ -124,20 +127,21 @@ def _inside(scalar):
     return scalar.quantity not in (*BALL_QUANTITIES, SOLITARY)
 
 
-def _column(experiment, scalar, seen, lanes, runs, columns, refine):
+def _column(experiment, scalar, seen, lanes, runs, columns, strikers, refine):
     """One scalar of some lanes."""
 
     def closer(lane):
         return _value(experiment, scalar, seen, lane, runs[lane], refine)
 
-    if scalar.quantity == SOLITARY:
-        try:
-            return [one.value for one in of_amplitude(scalar, seen, lanes, experiment.diameter, refine)]
-        except ValueError:
-            pass  # of which lane, is found one by one
     if _inside(scalar):
-        return columns.filled(scalar.quantity, scalar.options, lanes, closer)
-    return [closer(lane) for lane in lanes.tolist()]
+        return filled(columns.of(scalar.quantity, scalar.options)[lanes], lanes, closer)
+    try:
+        if scalar.quantity == SOLITARY:
+            return [one.value for one in of_amplitude(scalar, seen, lanes, experiment.diameter, refine)]
+        found = getattr(strikers, scalar.quantity)[lanes]
+    except ValueError:
+        return [closer(lane) for lane in lanes.tolist()]  # of which lane, is found one by one
+    return filled(found, lanes, closer)
 
 
 def _value(experiment, scalar, seen, lane, passage, refine):

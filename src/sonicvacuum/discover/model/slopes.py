@@ -34,51 +34,42 @@ class Slopes:
         """(L, c, M) columns of one run from its prediction (L, 1, M), slopes of simulations (L, ·, M) and to
         times; `held` are columns to its nuisances.
         """
-        p = len(hypothesis.coordinates)
-        nuisances = self._nuisance_columns(
-            run, base[:, 0], None if held is not None else slopes[:, p:], timing
-        )
-        if held is not None:
-            kept = self._simulated_of(run)
-            nuisances[:, kept] = held[:, kept]
-        slopes = slopes[:, :p].copy()
-        self._like_nuisances(hypothesis, run, places, slopes, nuisances)
-        return np.concatenate([base, slopes, nuisances], axis=1)
+        p, local = len(hypothesis.coordinates), self.layout.local(run).tolist()
+        columns = np.empty((len(base), 1 + p + len(local), base.shape[2]))
+        columns[:, :1], own, nuisances = base, columns[:, 1 : 1 + p], columns[:, 1 + p :]
+        own[:] = slopes[:, :p]
+        speeds = (self.layout.speed(run), *self.layout.other("speed-common"))
+        changes = self._on_readings(run, base[:, 0], timing)
+        if held is None:
+            changes |= {place: slopes[:, p + k] for k, place in enumerate(self.layout.simulated)}
+            changes |= dict.fromkeys(speeds, slopes[:, -1])
+        for k, place in enumerate(local):
+            if held is not None and (place in self.layout.simulated or place in speeds):
+                nuisances[:, k] = held[:, k]
+            else:
+                np.multiply(changes[place], self.sigma[place], out=nuisances[:, k])
+        self._like_nuisances(hypothesis, run, places, own, nuisances)
+        return columns
 
-    def _nuisance_columns(self, run, value, changes, timing):
-        """(L, S + 3 + others, M) changes of the data of a run with its nuisances, as in `Layout.local`.
+    def _on_readings(self, run, value, timing):
+        """Place → (L, M) changes of the data of a run with what acts on readings alone.
 
         Args:
             run: index of the run.
             value: (L, M) predictions.
-            changes: (L, simulated + 1, M) slopes to the simulated ones, relative, and to the speeds; None
-                leaves their columns at zero.
             timing: (L, 1 + clock + delays, M) slopes to time zero, clock and delays.
         """
-        layout, sigma = self.layout, self.sigma
+        layout = self.layout
         gains = scalars.gain_columns(self.experiment, run, value)
-        if changes is None:
-            changes = np.zeros((len(value), 1 + len(layout.simulated), 1))
-        own = {place: changes[:, k] for k, place in enumerate(layout.simulated)}
-        own |= {layout.speed(run): changes[:, -1], layout.trigger(run): timing[:, 0]}
-        own |= {place: gains[:, s] for s, place in enumerate(layout.gains)}
-        own |= dict.fromkeys(layout.other("speed-common"), changes[:, -1])
-        own |= dict.fromkeys(layout.other("gain-common"), gains.sum(axis=1))
+        own = {layout.trigger(run): timing[:, 0]}
+        own |= {place: gains[:, s] for s, place in enumerate(layout.gains.tolist())}
+        for place in layout.other("gain-common"):
+            own[place] = gains.sum(axis=1)
         timed = [*layout.other("clock"), *layout.other("delay")]
         own |= {place: timing[:, 1 + k] for k, place in enumerate(timed)}
         for place in layout.other("shared"):
             own[place] = scalars.shared_column(self.experiment, run, value, layout.named(place))
-        places = layout.local(run)
-        result = np.empty((len(value), len(places), value.shape[1]))
-        for k, place in enumerate(places):
-            result[:, k] = own[place] * sigma[place]
-        return result
-
-    def _simulated_of(self, run) -> np.ndarray:
-        """Which of the columns to the nuisances of a run, as in `Layout.local`, take simulations."""
-        layout = self.layout
-        own = {*layout.simulated, layout.speed(run), *layout.other("speed-common")}
-        return np.flatnonzero([place in own for place in layout.local(run)])
+        return own
 
     def nuisance_column(self, acts_like: str, run: int, place):
         """The nuisance that a ratio acts like, and its standard error.

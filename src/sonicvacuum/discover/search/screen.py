@@ -96,14 +96,19 @@ class Screen:
         free = self.normal.free
         return self.fit.u + step[:free], self.fit.nu + step[free:]
 
-    def threshold(self, false_alarm: float) -> float:
-        """Largest z² that pure noise exceeds, over all directions together, with this probability."""
+    @cached_property
+    def _nulls(self) -> np.ndarray:
+        """(NULLS,) largest z² over all directions in draws of pure noise."""
         draws = np.random.default_rng(np.random.SeedSequence(SEED)).standard_normal((NULLS, len(self.z)))
         values, vectors = np.linalg.eigh(self.correlation)
         noise = draws @ (vectors * np.sqrt(np.maximum(values, 0.0))).T
         two_sided = np.array([d.two_sided for d in self.directions])
         largest = np.where(two_sided, np.abs(noise), np.maximum(noise, 0.0)).max(axis=1)
-        return float(np.quantile(np.square(largest), 1.0 - false_alarm))
+        return np.square(largest)
+
+    def threshold(self, false_alarm: float) -> float:
+        """Largest z² that pure noise exceeds, over all directions together, with this probability."""
+        return float(np.quantile(self._nulls, 1.0 - false_alarm))
 
     def best(self) -> dict[str, int]:
         """Effect → its direction of the largest |z|."""
