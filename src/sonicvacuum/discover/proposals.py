@@ -1,19 +1,12 @@
 """Where draws of the posterior are proposed: even points, Student's t, valleys that bend."""
 
-import math
-from statistics import NormalDist
-
 import numpy as np
+import scipy
 
 from sonicvacuum.discover.fit.ridge import Valley
-from sonicvacuum.discover.fit.tails import erfc
 
 # Degrees of freedom of Student's t: its tails are heavier than those of any likelihood that ends.
 FREEDOM = 5.0
-# Steps of Newton's method for a χ² of so many, which doubles the digits of its start with each.
-NEWTON = 4
-# What is nearer to the faces of the unit cube counts as so near.
-NEAREST = 1e-16
 # Places along a valley for which its density is worked out, and the power to which that is raised: flatter.
 GRID, FLATTER = 512, 0.8
 
@@ -35,27 +28,9 @@ def students(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     density, up to a constant.
     """
     d = points.shape[1] - 1
-    points = points.clip(NEAREST, 1.0 - NEAREST)
-    normal = np.asarray(np.frompyfunc(NormalDist().inv_cdf, 1, 1)(points), dtype=float)
-    wide = np.sqrt(FREEDOM / _chi_squared_at(points[:, d], -normal[:, d]))[:, None]
-    scaled = wide * normal[:, :d]
+    wide = np.sqrt(FREEDOM / scipy.special.chdtri(FREEDOM, points[:, d]))[:, None]
+    scaled = wide * scipy.special.ndtri(points[:, :d])
     return scaled, -0.5 * (FREEDOM + d) * np.log1p(np.square(scaled).sum(axis=1) / FREEDOM)
-
-
-def _chi_squared_at(p, normal):
-    """(n,) values that χ² of five degrees of freedom exceeds with probabilities p, and the standard normal
-    distribution at `normal`.
-    """
-    # Wilson & Hilferty, Proc. Natl. Acad. Sci. 17, 684 (1931): the cube root is nearly normal.
-    share = 2.0 / (9.0 * FREEDOM)
-    value = FREEDOM * np.maximum(1.0 - share + normal * math.sqrt(share), share) ** 3
-    for _ in range(NEWTON):
-        wave = np.exp(-0.5 * value) * np.sqrt(2.0 * value / math.pi)
-        tail = erfc(np.sqrt(0.5 * value)) + wave * (1.0 + value / 3.0)
-        # Log odds over the logarithm of the value are nearly straight.
-        slope = wave * value**2 / (6.0 * tail * (1.0 - tail))
-        value = value * np.exp(np.log(tail / p * (1.0 - p) / (1.0 - tail)) / slope)
-    return value
 
 
 def along(valley: Valley, count: int, seed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
