@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from sonicvacuum.discover import policy
+from sonicvacuum.discover.fit import heldout
 from sonicvacuum.discover.search import pairs, several
 
 # Log evidence of every set that could be fitted.
@@ -60,3 +61,14 @@ def test_a_set_that_cannot_come_to_its_rival_is_given_up(turns, rival, given_up)
     found.rival = rival
     assert policy.MOST_EFFECTS == 6
     assert found._hopeless(fitted("bc"), fitted("bcd")) is given_up
+
+
+@pytest.mark.parametrize(
+    ("gains", "alone", "growing"),
+    [([-5.9, 3.0, 20.0], True, True), ([-9.2, 4.6, 135.5], False, True), ([-20.0, 4.6, 135.5], False, False)],
+)
+def test_while_others_are_missing_a_run_may_be_predicted_a_little_worse(monkeypatch, gains, alone, growing):
+    """Damping beside a soft wall and a gauge that discharges, before a heavier bead: -9.2 of +131."""
+    monkeypatch.setattr(heldout, "predictive", lambda one: np.array(gains) * one)
+    assert heldout.better(0.0, 1.0) is alone
+    assert heldout.better(0.0, 1.0, share=several.WORSE) is growing

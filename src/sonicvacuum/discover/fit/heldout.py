@@ -93,12 +93,14 @@ def _width(fit):
     )
 
 
-def better(before: Fit, after: Fit, room: float = 6.0, even: float = 2.0) -> bool:
+def better(before: Fit, after: Fit, room: float = 6.0, even: float = 2.0, share: float = 0.0) -> bool:
     """Whether a model predicts unseen runs better, in sum and none of them much worse.
 
-    `room` is the log density by which one run may be worse. An effect that does what a nuisance does, beyond
-    that one's stated error (a modulus, a gain), predicts as the nuisance let loose does: in sum `even` may be
-    lost. With a single run there is nothing to hold out.
+    `room` is the log density by which one run may be worse, or a `share` of what all gain together: while
+    other effects are still missing, one that is there makes up for them in each run by another size. An
+    effect that does what a nuisance does, beyond that one's stated error (a modulus, a gain), predicts as the
+    nuisance let loose does: in sum `even` may be lost. With a single run there is nothing to hold out.
     """
     gain = predictive(after) - predictive(before)
+    room = max(room, share * float(gain.sum()))
     return len(gain) < 2 or bool(gain.sum() > -even and gain.min() > -room)

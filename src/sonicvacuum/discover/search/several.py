@@ -30,6 +30,8 @@ TRIED, FIRST, EXCHANGES = 2, 5, 1
 PROMISE = 0.6
 # One more effect is hoped to gain so many times the log evidence of the one before it.
 HOPED = 2.0
+# One run may be predicted worse by so much of what all runs gain.
+WORSE = 0.1
 TURNS = policy.MOST_EFFECTS + 2
 
 
@@ -179,7 +181,7 @@ class Turns:
             gain > self._asked(before)
             and ratio > policy.LEAST_LOG10_BAYES * np.log(10.0)
             and enough.suffice(self.forward, after)
-            and heldout.better(before, after)
+            and heldout.better(before, after, share=WORSE)
         )
 
     def _asked(self, before: Fit) -> float:
