@@ -248,6 +248,23 @@ def test_of_losses_that_do_the_same_the_likeliest_is_told(found):
     assert told(droop, offset) == [True, False]
 
 
+def test_probable_rivals_tell_what_they_make_of_what_they_share(found):
+    """The wall and the gauge come out otherwise beside another law of loss; both errors are of one law."""
+    one = found.final
+    (tau,) = one.hypothesis.values(one.u)["sensor-droop"].values()
+    ranked = [
+        Combination(names, one, 0.0, 0.0) for names in (("sensor-droop", "tsuji"), ("sensor-droop",), ())
+    ]
+    weights = {"sensor-droop + tsuji": 2.0, "sensor-droop": 1.0, "none": -9.0}
+    (said,) = gross._instead(found.forward, ranked, weights)
+    assert said.startswith(
+        f"were it sensor-droop (probability 0.27): sensor-droop tau_us {tau:.3g}, "
+    )  # 1/(1+e)
+    (wall,) = [ratio for name, ratio in wide.values(found.forward, one) if name == "modulus foam"]
+    assert said.endswith(f"modulus foam {wall:.3g}")
+    assert wall == pytest.approx(STIFFER, rel=0.1)  # beside errors of 6 % of the peak
+
+
 def test_what_every_explanation_has_is_clear_though_none_of_them_is():
     """An offset of 20 % beside something smooth was called unknown: each explanation had one effect more."""
     weights = {"none": 0.0, "a": 90.0, "a + b": 100.0, "a + c": 100.0, "b": 20.0}

@@ -110,6 +110,17 @@ def wide(forward: Forward) -> bool:
     return len(starts(forward)) > 1
 
 
+def values(forward: Forward, one: Fit) -> list[tuple[str, float]]:
+    """Name and ratio to the stated one of what the runs share and nobody knows well, as a fit has it."""
+    sigma, first = forward.nuisance_sigma, forward.layout.modulus + 1
+    own = [
+        (k, other) for k, other in enumerate(forward.layout.others, first) if k in forward.layout.simulated
+    ]
+    return [
+        (f"{o.kind} {o.of}".strip(), float(np.exp(one.nu[k] * sigma[k]))) for k, o in own if sigma[k] > WIDE
+    ]
+
+
 def minima(forward: Forward, null: Fit) -> np.ndarray:
     """(L, q) nuisances of the nominal fit and of its next best minima, where fits need several starts; else
     the middle of their priors.

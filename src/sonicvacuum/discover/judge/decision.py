@@ -238,7 +238,9 @@ class Case:
         if one is None:
             return self._unknown(alarms, [*reasons, "no effect stands out of it"], after, tried)
         alarms["set"] = after.p
+        reasons += standing.instead
         view = View(*gross.widened(self.forward, self.null, one))
+        tried = _together(tried, standing.found, pairs.combination(self.null, one, self.setup))
         return Decision(
             [*names, UNKNOWN], one, alarms, reasons, after.p, tried, after.size.size, view, standing.weights
         )

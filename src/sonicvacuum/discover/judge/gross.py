@@ -15,7 +15,7 @@ probability.
 """
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
@@ -81,12 +81,17 @@ class Standing:
         shares: effect → probability that it is there.
         loss: probability that one at least takes energy.
         weights: log weights of explanations, those that have all that stands out as one.
+        found: all explanations, each fitted as well as it was.
+        instead: what probable rivals of the best one make of what they share with it, and of what is hardly
+            known, in words.
     """
 
     fit: Fit | None
     shares: dict[str, float]
     loss: float
     weights: dict[str, float]
+    found: list[Combination] = field(default_factory=list)
+    instead: list[str] = field(default_factory=list)
 
 
 def standing_out(
@@ -109,7 +114,8 @@ def standing_out(
         fit = _told_apart(forward, null, ranked, odds, loss, setup)
         if fit is None:
             return first or Standing(None, odds, loss, weights)
-        now = Standing(fit, odds, loss, merged(weights, fit.hypothesis.ids))
+        rivals = _instead(forward, ranked, weights)
+        now = Standing(fit, odds, loss, merged(weights, fit.hypothesis.ids), found, rivals)
         if not gross(forward, fit):
             return now
         first = first or now
@@ -119,6 +125,21 @@ def standing_out(
         if not more:
             return first
         found = [*found, *_at_their_best(forward, null, more)]
+
+
+def _instead(forward, ranked: list[Combination], weights: Mapping[str, float]) -> list[str]:
+    """What probable rivals of the best explanation say: an error of what is told does not contain it."""
+    total, best = np.logaddexp.reduce(list(weights.values())), ranked[0].effects
+    said = []
+    for c in ranked[1:]:
+        p = float(np.exp(weights[explanations.key(c.effects)] - total))
+        values = c.fit.hypothesis.values(c.fit.u)
+        own = {name: values[name] for name in best if name in values}
+        shared = [(f"{e} {n}", v) for e, given in own.items() for n, v in given.items() if v is not None]
+        told = ", ".join(f"{name} {value:.3g}" for name, value in [*shared, *wide.values(forward, c.fit)])
+        if p > policy.TOLD and told:
+            said.append(f"were it {' + '.join(c.effects)} (probability {p:.2f}): {told}")
+    return said
 
 
 def _at_their_best(forward, null, found: list[Combination]) -> list[Combination]:
