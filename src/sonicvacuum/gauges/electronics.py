@@ -43,7 +43,10 @@ def filtered(
     equal, mean = np.abs(d - b) < _EQUAL * b, 0.5 * (b + d)
     short, long = np.where(equal, mean * (1.0 - _EQUAL), b), np.where(equal, mean * (1.0 + _EQUAL), d)
     weight = np.where(equal, d, 1.0) / np.where(equal, long, 1.0) / (1.0 - short / long)
-    beyond = high_passed(signal, interval_s, long) - high_passed(signal, interval_s, short, bent=True)
+    beyond = high_passed(signal, interval_s, long)
+    if np.any(short):
+        # Without a low pass there is nothing to be taken off: H_0 is 0.
+        beyond -= high_passed(signal, interval_s, short, bent=True)
     return weight * beyond
 
 
