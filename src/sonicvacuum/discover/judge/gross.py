@@ -132,7 +132,7 @@ def _instead(forward, ranked: list[Combination], weights: Mapping[str, float]) -
     total, best = np.logaddexp.reduce(list(weights.values())), ranked[0].effects
     said = []
     for c in ranked[1:]:
-        p = float(np.exp(weights[explanations.key(c.effects)] - total))
+        p = float(np.exp(weights.get(explanations.key(c.effects), -np.inf) - total))
         values = c.fit.hypothesis.values(c.fit.u)
         own = {name: values[name] for name in best if name in values}
         shared = [(f"{e} {n}", v) for e, given in own.items() for n, v in given.items() if v is not None]
