@@ -12,6 +12,7 @@ from sonicvacuum.discover.fit.wide import nominal
 from sonicvacuum.discover.model.experiment import whitened_gaps
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.problem import experiment, flicker, noise
+from sonicvacuum.figures.discovery import label_of
 from sonicvacuum.records import Record, Signals, read, write
 from sonicvacuum.records.reader import parse
 
@@ -68,12 +69,16 @@ def test_gains_that_nobody_knows_start_near_the_truth(hidden):
 
 
 def test_gauges_in_volts_find_the_effect_that_calibrated_ones_find(hidden, verdict):
-    found = session.discover(in_volts(hidden)).verdict
-    calibrated = verdict.verdict
+    result = session.discover(in_volts(hidden))
+    found, calibrated = result.verdict, verdict.verdict
     family = {"kuwabara-kono", *(name for names in calibrated.confusable for name in names)}
     assert found.named
     assert set(found.named) <= family
     assert found.gap.fitted.after == pytest.approx(calibrated.gap.fitted.after, abs=0.05)
+    header, rows = session.trace_rows(result)
+    assert header[-1] == "unit"
+    assert {(r[1], r[-1]) for r in rows} == {("g4", "as recorded"), ("g7", "as recorded"), ("wall", "N")}
+    assert label_of("as recorded") == "reading (as recorded)"
 
 
 def test_a_gauge_that_a_run_lacks_counts_for_nothing(empty):

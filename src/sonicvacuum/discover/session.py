@@ -31,6 +31,9 @@ from sonicvacuum.physics.run import available_threads
 from sonicvacuum.records import Record
 from sonicvacuum.records.extent import check_extent
 
+# Unit of the readings of a gauge whose calibration nobody knows.
+UNCALIBRATED = "as recorded"
+
 
 @dataclass(frozen=True)
 class Result:
@@ -305,20 +308,21 @@ def rounds_of(found: Investigation) -> list[tuple[str, float]]:
 def trace_rows(result: Result):
     """Header and rows: measured trace and both models for each run and gauge (empty without signals).
 
-    Columns are in N; where a gauge reads something else, they have no unit in their names and each row has
-    its own.
+    Columns are in N; where a gauge reads something else, or nobody calibrated it, they have no unit in
+    their names and each row has its own.
     """
     from sonicvacuum.discover.search.unknown import raw
 
     found = result.found
     e = found.forward.experiment
     header = ["run", "sensor", "time_us", "measured_N", "nominal_N", "extended_N", "sigma_N"]
-    mixed = any(g.unit != "N" for g in e.gauges)
+    units = {g.id: g.unit if g.calibrated else UNCALIBRATED for g in e.gauges}
+    mixed = any(unit != "N" for unit in units.values())
     if mixed:
         header = [name.removesuffix("_N") for name in header] + ["unit"]
 
     def unit(gauge):
-        return (gauge.unit,) if mixed else ()
+        return (units[gauge.id],) if mixed else ()
 
     if not any(r.has_signals for r in e.runs):
         return header, []

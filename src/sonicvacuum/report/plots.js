@@ -57,7 +57,8 @@
     const c = colours(), kinds = Object.keys(LINES).filter((name) => name in trace);
     const values = Object.fromEntries(kinds.map((name) => [name, trace[name].map((v) => v * trace.value)]));
     const time = trace.times || trace.measured.map((_, k) => trace.start + k * trace.step);
-    const shown = { N: "force (N)", "m/s": "velocity (m/s)", "m/s2": "acceleration (m/s²)" };
+    const shown = { N: "force (N)", "m/s": "velocity (m/s)", "m/s2": "acceleration (m/s²)",
+                    "as recorded": "reading (as recorded)" };
     const signal = kinds.map((name) => ({
       label: LINES[name], stroke: c[name], width: name === "measured" ? 1 : 2, value: (_, v) => digits(v),
       dash: name === "nominal" ? [7, 4] : undefined,
