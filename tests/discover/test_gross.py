@@ -14,7 +14,7 @@ from sonicvacuum.discover.compare import compare
 from sonicvacuum.discover.fit import refit, wide
 from sonicvacuum.discover.fit.evidence import Combination, log_bayes
 from sonicvacuum.discover.fit.wide import nominal
-from sonicvacuum.discover.judge import decision, gross
+from sonicvacuum.discover.judge import decision, gross, weighing
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, variants
 from sonicvacuum.discover.model.problem import experiment
@@ -215,14 +215,14 @@ def test_pieces_are_the_independent_values_of_a_variance(rho, samples):
         left[k] += rho * left[k - 1]
     # Of an autoregression 1 + 2 Σ ρ^2k = (1 + ρ²)/(1 − ρ²); estimated correlations add noise of 2 T/T.
     exact = samples / ((1.0 + rho**2) / (1.0 - rho**2))
-    assert exact / 4.0 < gross._pieces(left) < 1.1 * exact
+    assert exact / 4.0 < weighing._pieces(left) < 1.1 * exact
 
 
 def test_explanations_with_more_count_as_what_is_named_and_unknown():
     weights = {"none": 0.0, "a": 1.0, "a + b": 2.0, "c": 0.5}
-    merged = gross.merged(weights, ["a"])
+    merged = weighing.merged(weights, ["a"])
     assert merged == {"none": 0.0, "c": 0.5, "a": pytest.approx(np.logaddexp(1.0, 2.0))}
-    shares = gross.shares(weights)
+    shares = weighing.shares(weights)
     assert shares["a"] == pytest.approx((np.exp(1) + np.exp(2)) / (1 + np.exp(1) + np.exp(2) + np.exp(0.5)))
 
 
@@ -233,7 +233,7 @@ def test_of_losses_that_do_the_same_the_likeliest_is_told(found):
         Component(CATALOGUE.effect(name), variants(CATALOGUE.effect(name), setup)[0]) for name in ids
     )
     logs = {"sensor-droop": 0.0, "plastic-contact + sensor-droop": 50.0, "sensor-droop + viscous-drag": 48.4}
-    odds, loss = gross.shares(logs), gross.loss_share(logs, setup)
+    odds, loss = weighing.shares(logs), weighing.loss_share(logs, setup)
     assert loss == pytest.approx(1.0, abs=1e-9)  # e^-48 of what has none
     assert odds["plastic-contact"] == pytest.approx(0.832, abs=1e-3)  # 1/(1 + e^-1.6)
 
@@ -243,7 +243,7 @@ def test_of_losses_that_do_the_same_the_likeliest_is_told(found):
 
     assert told(droop, plastic) == [True, True]  # the best explanation, which is that of the likeliest
     assert told(plastic) == [False]  # beside nothing that stands out, which it is is all there is to tell
-    assert gross.loss_share({"none": 0.0, "sensor-offset": 50.0}, setup) < 1e-9
+    assert weighing.loss_share({"none": 0.0, "sensor-offset": 50.0}, setup) < 1e-9
     odds |= {"sensor-offset": 0.832}
     assert told(droop, offset) == [True, False]
 
@@ -269,8 +269,8 @@ def test_what_every_explanation_has_is_clear_though_none_of_them_is():
     """An offset of 20 % beside something smooth was called unknown: each explanation had one effect more."""
     weights = {"none": 0.0, "a": 90.0, "a + b": 100.0, "a + c": 100.0, "b": 20.0}
     assert not decision._clear(weights, ["a"])
-    assert decision._clear(gross.merged(weights, ["a"]), ["a"])
-    assert not decision._clear(gross.merged(weights, ["b"]), ["b"])
+    assert decision._clear(weighing.merged(weights, ["a"]), ["a"])
+    assert not decision._clear(weighing.merged(weights, ["b"]), ["b"])
 
 
 def test_nuisances_relax_as_a_fit_with_wider_noise_finds_them(hidden):
@@ -279,7 +279,7 @@ def test_nuisances_relax_as_a_fit_with_wider_noise_finds_them(hidden):
     null = nominal(forward)
     wide_view = Forward(replace(forward.experiment, sigma=5.0 * forward.experiment.sigma))
     there = several.moved(wide_view, null)
-    chi2, penalty = gross._prior(forward, 25.0).relaxed(null)
+    chi2, penalty = weighing._prior(forward, 25.0).relaxed(null)
     # The model bends between the two points: a few per cent of what changes.
     assert chi2 == pytest.approx(25.0 * there.normal.chi2.sum(), rel=0.03)
     assert penalty == pytest.approx(np.square(there.nu).sum(), rel=0.1)
@@ -293,20 +293,20 @@ def test_a_modulus_far_from_what_was_stated_is_no_explanation():
     (free,) = variants(modulus, setup_of(forward))
     hypothesis = Hypothesis((Component(modulus, free),))
     one = refit.fit(forward, hypothesis, np.array([[np.log(0.6)]]), 0.0 * null.nu)
-    prior = gross._prior(forward, 400.0)
+    prior = weighing._prior(forward, 400.0)
     assert null.normal.chi2.sum() < 2.0 * one.normal.chi2.sum()
     assert prior.strains(null, one)
     assert not prior.strains(one, null)
     assert one.hypothesis.strengths(one.u, prior.sigma(one))[0] > policy.SEEN
     gain = null.objective - one.objective
-    (weighed,) = gross.weighed(forward, null, [Combination(("dynamic-modulus",), one, gain, gain / 2.0)])
+    (weighed,) = weighing.weighed(forward, null, [Combination(("dynamic-modulus",), one, gain, gain / 2.0)])
     assert weighed.log_bayes > 10.0
 
 
 def test_noise_is_no_gross_misfit(empty):
     forward = Forward(experiment(empty))
     assert not gross.gross(forward, nominal(forward))
-    assert gross._pieces(np.zeros(5)) == 0.0
+    assert weighing._pieces(np.zeros(5)) == 0.0
 
 
 @pytest.mark.parametrize(

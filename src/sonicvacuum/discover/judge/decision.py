@@ -9,7 +9,7 @@ from sonicvacuum.discover import policy
 from sonicvacuum.discover.fit import discrepancy, enough, evidence, heldout, smooth
 from sonicvacuum.discover.fit.evidence import Candidate, Combination
 from sonicvacuum.discover.fit.refit import Fit
-from sonicvacuum.discover.judge import explanations, gross
+from sonicvacuum.discover.judge import explanations, gross, weighing
 from sonicvacuum.discover.judge.left import Left, left, sure
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.search import directions, pairs, restart, screen, several, singles, unknown
@@ -239,7 +239,7 @@ class Case:
             return self._unknown(alarms, [*reasons, "no effect stands out of it"], after, tried)
         alarms["set"] = after.p
         reasons += standing.instead
-        view = View(*gross.widened(self.forward, self.null, one))
+        view = View(*weighing.widened(self.forward, self.null, one))
         tried = _together(tried, standing.found, pairs.combination(self.null, one, self.setup))
         return Decision(
             [*names, UNKNOWN], one, alarms, reasons, after.p, tried, after.size.size, view, standing.weights
@@ -256,7 +256,7 @@ class Case:
             fit_ = self._irreplaceable(grown, one, needed, reasons)
             named = list(fit_.hypothesis.ids)
             # Of sets only as they are: more beside two may as well be what stands for one unknown thing.
-            whole = gross.merged(weights, named) if len(named) == 1 else weights
+            whole = weighing.merged(weights, named) if len(named) == 1 else weights
             if not named or _clear(whole, named):
                 break
             reasons.append(f"{' + '.join(named)}: not clearly the best beside what is left")
