@@ -32,7 +32,7 @@ def verdict(trace: np.ndarray, model: np.ndarray, sigma: float) -> str:
     if not peak > EXPECTED * sigma or not peak > 0.0:
         return ""
     power = float(model @ model)
-    found = correlated(trace - np.median(trace), model) / power
+    found = _slid(trace, model) / power
     up, down = float(found.max()), float(-found.min())
     if max(up, down) < max(SHARE, SILENT * sigma / np.sqrt(power)) and np.abs(trace).max() < SILENT * max(
         sigma, 1e-12
@@ -44,10 +44,15 @@ def verdict(trace: np.ndarray, model: np.ndarray, sigma: float) -> str:
     return "inverted" if down > INVERTED * up and down * swing > SHARE and down > up else ""
 
 
+def _slid(trace, model):
+    """Sums of products of a trace, its level off, with the model's reading, as `correlated` has them."""
+    return correlated(trace - np.median(trace), model)
+
+
 def share(trace: np.ndarray, model: np.ndarray) -> float:
     """How much of the model's pulse, either way up and wherever in time, (T,) measured readings hold."""
     power = float(model @ model)
-    found = np.abs(correlated(trace - np.median(trace), model))
+    found = np.abs(_slid(trace, model))
     return float(found.max()) / power if power > 0.0 else 0.0
 
 
@@ -74,7 +79,7 @@ def delay(trace: np.ndarray, model: np.ndarray, time: np.ndarray) -> float:
 
     The shift is that at which the model's reading, either way up, fits the measured one best.
     """
-    found = np.abs(correlated(trace - np.median(trace), model))
+    found = np.abs(_slid(trace, model))
     shift, interval = int(found.argmax()) - (len(model) - 1), float(time[1] - time[0])
     return 1.0 + shift * interval / max(float(time[int(np.abs(model).argmax())]), interval)
 
