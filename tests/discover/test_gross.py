@@ -21,7 +21,7 @@ from sonicvacuum.discover.model.problem import experiment
 from sonicvacuum.discover.rounds import investigate
 from sonicvacuum.discover.search import several
 from sonicvacuum.discover.search.singles import setup_of
-from sonicvacuum.discover.verdict import Model
+from sonicvacuum.discover.verdict import Model, nuisances
 from sonicvacuum.effects import CATALOGUE, IDS
 from sonicvacuum.records import Record, Signals
 from sonicvacuum.records.reader import parse
@@ -204,7 +204,12 @@ def test_its_errors_are_those_that_the_misfit_makes(found):
 
 
 def test_a_gross_misfit_alone_names_nothing():
-    assert investigate(experiment(made((), 0.06))).named == ["unknown"]
+    found = investigate(experiment(made((), 0.06)))
+    assert found.named == ["unknown"]
+    wall = nuisances(found.counted.forward, found.counted.final, found.rivals)["modulus foam"]
+    alone = nuisances(found.forward, found.null)["modulus foam"]
+    assert wall.sigma > 3.0 * alone.sigma  # the noise's, of which 6 % of the peak are many
+    assert abs(np.log(wall.value / STIFFER)) < 3.0 * wall.sigma
 
 
 @pytest.mark.parametrize(("rho", "samples"), [(0.0, 4000), (0.6, 4000), (0.9, 8000)])

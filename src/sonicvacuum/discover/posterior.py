@@ -13,14 +13,17 @@ there the Gaussian is told.
 """
 
 import math
+from collections.abc import Sequence
 from itertools import chain
 
 import numpy as np
 
 from sonicvacuum.discover import proposals
-from sonicvacuum.discover.draws import LINEAR, PROFILE, SAMPLED, TRUSTED, Draws, pareto_k
+from sonicvacuum.discover.draws import AVERAGED, LINEAR, PROFILE, SAMPLED, TRUSTED, Draws, pareto_k
 from sonicvacuum.discover.fit import broad, ridge
 from sonicvacuum.discover.fit.refit import Fit
+from sonicvacuum.discover.judge import rivals
+from sonicvacuum.discover.judge.rivals import Rival
 from sonicvacuum.discover.model.forward import CHUNK, Forward
 
 # Draws, and their seed; SPARE times as many are proposed, for those that lie beyond the bounds.
@@ -33,25 +36,31 @@ TAIL = 0.05
 SETTLED = 1.0
 # So many of the draws for each coordinate are followed by so many steps.
 FEW, STEPS = 12, 3
+# What rivals make of a parameter is told where it adds such a share of its error.
+NOTABLE = 0.3
 # A valley is drawn from where it has so many points.
 SHORTEST = 5
 # The widest proposal, as a share of the range that is searched.
 WIDEST = 0.5
 
 
-def posterior(forward: Forward, fit: Fit) -> list[Draws]:
+def posterior(forward: Forward, fit: Fit, found: Sequence[Rival] = ()) -> list[Draws]:
     """Draws of every free parameter of a fit, or its profile where they are not to be trusted; [] for a fit
     without any.
+
+    Where rivals that have a parameter make notably more of its error, its draws stand once for each of them.
     """
     if not len(fit.u):
         return []
     bent = broad.asks(fit.hypothesis) and not fit.at_bound().any()
-    found = _valley(forward, fit) if bent else None
-    u, log_weight = _along(forward, fit, found) if found else _straight(forward, fit)
+    valley = _valley(forward, fit) if bent else None
+    u, log_weight = _along(forward, fit, valley) if valley else _straight(forward, fit)
     weight = _normalised(log_weight)
     if pareto_k(weight) <= TRUSTED:
-        return _told(fit, [(SAMPLED, u[:, k], weight) for k in range(len(fit.u))])
-    return _told(fit, [_profile(forward, fit, k) for k in range(len(fit.u))])
+        drawn = [(SAMPLED, u[:, k], weight) for k in range(len(fit.u))]
+    else:
+        drawn = [_profile(forward, fit, k) for k in range(len(fit.u))]
+    return _told(fit, _averaged(fit, drawn, found))
 
 
 def proposed(fit: Fit, count: int = DRAWS, seed: int = SEED) -> tuple[np.ndarray, np.ndarray]:
@@ -186,6 +195,19 @@ def _profile(forward, fit, k):
     if TAIL < below < 1.0 - TAIL or fit.at_bound()[k]:
         return PROFILE, u, weight
     return LINEAR, u, _normalised(-0.5 * np.square((u - fit.u[k]) / sigma))
+
+
+def _averaged(fit, drawn, found):
+    """How coordinates are told, values and weights, with what rivals make of them."""
+    low, high = _bounds(fit)
+    result = []
+    for k, (how, u, weight) in enumerate(drawn):
+        share, off = rivals.shifts(fit, found)[k]
+        if share @ np.square(off) > (NOTABLE * fit.sigma[k]) ** 2:
+            u = (u + off[:, None]).clip(low[k], high[k]).ravel()
+            how, weight = AVERAGED, np.outer(share, weight).ravel()
+        result.append((how, u, weight))
+    return result
 
 
 def _normalised(log_weight):

@@ -12,6 +12,7 @@ from sonicvacuum.discover.fit.evidence import Candidate, Combination
 from sonicvacuum.discover.fit.refit import Fit, polish
 from sonicvacuum.discover.judge import explanations
 from sonicvacuum.discover.judge.decision import Case, Decision, View
+from sonicvacuum.discover.judge.rivals import Rival, of_odds
 from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.experiment import Experiment
 from sonicvacuum.discover.model.forward import Forward
@@ -45,6 +46,7 @@ class Investigation:
         alike: effects that change these data as the best one does, it included.
         smooth: size of the smooth discrepancy that is left, as a share of the peak.
         counted: the same models with that discrepancy counted as noise.
+        rivals: probable explanations, as they are fitted where the errors of `counted` hold.
     """
 
     forward: Forward
@@ -61,6 +63,7 @@ class Investigation:
     alike: list[str] = field(default_factory=list)
     smooth: float = 0.0
     counted: View | None = None
+    rivals: list[Rival] = field(default_factory=list)
 
     @property
     def sizes(self) -> np.ndarray:
@@ -106,7 +109,10 @@ def investigate(experiment: Experiment, threads: int = 1, null: Fit | None = Non
     alike = explanations.aliases(forward, null, found) if passes else []
     odds, more = _odds(found, decision, alike, prior, tuple(experiment.present))
     reasons = [*decision.reasons, *(few if passes else ()), *more, *experiment.notes]
-    given = {**vars(decision), "reasons": reasons}
+    rivals = decision.rivals
+    if rivals is None:
+        rivals = of_odds(odds, null, found, decision.combinations)
+    given = {**vars(decision), "reasons": reasons, "rivals": rivals}
     del given["beside"], given["left"], given["singles"]
     return Investigation(forward, null, scores, threshold, found, odds, alike=alike, **given)
 

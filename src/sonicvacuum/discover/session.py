@@ -121,14 +121,14 @@ def discover(
     clock.mark("next experiment")
     named = verdict.named_effects(found)
     counted = found.counted or found
-    drawn = posterior(counted.forward, counted.final) if named else []
+    drawn = posterior(counted.forward, counted.final, found.rivals) if named else []
     clock.mark("posterior")
     result = Verdict(
         record=found.forward.experiment.name,
         named=found.named,
         probabilities=found.probabilities,
         confusable=alike,
-        parameters=verdict.parameters(counted.final) if named else {},
+        parameters=verdict.parameters(counted.final, found.rivals) if named else {},
         gap=verdict.gaps(found.null, final, found.sizes, before, left),
         where=verdict.where(places),
         upper_limits=verdict.upper_limits(limits),
@@ -151,7 +151,7 @@ def discover(
         fit=verdict.goodness_of_fit(*fits, found.smooth or forward.experiment.model_floor_rel or 0.0, wider),
         sources=verdict.sources(catalogue),
         warnings=_doubts(found, records[0]) or UNSET,
-        nuisances=verdict.nuisances(counted.forward, counted.final),
+        nuisances=verdict.nuisances(counted.forward, counted.final, found.rivals),
     )
     said = tuple(line for lines in notes for line in lines)
     return Result(outcome.record, records, said, found, places, after, limits, result, free, tuple(drawn))

@@ -5,7 +5,7 @@ are null.
 """
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import msgspec
@@ -16,9 +16,11 @@ from sonicvacuum.discover.faults.found import Finding
 from sonicvacuum.discover.fit.goodness import Goodness
 from sonicvacuum.discover.fit.heldout import HeldOut
 from sonicvacuum.discover.fit.refit import Fit
+from sonicvacuum.discover.judge import rivals
 from sonicvacuum.discover.judge.degenerate import Limit
 from sonicvacuum.discover.judge.explanations import key
 from sonicvacuum.discover.judge.locate import Place
+from sonicvacuum.discover.judge.rivals import Rival
 from sonicvacuum.discover.law import Law
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.parts import (
@@ -158,9 +160,12 @@ def sources(catalogue: Catalogue, ids=None) -> Sources:
     return {id: Source(name=s.name, sha256=s.sha256) for id, s in own.items()} or UNSET
 
 
-def parameters(fit: Fit) -> dict[str, dict[str, Value]]:
-    """Values and standard errors of the free parameters; places with error 0."""
-    result, first, sigma = {}, 0, fit.sigma
+def parameters(fit: Fit, found: Sequence[Rival] = ()) -> dict[str, dict[str, Value]]:
+    """Values and standard errors of the free parameters, with what rivals that have them make of them; places
+    with error 0.
+    """
+    off = [share @ np.square(shift) for share, shift in rivals.shifts(fit, found)]
+    result, first, sigma = {}, 0, np.sqrt(np.square(fit.sigma) + off)
     for component in fit.hypothesis.components:
         values = {}
         for k, c in enumerate(component.free):
@@ -175,22 +180,23 @@ def parameters(fit: Fit) -> dict[str, dict[str, Value]]:
     return result
 
 
-def nuisances(forward: Forward, fit: Fit) -> dict[str, Known] | UnsetType:
-    """What a fit says of uncalibrated gains and of what else the runs share."""
+def nuisances(forward: Forward, fit: Fit, found: Sequence[Rival] = ()) -> dict[str, Known] | UnsetType:
+    """What a fit says of uncalibrated gains and of what else the runs share, with what rivals make of it."""
     layout, e = forward.layout, forward.experiment
     value = fit.nu * forward.nuisance_sigma
-    error = np.sqrt(np.diag(fit.covariance)[len(fit.u) :]) * forward.nuisance_sigma
-    found = {}
+    square = np.diag(fit.covariance)[len(fit.u) :] + rivals.nuisances(fit, found)
+    error = np.sqrt(square) * forward.nuisance_sigma
+    known = {}
     for gauge, at in zip(e.gauges, layout.gains, strict=True):
         if not gauge.calibrated:
             ratio = float(gauge.gain * np.exp(value[at]))
-            found[f"gain {gauge.id}"] = Known(value=ratio, sigma=float(error[at]), prior=None)
+            known[f"gain {gauge.id}"] = Known(value=ratio, sigma=float(error[at]), prior=None)
     for at, one in enumerate(layout.others, start=layout.modulus + 1):
         scale = 1e6 if one.kind == "delay" else 1.0
         here = value[at] * scale if one.kind in ("delay", "clock", "shared") else np.exp(value[at])
         name = f"{one.kind} {one.of}".strip()
-        found[name] = Known(value=float(here), sigma=float(error[at]) * scale, prior=one.sigma * scale)
-    return found or UNSET
+        known[name] = Known(value=float(here), sigma=float(error[at]) * scale, prior=one.sigma * scale)
+    return known or UNSET
 
 
 def gap(before: float, after: float) -> Gap:

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from sonicvacuum.discover import policy
-from sonicvacuum.discover.draws import SAMPLED, Draws, pareto_k, read
+from sonicvacuum.discover.draws import AVERAGED, SAMPLED, Draws, pareto_k, read
 from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.figures.colours import BAND, BLUE, GREY, ORANGE
 from sonicvacuum.figures.drawing import DOUBLE, Drawing, Stroke
@@ -111,7 +111,7 @@ def _heights(draws, x):
     """Edges and heights of bars over the range drawn: of the weights of draws, or of a profile at its values;
     as high as a Gaussian of height 1 with the same area.
     """
-    if draws.how != SAMPLED:
+    if draws.how not in (SAMPLED, AVERAGED):
         middle = 0.5 * (draws.value[1:] + draws.value[:-1])
         edges = np.concatenate([draws.value[:1], middle, draws.value[-1:]])
         return np.sort(edges), (draws.weight / draws.weight.max())[:: 1 if edges[-1] > edges[0] else -1]

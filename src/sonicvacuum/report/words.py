@@ -6,7 +6,7 @@ Every sentence is made from `verdict.json`, `model.json` and the tables beside t
 import math
 from collections import Counter
 
-from sonicvacuum.discover.draws import LINEAR, SAMPLED, pareto_k
+from sonicvacuum.discover.draws import AVERAGED, LINEAR, SAMPLED, pareto_k
 from sonicvacuum.discover.judge.explanations import key
 from sonicvacuum.discover.judge.locate import DISCOVERY_RATE
 from sonicvacuum.discover.verdict import Gap, Next, Verdict
@@ -43,6 +43,10 @@ def in_words(probability: float) -> str:
 
 def drawn(draws) -> str:
     """How the intervals were found, "" without draws; `draws` as in `discover.draws.read`."""
+    if any(d.how == AVERAGED for d in draws.values()):
+        rest = {name: d for name, d in draws.items() if d.how != AVERAGED}
+        said = "Explanations that have a parameter in common put it at different values: where that matters, "
+        return f"{said}the interval is of all of them, each by its probability. {drawn(rest)}".strip()
     one = next(iter(draws.values()), None)
     if one is None:
         return ""

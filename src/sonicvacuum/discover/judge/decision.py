@@ -11,6 +11,7 @@ from sonicvacuum.discover.fit.evidence import Candidate, Combination
 from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.judge import explanations, gross, weighing
 from sonicvacuum.discover.judge.left import Left, left, sure
+from sonicvacuum.discover.judge.rivals import Rival, of_weights
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.search import directions, pairs, restart, screen, several, singles, unknown
 from sonicvacuum.effects import Setup
@@ -37,6 +38,7 @@ class Decision:
         left: p-value of what the best explanation without anything unknown leaves.
         beside: explanation → log weight with a smooth discrepancy counted as noise.
         singles: single effects, best first, where pairs led some of them to lower minima.
+        rivals: probable explanations as they are fitted beside what is left.
     """
 
     named: list[str]
@@ -49,6 +51,7 @@ class Decision:
     counted: View | None = None
     beside: dict[str, float] | None = None
     singles: list[Candidate] | None = None
+    rivals: list[Rival] | None = None
 
 
 @dataclass(frozen=True)
@@ -235,14 +238,24 @@ class Case:
         names = one.hypothesis.ids if one is not None else ()
         if any(standing.shares[name] <= policy.STANDS_OUT for name in names):
             reasons.append(f"a law that takes energy, whichever: with probability {standing.loss:.2f}")
+        view = View(*weighing.widened(self.forward, self.null, one or self.null))
         if one is None:
-            return self._unknown(alarms, [*reasons, "no effect stands out of it"], after, tried)
+            nothing = self._unknown(alarms, [*reasons, "no effect stands out of it"], after, tried)
+            return replace(nothing, counted=view, rivals=standing.rivals)
         alarms["set"] = after.p
         reasons += standing.instead
-        view = View(*weighing.widened(self.forward, self.null, one))
         tried = _together(tried, standing.found, pairs.combination(self.null, one, self.setup))
         return Decision(
-            [*names, UNKNOWN], one, alarms, reasons, after.p, tried, after.size.size, view, standing.weights
+            [*names, UNKNOWN],
+            one,
+            alarms,
+            reasons,
+            after.p,
+            tried,
+            after.size.size,
+            view,
+            standing.weights,
+            rivals=standing.rivals,
         )
 
     def _beside(self, grown: several.Grown, needed, alarms, after: Left, tried) -> Decision:
@@ -262,11 +275,13 @@ class Case:
             reasons.append(f"{' + '.join(named)}: not clearly the best beside what is left")
         if not named:
             reasons += _one_of(weights)
+        likely = of_weights(weights, [*grown.tried.values(), *rivals])
         weights = whole if named else weights
         final = several.moved(self.forward, fit_) if named else self.null
         view = View(grown.forward, grown.null, fit_) if grown.size.size else None
+        size = grown.size.size
         return Decision(
-            [*named, UNKNOWN], final, alarms, reasons, after.p, tried, grown.size.size, view, weights
+            [*named, UNKNOWN], final, alarms, reasons, after.p, tried, size, view, weights, rivals=likely
         )
 
     def _irreplaceable(self, grown: several.Grown, one: Fit, needed, reasons: list[str]) -> Fit:

@@ -18,7 +18,8 @@ from sonicvacuum.discover import policy
 from sonicvacuum.discover.fit import discrepancy, enough, evidence, places, smooth, wide
 from sonicvacuum.discover.fit.evidence import Combination
 from sonicvacuum.discover.fit.refit import Fit, fit
-from sonicvacuum.discover.judge import explanations, weighing
+from sonicvacuum.discover.judge import explanations, rivals, weighing
+from sonicvacuum.discover.judge.rivals import Rival
 from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.search import pairs, profiles, screen, several, singles, unknown
@@ -53,6 +54,7 @@ class Standing:
         loss: probability that one at least takes energy.
         weights: log weights of explanations, those that have all that stands out as one.
         found: all explanations, each fitted as well as it was.
+        rivals: those that are probable.
         instead: what probable rivals of the best one make of what they share with it, and of what is hardly
             known, in words.
     """
@@ -62,6 +64,7 @@ class Standing:
     loss: float
     weights: dict[str, float]
     found: list[Combination] = field(default_factory=list)
+    rivals: list[Rival] = field(default_factory=list)
     instead: list[str] = field(default_factory=list)
 
 
@@ -80,13 +83,14 @@ def standing_out(
         ranked = sorted(weighing.weighed(forward, null, found), key=lambda c: -c.log_bayes)
         weights = explanations.log_weights((), ranked, prior)
         odds, loss = weighing.shares(weights), weighing.loss_share(weights, setup)
+        probable = rivals.of_weights(weights, found)
         if set(ranked[0].effects) & _PROFILES:
-            return first or Standing(None, odds, loss, {})
+            return first or Standing(None, odds, loss, {}, rivals=probable)
         fit = _told_apart(forward, null, ranked, odds, loss, setup)
         if fit is None:
-            return first or Standing(None, odds, loss, weights)
-        rivals = _instead(forward, ranked, weights)
-        now = Standing(fit, odds, loss, weighing.merged(weights, fit.hypothesis.ids), found, rivals)
+            return first or Standing(None, odds, loss, weights, rivals=probable)
+        merged, said = weighing.merged(weights, fit.hypothesis.ids), _instead(forward, ranked, weights)
+        now = Standing(fit, odds, loss, merged, found, probable, said)
         if not gross(forward, fit):
             return now
         first = first or now
@@ -99,7 +103,7 @@ def standing_out(
 
 
 def _instead(forward, ranked: list[Combination], weights: Mapping[str, float]) -> list[str]:
-    """What probable rivals of the best explanation say: an error of what is told does not contain it."""
+    """What probable rivals of the best explanation say of what they share with it."""
     total, best = np.logaddexp.reduce(list(weights.values())), ranked[0].effects
     said = []
     for c in ranked[1:]:

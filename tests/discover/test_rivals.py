@@ -1,0 +1,82 @@
+"""What rival explanations make of what they share, against mixtures that are known in closed form."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.special import ndtri
+
+from sonicvacuum.discover import draws, posterior
+from sonicvacuum.discover.fit.evidence import Combination
+from sonicvacuum.discover.judge import rivals
+from sonicvacuum.discover.judge.rivals import Rival
+from sonicvacuum.discover.verdict import parameters
+
+
+@pytest.fixture(scope="module")
+def fit(verdict):
+    """A fit with one effect, of one free coordinate."""
+    return verdict.found.final
+
+
+def beside(fit, u, nu):
+    """The same explanation with its coordinate and its nuisances so many standard errors off."""
+    n = fit.normal
+    moved = fit.u + np.array([u]) * fit.sigma, fit.nu + nu
+    return replace(fit, normal=replace(n, u=moved[0][None], nu=moved[1][None]))
+
+
+def test_an_error_holds_what_rivals_make_of_it(fit):
+    """Law of total variance about what is told: σ² + p Δ²."""
+    found = [Rival(0.6, fit), Rival(0.2, beside(fit, 3.0, 2.0))]
+    assert rivals.nuisances(fit, found) == pytest.approx(np.full(len(fit.nu), 0.25 * 2.0**2))
+    alone, wide = (parameters(fit, one)["kuwabara-kono"]["time_us"] for one in ((), found))
+    assert wide.value == alone.value
+    assert wide.sigma == pytest.approx(alone.sigma * np.sqrt(1.0 + 0.25 * 3.0**2))
+
+
+def test_rivals_without_an_effect_say_nothing_of_its_parameter(verdict, fit):
+    null = verdict.found.null
+    ((share, off),) = rivals.shifts(fit, [Rival(0.5, fit), Rival(0.5, null)])
+    assert (share.tolist(), off.tolist()) == ([1.0], [0.0])
+    ((share, off),) = rivals.shifts(fit, [Rival(1.0, null)])
+    assert (share.tolist(), off.tolist()) == ([1.0], [0.0])
+    (elsewhere,) = (replace(c, place=3) for c in fit.hypothesis.components)
+    moved = replace(beside(fit, 1.0, 0.0), hypothesis=replace(fit.hypothesis, components=(elsewhere,)))
+    ((share, off),) = rivals.shifts(fit, [Rival(0.5, fit), Rival(0.5, moved)])
+    assert (share.tolist(), off.tolist()) == ([1.0], [0.0])
+
+
+def test_draws_are_of_the_mixture(fit):
+    """Two explanations ten standard errors apart with 0.7 and 0.3: quantiles are those of the nearer one up
+    to 0.7, of the farther one from there on.
+    """
+    share = (np.arange(20_000) + 0.5) / 20_000
+    normal = fit.u[0] + fit.sigma[0] * ndtri(share)
+    found = [Rival(0.7, fit), Rival(0.3, beside(fit, 10.0, 0.0))]
+    weight = np.full(len(share), 1.0 / len(share))
+    ((how, u, weight),) = posterior._averaged(fit, [(draws.SAMPLED, normal, weight)], found)
+    one = draws.Draws("a", "b", how, (u - fit.u[0]) / fit.sigma[0], weight)
+    assert how == draws.AVERAGED
+    assert weight.sum() == pytest.approx(1.0)
+    for at in (0.05, 0.5, 0.8, 0.95):
+        exact = ndtri(at / 0.7) if at < 0.7 else 10.0 + ndtri((at - 0.7) / 0.3)
+        assert one.quantile(at) == pytest.approx(exact, abs=1e-3)  # the distance of the draws
+
+
+def test_rivals_that_agree_change_nothing(fit):
+    drawn = [(draws.SAMPLED, fit.u + fit.sigma * np.linspace(-2.0, 2.0, 5), np.full(5, 0.2))]
+    ((how, u, _),) = posterior._averaged(fit, drawn, [Rival(0.9, fit), Rival(0.1, beside(fit, 0.5, 0.0))])
+    assert how == draws.SAMPLED
+    assert u is drawn[0][1]
+
+
+def test_rivals_go_by_their_weights_and_faint_ones_are_left_aside(verdict, fit):
+    sets = [Combination(("kuwabara-kono",), fit, 0.0, 0.0), Combination((), verdict.found.null, 0.0, 0.0)]
+    found = rivals.of_weights({"kuwabara-kono": np.log(3.0), "none": 0.0, "tsuji": -20.0}, sets)
+    assert [one.probability for one in found] == pytest.approx([0.75, 0.25], abs=1e-8)  # e^-20 left aside
+    assert [one.fit for one in found] == [fit, verdict.found.null]
+
+
+def test_a_verdict_has_its_own_explanation_among_its_rivals(verdict):
+    assert any(one.fit is verdict.found.final and one.probability > 0.5 for one in verdict.found.rivals)
