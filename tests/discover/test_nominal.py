@@ -5,8 +5,14 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from made_records import made
 
-from sonicvacuum.discover.fit import wide
+from sonicvacuum.discover.faults import judging
+from sonicvacuum.discover.fit import normal, refit, wide
+from sonicvacuum.discover.fit.enough import data
+from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.model.hypothesis import Hypothesis
+from sonicvacuum.discover.model.problem import experiment
 
 SIZE = 5000
 # Three standard deviations of χ² of as many data, √(2N) each.
@@ -41,3 +47,33 @@ def test_a_nominal_fit_that_leaves_much_starts_once_more(monkeypatch, left, agai
     found = wide.nominal(SimpleNamespace(experiment=experiment, layout=SimpleNamespace(size=3)))
     assert found.objective == SIZE + kept
     assert asked == [0, wide.COARSE][:tries]
+
+
+@pytest.mark.parametrize("ratio", [0.25, 3.5])
+def test_pulses_that_miss_each_other_are_brought_together(ratio):
+    """With beads so much stiffer or softer χ² had no slope to where pulses meet: it stayed at 10 million."""
+    record, _ = made([("dynamic-modulus", {"modulus_ratio": ratio})], seed=1)
+    forward = Forward(experiment(record))
+    found = wide.nominal(forward)
+    at = forward.layout.modulus
+    strain = (np.log(ratio) / forward.nuisance_sigma[at]) ** 2
+    # What is left is noise, and what the modulus is off by: five standard deviations of χ².
+    assert found.objective < data(forward) + strain + 5.0 * np.sqrt(2.0 * data(forward))
+    assert found.nu[at] == pytest.approx(
+        np.log(ratio) / forward.nuisance_sigma[at], rel=0.05
+    )  # its pull to 0
+
+
+def test_a_slip_does_not_explain_what_a_better_fit_does(empty):
+    """From where pulses miss each other any slip leads: a gauge late by 0.1 us took away nine tenths."""
+    forward = Forward(experiment(empty))
+    there = np.zeros((1, forward.layout.size))
+    there[0, forward.layout.modulus] = 0.8 / forward.nuisance_sigma[forward.layout.modulus]
+    stuck, good = (
+        refit.Fit(Hypothesis(), normal.linearise(forward, Hypothesis(), np.zeros((1, 0)), nu))
+        for nu in (there, 0.0 * there)
+    )
+    slip = SimpleNamespace(model=SimpleNamespace(fit=good))
+    lower = judging.without_slip(slip, judging.Model(None, forward, stuck))
+    assert lower.fit.objective < data(forward) + 5.0 * np.sqrt(2.0 * data(forward))
+    assert judging.without_slip(slip, lower) is None

@@ -69,6 +69,22 @@ def test_a_set_that_cannot_come_to_its_rival_is_given_up(turns, rival, given_up)
 )
 def test_while_others_are_missing_a_run_may_be_predicted_a_little_worse(monkeypatch, gains, alone, growing):
     """Damping beside a soft wall and a gauge that discharges, before a heavier bead: -9.2 of +131."""
-    monkeypatch.setattr(heldout, "predictive", lambda one: np.array(gains) * one)
-    assert heldout.better(0.0, 1.0) is alone
-    assert heldout.better(0.0, 1.0, share=several.WORSE) is growing
+    before, after = predicting(monkeypatch, gains, 0.0)
+    assert heldout.better(before, after) is alone
+    assert heldout.better(before, after, share=several.WORSE) is growing
+
+
+@pytest.mark.parametrize(("gained", "kept"), [(30.0, False), (157.5, True)])
+def test_what_strains_a_nuisance_alone_need_not_predict_better(monkeypatch, gained, kept):
+    """A modulus 2.25 times as large is one that the other runs tell as well, at 12 of its standard errors."""
+    before, after = predicting(monkeypatch, [-0.99, -0.28, -0.85, -0.12], gained)
+    assert heldout.better(before, after) is kept
+
+
+def predicting(monkeypatch, gains, gained):
+    """Two fits: the second predicts runs by `gains` better, and has gained so much in χ² on all of them."""
+    before, after = (
+        SimpleNamespace(objective=o, gains=g) for o, g in ((gained, 0.0), (0.0, np.array(gains)))
+    )
+    monkeypatch.setattr(heldout, "predictive", lambda one: one.gains + np.zeros(len(gains)))
+    return before, after

@@ -29,6 +29,7 @@ from sonicvacuum.discover.faults.judging import (
     of_the_chain,
     out_of_reach,
     suspicious,
+    without_slip,
 )
 from sonicvacuum.discover.faults.lines import drifts
 from sonicvacuum.discover.faults.slips import hypotheses
@@ -131,6 +132,9 @@ class Search:
             model = self.nominal()
             looked = suspicious(model)
             ranked = self.ranked(model) if looked else []
+            if ranked and obvious(ranked[0], model) and (lower := without_slip(ranked[0], model)):
+                model = self._nominal = lower
+                ranked = self.ranked(model)
             if not ranked or not obvious(ranked[0], model) or self._matched(ranked[0], model):
                 break
             self._accept(ranked, ranked[0])

@@ -88,6 +88,17 @@ def obvious(judged: Judged, model: Model) -> bool:
     )
 
 
+def without_slip(judged: Judged, model: Model) -> Model | None:
+    """The model of the record as it is, fitted from where a slip led it, if it fits better for that alone.
+
+    Far from the data a fit may end where pulses miss each other; any slip whose own fit does not would then
+    seem to explain what it has nothing to do with.
+    """
+    one = model.fit
+    found = fit(model.forward, one.hypothesis, one.u[None], judged.model.fit.nu[None])
+    return replace(model, fit=found) if one.objective - found.objective > policy.LEAST_GAIN else None
+
+
 def out_of_reach(judged: Judged, model: Model) -> bool:
     """Whether a slip, looked at, leaves so much more misfit than there is that no fit would mend it."""
     return excess(model) - judged.gain > policy.REACH * max(excess(model), 1.0)

@@ -13,6 +13,9 @@ import numpy as np
 from sonicvacuum.discover.fit.normal import Normal
 from sonicvacuum.discover.fit.refit import Fit
 
+# Share of the log likelihood that an effect gains on all runs which it may lose on runs left out.
+SMALL = 0.05
+
 
 @dataclass(frozen=True)
 class HeldOut:
@@ -99,8 +102,10 @@ def better(before: Fit, after: Fit, room: float = 6.0, even: float = 2.0, share:
     `room` is the log density by which one run may be worse, or a `share` of what all gain together: while
     other effects are still missing, one that is there makes up for them in each run by another size. An
     effect that does what a nuisance does, beyond that one's stated error (a modulus, a gain), predicts as the
-    nuisance let loose does: in sum `even` may be lost. With a single run there is nothing to hold out.
+    nuisance let loose does: in sum `even` may be lost, or a small share of what all runs together gain by it.
+    With a single run there is nothing to hold out.
     """
     gain = predictive(after) - predictive(before)
     room = max(room, share * float(gain.sum()))
+    even = max(even, SMALL * 0.5 * (before.objective - after.objective))
     return len(gain) < 2 or bool(gain.sum() > -even and gain.min() > -room)
