@@ -110,9 +110,9 @@ def test_what_all_runs_share_is_called_by_its_name_and_unit():
         bench.strained(verdict(nuisances=off), replace(model(verdict()), speed_ratio={}), record())
     )
     for part in (
-        "the modulus of brass: the data ask for 0.868 times what is stated, 2.8 of",
+        "the modulus of brass: the data ask for 0.868 ± 0.017 times what is stated, 2.8 of",
         "the delay of gauge g1: the data ask for 4 µs, 4 of",
-        "the mass of the beads: the data ask for 1.1 times",
+        "the mass of the beads: the data ask for 1.1 ± 0.011 times",
         "the recorder's clock: the data ask for one that is off by -2 %, 4 of",
         "common to several quantities, gauge-places: the data ask for a shift, 2.6 of",
     ):

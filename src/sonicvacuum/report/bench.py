@@ -142,19 +142,19 @@ def _others(verdict):
         if known.prior:
             kind, _, of = name.partition(" ")
             away = known.value if kind in _SHIFTS else math.log(known.value)
-            yield from _far(away, known.prior, _told_of(kind, of, known.value))
+            yield from _far(away, known.prior, _told_of(kind, of, known))
 
 
-def _told_of(kind, of, value):
+def _told_of(kind, of, known):
     """What to check where all runs share it, and how far off it is."""
     if kind == "shared":
         return f"Check the error common to several quantities, {of}: the data ask for a shift"
     if kind == "delay":
-        return f"Check the delay of gauge {of}: the data ask for {value:.3g} µs"
+        return f"Check the delay of gauge {of}: the data ask for {known.value:.3g} µs"
     if kind == "clock":
-        return f"Check the recorder's clock: the data ask for one that is off by {100.0 * value:.2g} %"
+        return f"Check the recorder's clock: the data ask for one that is off by {100.0 * known.value:.2g} %"
     what = _WHAT.get(kind, kind.replace("-", " "))
-    return _asked(f"the {what} of {of}" if of else f"the {what}", value)
+    return _asked(f"the {what} of {of}" if of else f"the {what}", known.value, known.sigma)
 
 
 def _short(value: float) -> str:
@@ -162,8 +162,10 @@ def _short(value: float) -> str:
     return number(f"{value:.2g}", 2)
 
 
-def _asked(what, ratio):
-    return f"Check {what}: the data ask for {ratio:.3g} times what is stated"
+def _asked(what, ratio, error=0.0):
+    """What to check; `error` is the standard error of the ratio, relative."""
+    known = f" ± {_short(ratio * error)}" if 0.0 < error < math.inf else ""
+    return f"Check {what}: the data ask for {ratio:.3g}{known} times what is stated"
 
 
 def _far(away, error, said):
