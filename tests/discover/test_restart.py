@@ -7,7 +7,7 @@ from made_records import made
 from sonicvacuum.discover.fit import wide
 from sonicvacuum.discover.fit.evidence import Candidate
 from sonicvacuum.discover.fit.normal import linearise
-from sonicvacuum.discover.fit.refit import Fit, fit
+from sonicvacuum.discover.fit.refit import Fit, fit, polish
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, variants
 from sonicvacuum.discover.model.problem import experiment
@@ -87,3 +87,29 @@ def test_a_single_effect_that_a_pair_leads_lower_is_followed_beyond_its_range():
     (found,) = restart.lower(forward, null, [pair], [own], setup)
     assert found.flags == ("beyond",)
     assert np.exp(found.fit.u[0]) == pytest.approx(0.08, rel=0.1)  # each gauge's own gain is known to 2 %
+
+
+@pytest.mark.parametrize("ahead", [True, False])
+def test_an_effect_of_which_slopes_promised_nothing_is_fitted_alone_where_a_pair_has_it(ahead):
+    """Friction of d′ 20 was named beside drag, and had never been tried alone."""
+    forward = Forward(experiment(made([("sensor-gain", {"gain_ratio": 1.3, "sensor": 1})], seed=3)[0]), 1)
+    null, setup = wide.nominal(forward), singles.setup_of(forward)
+    gain, drag = (
+        Component(effect(name), variants(effect(name), setup)[0], place=place)
+        for name, place in (("sensor-gain", 1), ("viscous-drag", None))
+    )
+    both = pairs.joined(Hypothesis((gain,)), drag, setup)
+    at = np.array([[c.inverse(1.3) if c.parameter.name == "gain_ratio" else c.low for c in both.coordinates]])
+    pair = pairs.combination(null, fit(forward, both, at, null.nu[None]), setup)
+    alone = Hypothesis((gain,))
+    rival = Fit(alone, linearise(forward, alone, np.log([[1.1]]), null.nu[None]))
+    if not ahead:
+        rival = polish(forward, restart.less(forward, pair.fit, 1, setup))
+    other = Candidate("viscous-drag", rival, null.objective - rival.objective, 0.0)
+    found = restart.lower(forward, null, [pair], [other], setup)
+    if not ahead:
+        assert found is None
+        return
+    assert [c.effect for c in found] == ["viscous-drag", "sensor-gain"]
+    assert found[1].fit.objective < rival.objective
+    assert np.exp(found[1].fit.u[0]) == pytest.approx(1.3, rel=0.1)  # each gauge's own gain is known to 2 %

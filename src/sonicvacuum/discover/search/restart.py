@@ -7,7 +7,7 @@ the others, as `secants` does it. Single effects start again from pairs, less th
 
 import numpy as np
 
-from sonicvacuum.discover.fit import bounds
+from sonicvacuum.discover.fit import bounds, evidence
 from sonicvacuum.discover.fit.evidence import Candidate, Combination
 from sonicvacuum.discover.fit.normal import linearise
 from sonicvacuum.discover.fit.refit import Fit, fit, polish
@@ -66,25 +66,29 @@ def lower(
 ) -> list[Candidate] | None:
     """Single effects with those fitted anew that pairs, less their other effect, lead to lower minima; None
     where there are none.
+
+    One that was never fitted alone, since slopes promised little of it, has to come out ahead of all others.
     """
     known = {c.effect: c for c in singles}
+    least = min((c.fit.objective for c in singles), default=null.objective)
     better: dict[str, Candidate] = {}
     for pair in found:
         for k, name in enumerate(reversed(pair.fit.hypothesis.ids)):
             own = better.get(name, known.get(name))
-            if own is None or np.isinf(own.fit.objective):
+            before = own.fit.objective if own else least
+            if np.isinf(before):
                 continue
             one = less(forward, pair.fit, k, setup)
-            if not one.normal.has_slopes[0] or promised(one) > own.fit.objective - LOWER:
+            if not one.normal.has_slopes[0] or promised(one) > before - LOWER:
                 continue
             inside = polish(forward, one)
             one, held = bounds.beyond(forward, inside)
-            if one.objective < own.fit.objective - LOWER:
+            if one.objective < before - LOWER:
                 gain = null.objective - one.objective
-                log_bayes = own.log_bayes + 0.5 * (gain - own.gain)
+                log_bayes = own.log_bayes + 0.5 * (gain - own.gain) if own else evidence.log_bayes(one, gain)
                 place = one.hypothesis.components[0].place
-                where = own.places if place is None else ((place, 1.0),)
+                where = (own.places if own else ()) if place is None else ((place, 1.0),)
                 flags = ("beyond",) * (one is not inside) + ("bound",) * held
                 flags += ("unsettled",) * (not one.settled)
                 better[name] = Candidate(name, one, gain, log_bayes, where, flags)
-    return [better.get(c.effect, c) for c in singles] if better else None
+    return [*(known | better).values()] if better else None
