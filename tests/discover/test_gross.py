@@ -14,7 +14,7 @@ from sonicvacuum.discover.compare import compare
 from sonicvacuum.discover.fit import refit, wide
 from sonicvacuum.discover.fit.evidence import Combination, log_bayes
 from sonicvacuum.discover.fit.wide import nominal
-from sonicvacuum.discover.judge import decision, gross, weighing
+from sonicvacuum.discover.judge import explanations, gross, weighing
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, variants
 from sonicvacuum.discover.model.problem import experiment
@@ -273,9 +273,9 @@ def test_probable_rivals_tell_what_they_make_of_what_they_share(found):
 def test_what_every_explanation_has_is_clear_though_none_of_them_is():
     """An offset of 20 % beside something smooth was called unknown: each explanation had one effect more."""
     weights = {"none": 0.0, "a": 90.0, "a + b": 100.0, "a + c": 100.0, "b": 20.0}
-    assert not decision._clear(weights, ["a"])
-    assert decision._clear(weighing.merged(weights, ["a"]), ["a"])
-    assert not decision._clear(weighing.merged(weights, ["b"]), ["b"])
+    assert not explanations.clear(weights, ["a"])
+    assert explanations.clear(weighing.merged(weights, ["a"]), ["a"])
+    assert not explanations.clear(weighing.merged(weights, ["b"]), ["b"])
 
 
 def test_nuisances_relax_as_a_fit_with_wider_noise_finds_them(hidden):

@@ -7,6 +7,9 @@ import pytest
 from made_records import BEADS, made
 
 from sonicvacuum.discover import session
+from sonicvacuum.discover.judge.decision import Case
+from sonicvacuum.discover.model.problem import experiment
+from sonicvacuum.discover.rounds import investigate
 from sonicvacuum.discover.search import pairs
 from sonicvacuum.discover.search.directions import Direction
 
@@ -75,3 +78,32 @@ def test_a_defect_beside_friction_is_found_at_its_own_bead():
     v = session.discover(made(hidden, seed=12)[0]).verdict
     assert set(v.named) == {"mass-defect", "viscous-drag"}
     assert v.parameters["mass-defect"]["bead"].value == 6
+
+
+@pytest.mark.parametrize(
+    ("seed", "wall", "tau", "modulus"), [(2, 0.93, 12_000.0, 1.6), (3, 1.05, 20_000.0, 0.7)]
+)
+def test_a_pair_is_asked_for_a_third_effect_that_leaves_no_residual(seed, wall, tau, modulus):
+    """A modulus 7 to 9 of its stated errors off was taken up by that error, and the pair left nothing."""
+    hidden = [
+        ("wall-compliance", {"stiffness_ratio": wall}),
+        ("sensor-droop", {"tau_us": tau}),
+        ("dynamic-modulus", {"modulus_ratio": modulus}),
+    ]
+    found = investigate(experiment(made(hidden, seed=seed)[0]))
+    assert set(found.named) == {name for name, _ in hidden}
+
+
+def test_several_effects_are_held_against_a_smooth_misfit_before_it_counts_as_noise(monkeypatch):
+    """Three effects of d′ 20, none alone as likely as a smooth misfit: a fourth was named beside it."""
+    asked = []
+
+    def whole(self, needed, most, alarms, start, rival, fewest, tried):
+        asked.append((start, rival, fewest))
+        return "three effects"
+
+    monkeypatch.setattr(Case, "_without_smooth", whole)
+    case = Case(None, None, None, [], None, None)
+    best = SimpleNamespace(fit="its fit")
+    assert case._out_of_smooth(best, 12.0, 0.0, {}, 98.9) == "three effects"
+    assert asked == [("its fit", 98.9, 2)]

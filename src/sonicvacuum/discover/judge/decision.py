@@ -96,8 +96,10 @@ class Case:
         shape, most = unknown.simplest(self.forward, self.null)
         seen = left(self.forward, best.fit, self.known, scores, _behind(best.gain, most))
         alarms = {"single": seen.p}
-        if self._smooth_instead(best, seen) and not gross.gross(self.forward, best.fit, self.known):
-            return self._out_of_smooth(best, scores.threshold(policy.FALSE_ALARM), most, alarms)
+        alone = self._smooth_alone()
+        instead = alone > best.log_bayes + seen.size.log_odds
+        if instead and not gross.gross(self.forward, best.fit, self.known):
+            return self._out_of_smooth(best, scores.threshold(policy.FALSE_ALARM), most, alarms, alone)
         if seen.shapes.failed or seen.fit.failed or seen.size.found:
             return self._more(scores.threshold(policy.FALSE_ALARM), most, shape, alarms, seen)
         if seen.behind > 0.0:
@@ -108,17 +110,17 @@ class Case:
         reason = f"{best.effect} does not predict unseen runs better"
         return Decision([], self.null, alarms, [reason], seen.p)
 
-    def _smooth_instead(self, best: Candidate, seen: Left) -> bool:
-        """Whether a smooth misfit of the nominal model is the better explanation than any effect."""
-        if self.known is None:
-            return False
-        alone = smooth.infer(self.forward, self.null, self.known)
-        return alone.log_odds > best.log_bayes + seen.size.log_odds
+    def _smooth_alone(self) -> float:
+        """Log evidence of a smooth misfit of the nominal model, and nothing else."""
+        return -np.inf if self.known is None else smooth.infer(self.forward, self.null, self.known).log_odds
 
-    def _out_of_smooth(self, best: Candidate, needed, most, alarms) -> Decision:
-        """Effects that earn their evidence with a smooth misfit of the nominal model counted as noise; else
-        unknown.
+    def _out_of_smooth(self, best: Candidate, needed, most, alarms, alone: float) -> Decision:
+        """Several effects that leave nothing and together explain more than the smooth misfit of the nominal
+        model does; or those that earn their evidence with that counted as noise; else unknown.
         """
+        whole = self._without_smooth(needed, most, alarms, best.fit, alone, 2, [])
+        if whole is not None:
+            return whole
         grown = several.Turns(self.forward, self.known, needed, self.setup).grow(self.null, self.null)
         without = left(self.forward, self.null, self.known)
         size = 100.0 * without.size.size
@@ -154,7 +156,9 @@ class Case:
         for pair in tried[:ASKED]:
             if pair.gain - single <= needed or not enough.suffice(self.forward, pair.fit):
                 continue
-            after = left(self.forward, pair.fit, self.known, behind=_behind(pair.gain, most))
+            # A third effect may hide in what the record states: nuisances that strain leave no residual.
+            more = pairs.screened(self.forward, pair.fit, self.setup)
+            after = left(self.forward, pair.fit, self.known, more, _behind(pair.gain, most))
             alarms.setdefault("pair", after.p)
             if pair.log_bayes + after.size.log_odds <= rival:
                 continue
@@ -177,9 +181,11 @@ class Case:
             if standing.fit is None or gross.gross(self.forward, standing.fit, self.known):
                 return self._standing_out(standing, alarms, seen, tried, shape, most)
             start = standing.fit
-        whole = self._without_smooth(needed, most, alarms, start, seen, tried)
-        if whole is not None:
-            return whole
+        if seen.size.found:
+            rival = pairs.combination(self.null, start, self.setup).log_bayes + seen.size.log_odds
+            whole = self._without_smooth(needed, most, alarms, start, rival, 3, tried)
+            if whole is not None:
+                return whole
         turns = several.Turns(self.forward, self.known, needed, self.setup, self.known is not None)
         grown = turns.grow(self.null, start)
         effects = list(grown.best.effects)
@@ -202,18 +208,18 @@ class Case:
             return self._unknown(alarms, [f"{shape} explains more than any effect or set"], after, tried)
         return self._beside(grown, needed, alarms, after, tried)
 
-    def _without_smooth(self, needed, most, alarms, start: Fit, seen: Left, tried) -> Decision | None:
-        """Three effects or more that leave nothing, where that is likelier than fewer beside a smooth misfit.
+    def _without_smooth(
+        self, needed, most, alarms, start: Fit, rival: float, fewest: int, tried
+    ) -> Decision | None:
+        """So many effects or more that leave nothing, where that is likelier than what a smooth misfit
+        explains beside fewer, with a log evidence of `rival`.
 
         Once a discrepancy is counted as noise it hides weak effects, so that these are asked for before.
         """
-        if not seen.size.found:
-            return None
-        rival = pairs.combination(self.null, start, self.setup).log_bayes + seen.size.log_odds
         turns = several.Turns(self.forward, self.known, needed, self.setup, infer=False, rival=rival)
         grown = turns.grow(self.null, start)
         best = grown.best
-        if len(best.effects) < 3 or best.log_bayes <= rival:
+        if len(best.effects) < fewest or best.log_bayes <= rival:
             return None
         after = left(self.forward, best.fit, self.known, behind=_behind(best.gain, most))
         if after.failed:
@@ -270,11 +276,11 @@ class Case:
             named = list(fit_.hypothesis.ids)
             # Of sets only as they are: more beside two may as well be what stands for one unknown thing.
             whole = weighing.merged(weights, named) if len(named) == 1 else weights
-            if not named or _clear(whole, named):
+            if not named or explanations.clear(whole, named):
                 break
             reasons.append(f"{' + '.join(named)}: not clearly the best beside what is left")
         if not named:
-            reasons += _one_of(weights)
+            reasons += explanations.one_of(weights)
         likely = of_weights(weights, [*grown.tried.values(), *rivals])
         weights = whole if named else weights
         final = several.moved(self.forward, fit_) if named else self.null
@@ -331,25 +337,6 @@ def _together(tried, grown, own: Combination) -> list[Combination]:
     found = [*sorted((*tried, *grown), key=lambda c: c.log_bayes), own]
     sets = {frozenset(c.effects): c for c in found if len(c.effects) > 1 and np.isfinite(c.log_bayes)}
     return sorted(sets.values(), key=lambda c: -c.log_bayes)
-
-
-def _clear(weights, named) -> bool:
-    """Whether a set of effects is likelier than all others together beside what is left."""
-    own = weights.get(explanations.key(named), -np.inf)
-    others = [w for name, w in weights.items() if name != explanations.key(named)]
-    return own - np.logaddexp.reduce(others) > np.log(policy.CLEAR) if others else True
-
-
-def _one_of(weights) -> list[str]:
-    """That something of the catalogue is there, where only which is open; [] where that is not so sure."""
-    total = np.logaddexp.reduce(list(weights.values()))
-    odds = {name: float(np.exp(w - total)) for name, w in weights.items()}
-    none = odds.pop(explanations.NONE, 0.0)
-    if none > 1.0 - policy.STANDS_OUT:
-        return []
-    likely = sorted(((p, name) for name, p in odds.items() if p > policy.TOLD), reverse=True)
-    told = ", ".join(f"{name} {p:.2f}" for p, name in likely)
-    return [f"something of the catalogue is there with probability {1.0 - none:.2f}, which is open: {told}"]
 
 
 def _behind(gain: float, most: float) -> float:

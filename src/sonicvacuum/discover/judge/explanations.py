@@ -132,3 +132,22 @@ def doubted(found: Mapping[str, float], named: Iterable[str], most: float) -> di
     own = key(named)
     excess = max(0.0, found.get(own, 0.0) - most)
     return {**found, own: found.get(own, 0.0) - excess, UNKNOWN: found.get(UNKNOWN, 0.0) + excess}
+
+
+def clear(weights: Mapping[str, float], named: Iterable[str]) -> bool:
+    """Whether a set of effects is likelier than all others together beside what is left."""
+    own = weights.get(key(named), -np.inf)
+    others = [w for name, w in weights.items() if name != key(named)]
+    return own - np.logaddexp.reduce(others) > np.log(policy.CLEAR) if others else True
+
+
+def one_of(weights: Mapping[str, float]) -> list[str]:
+    """That something of the catalogue is there, where only which is open; [] where that is not so sure."""
+    total = np.logaddexp.reduce(list(weights.values()))
+    odds = {name: float(np.exp(w - total)) for name, w in weights.items()}
+    none = odds.pop(NONE, 0.0)
+    if none > 1.0 - policy.STANDS_OUT:
+        return []
+    likely = sorted(((p, name) for name, p in odds.items() if p > policy.TOLD), reverse=True)
+    told = ", ".join(f"{name} {p:.2f}" for p, name in likely)
+    return [f"something of the catalogue is there with probability {1.0 - none:.2f}, which is open: {told}"]
