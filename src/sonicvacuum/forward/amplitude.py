@@ -14,7 +14,7 @@ from sonicvacuum.gauges import Gauge, position
 from sonicvacuum.laboratory.bodies import Bodies
 from sonicvacuum.observe.quantities import measure_run
 from sonicvacuum.observe.run import Geometry
-from sonicvacuum.observe.trace import Measured, missing
+from sonicvacuum.observe.trace import Measured, Unsettled, missing
 from sonicvacuum.physics.chain import Chain
 from sonicvacuum.physics.scales import (
     EMBEDDED_SHARE,
@@ -35,8 +35,9 @@ STRIDE = math.log(4.0)
 REACH = 2
 # Beads before the wall in which the reflection lies on the pulse.
 CLEAR = 2
-# The wave has reached the wall, and has passed all gauges, after so many crossings of the chain.
-CROSSED = 1.7
+# The wave has reached the wall, and has passed all gauges, after so many crossings of the slowest chain; most
+# waves have after MOSTLY.
+MOSTLY, CROSSED = 0.7, 1.7
 # Within these the exponent that two strikes show is believed; strikes nearer than this show none.
 _LEAST, _MOST, _APART = 0.4, 1.6, 1e-4
 
@@ -123,20 +124,37 @@ def _struck(chain, diameters, sensor, pair, speeds, refine):
     """(2, lanes) amplitude at the gauge and speed across the pair, of chains struck at these speeds."""
     lanes = replace(chain, speed=speeds)
     gauges = (replace(sensor, id="(gauge)"), *pair, Gauge("(end)", "wall", None))
-    setup, duration = Setup(lanes, gauges), passage_of(lanes, CROSSED)
-    seen = see(setup, duration, sampling_of(lanes), refine=refine, forgiving=True, alone=False)
+    setup, geometry = Setup(lanes, gauges), Geometry(chain.beads, diameters, gauges)
+    interval, found, left = sampling_of(lanes), np.empty((2, chain.lanes)), np.arange(chain.lanes)
+    for crossings in (MOSTLY, CROSSED):
+        own, goes_on = setup.take(left), crossings < CROSSED
+        seen = see(own, passage_of(lanes, crossings), interval, refine=refine, forgiving=True, alone=False)
+        found[:, left], unsettled = _shown(seen, geometry, goes_on)
+        left = left[unsettled]
+        if not len(left):
+            break
+    return found
+
+
+def _shown(seen, geometry, goes_on):
+    """(2, lanes) amplitude and speed that a simulation shows; (lanes,) whether more of it may change them."""
     # And with them compiled code, as in `motion.see`.
     from sonicvacuum.forward.columns import Columns, filled
     from sonicvacuum.forward.together import runs_of
 
-    runs = runs_of(seen.readings, seen.history.time, Geometry(chain.beads, diameters, gauges))
+    runs = runs_of(seen.readings, seen.history.time, geometry, goes_on)
     columns, finite = Columns(runs), np.isfinite(seen.readings).all(axis=(1, 2))
+    unsettled = np.zeros(len(runs), dtype=bool)
 
     def shown(quantity, **options):
         def closer(lane):
-            return measure_run(quantity, runs[lane], **options).value if finite[lane] else math.nan
+            try:
+                return measure_run(quantity, runs[lane], **options).value if finite[lane] else math.nan
+            except Unsettled:
+                unsettled[lane] = True
+                return math.nan
 
         return np.where(finite, filled(columns.of(quantity, options), np.arange(len(runs)), closer), math.nan)
 
     height = shown("amplitude", sensor="(gauge)")
-    return np.stack([height, shown("speed", **{"from": "(before)", "to": "(behind)"})])
+    return np.stack([height, shown("speed", **{"from": "(before)", "to": "(behind)"})]), unsettled

@@ -125,9 +125,11 @@ class Run:
         safety: fraction of the way to the wall and back after which pulses no longer count.
         together: the same readings with those of further runs, for a run without noise and floor.
         lane: place of this run there.
+        goes_on: whether the readings are the beginning of longer ones.
 
     Raises:
         ValueError: for times that are not equidistant; for a malformed reading, when it is used.
+        Unsettled: when what is asked for may change as the readings go on.
     """
 
     readings: Mapping[str, np.ndarray]
@@ -139,6 +141,7 @@ class Run:
     safety: float = SAFETY
     together: Together | None = None
     lane: int = 0
+    goes_on: bool = False
     _grid: tuple[float, float] = field(init=False, repr=False)
     _known: dict = field(init=False, repr=False, default_factory=dict)
 
@@ -223,7 +226,7 @@ class Run:
             raise ValueError(f"sensor {sensor}: reading has shape {force.shape}, time {self.time.shape}")
         noise = self.noise.get(sensor, 0.0) if isinstance(self.noise, Mapping) else self.noise
         try:
-            return Trace(*self._grid, force, noise).checked()
+            return Trace(*self._grid, force, noise, self.goes_on).checked()
         except ValueError as error:
             raise ValueError(f"sensor {sensor}: {error}") from None
 
