@@ -95,10 +95,6 @@ class Together:
             self._times[key] = self._crossings(*key)
         return self._times[key]
 
-    def edges(self, sensor: str, level: float, rising: bool) -> list[Measured | None]:
-        """The same lane by lane; None where one has to look closer."""
-        return [Measured(t) if t == t else None for t in self.crossings(sensor, level, rising).tolist()]
-
     def _of(self, sensor):
         """What is known of each lane's pulse, its time and its height."""
         if sensor not in self._found:
