@@ -17,7 +17,6 @@ from sonicvacuum.observe.trace import (
     AHEAD,
     DEGREE,
     TOP,
-    Measured,
     cubic,
     grid,
     newton,
