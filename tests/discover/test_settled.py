@@ -10,6 +10,7 @@ from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Hypothesis
 from sonicvacuum.discover.model.problem import experiment
 from sonicvacuum.forward import amplitude
+from sonicvacuum.physics.scales import impact_forces, impact_scales
 from sonicvacuum.records import read
 
 MEASURED = Path(__file__).parents[2] / "workflow/resources/measured"
@@ -43,7 +44,7 @@ def test_numbers_are_those_of_the_whole(begun, monkeypatch):
     nu[:, forward.layout.modulus] = np.array([0.0, 1.0, -1.0, -2.0, -3.0]) / begun.modulus_rel_sigma
     assert any(b.first_s < 0.8 * b.duration for b in begun.batches)
     found, chains = predicted(begun, nu)
-    monkeypatch.setattr(amplitude, "MOSTLY", amplitude.CROSSED)
+    monkeypatch.setattr(amplitude, "MOSTLY", 10.0 * amplitude.CROSSED)
     expected, once = predicted(whole(begun), nu)
     np.testing.assert_allclose(found, expected, rtol=ROUNDING)
     assert once == nu.shape[0] * len(begun.runs) < chains
@@ -53,3 +54,11 @@ def test_what_is_settled_is_not_simulated_again(begun):
     nu = np.zeros((3, Forward(begun).layout.size))
     found, chains = predicted(begun, nu)
     assert chains == found.shape[0] * len(begun.runs)
+
+
+def test_forces_of_impacts_are_those_of_chains_alone(begun):
+    forward = Forward(begun)
+    chain = forward.nominal(begun.batches[0], np.zeros((3, forward.layout.size))).chain
+    chain = chain.struck_at(chain.speed * np.linspace(0.3, 3.0, chain.lanes))
+    alone = [impact_scales(chain.take([k]))[0] for k in range(chain.lanes)]
+    np.testing.assert_allclose(impact_forces(chain), alone, rtol=1e-14)  # rounding of the same formula

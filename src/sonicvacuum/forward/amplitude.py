@@ -20,7 +20,7 @@ from sonicvacuum.physics.scales import (
     EMBEDDED_SHARE,
     STRIKER_POWER,
     WAVE_POWER,
-    impact_scales,
+    impact_forces,
     passage_of,
     sampling_of,
 )
@@ -63,10 +63,12 @@ def speed_at_amplitude(
     if pair is None:
         return [missing("short: the chain has too few beads for a speed at this gauge")] * chain.lanes
     target = math.log(amplitude)
-    strike = last = np.log(_first_guess(chain, amplitude))
-    before = None
+    strike = last = first = np.log(_first_guess(chain, amplitude))
+    before, mostly = None, passage_of(chain.struck_at(np.exp(first)), MOSTLY)
     for _ in range(TRIES):
-        seen = np.log(_struck(chain, diameters, sensor, pair, np.exp(strike), refine))
+        # A contact time goes as the speed to the power −1/5.
+        begun = mostly * math.exp(0.2 * float((first - strike).max()))
+        seen = np.log(_struck(chain, diameters, sensor, pair, np.exp(strike), begun, refine))
         off = seen[0] - target
         known = np.isfinite(off)
         if not known.any():
@@ -82,8 +84,7 @@ def speed_at_amplitude(
 
 def _first_guess(chain, amplitude):
     """(lanes,) striker speeds at which a Hertz chain would read about that amplitude."""
-    forces = np.array([impact_scales(chain.take([k]))[0] for k in range(chain.lanes)])
-    return chain.speed * (amplitude / (EMBEDDED_SHARE * forces)) ** STRIKER_POWER
+    return chain.speed * (amplitude / (EMBEDDED_SHARE * impact_forces(chain))) ** STRIKER_POWER
 
 
 def _exponent(before, now, strike, last):
@@ -120,15 +121,18 @@ def _pair(sensor, beads):
     return Gauge("(before)", "embedded", first), Gauge("(behind)", "embedded", last)
 
 
-def _struck(chain, diameters, sensor, pair, speeds, refine):
-    """(2, lanes) amplitude at the gauge and speed across the pair, of chains struck at these speeds."""
-    lanes = replace(chain, speed=speeds)
+def _struck(chain, diameters, sensor, pair, speeds, begun, refine):
+    """(2, lanes) amplitude at the gauge and speed across the pair, of chains struck at these speeds; what is
+    settled in the first `begun` seconds is not simulated for longer.
+    """
+    lanes = chain.struck_at(speeds)
     gauges = (replace(sensor, id="(gauge)"), *pair, Gauge("(end)", "wall", None))
     setup, geometry = Setup(lanes, gauges), Geometry(chain.beads, diameters, gauges)
     interval, found, left = sampling_of(lanes), np.empty((2, chain.lanes)), np.arange(chain.lanes)
-    for crossings in (MOSTLY, CROSSED):
-        own, goes_on = setup.take(left), crossings < CROSSED
-        seen = see(own, passage_of(lanes, crossings), interval, refine=refine, forgiving=True, alone=False)
+    for goes_on in (True, False):
+        own = setup if len(left) == chain.lanes else setup.take(left)
+        duration = begun if goes_on else passage_of(lanes, CROSSED)
+        seen = see(own, duration, interval, refine=refine, forgiving=True, alone=False)
         found[:, left], unsettled = _shown(seen, geometry, goes_on)
         left = left[unsettled]
         if not len(left):
