@@ -6,6 +6,7 @@ nominal ones need, with room; those in which a number may still change are simul
 times as long, until all are settled or the whole duration has passed.
 """
 
+import math
 from bisect import bisect_left
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -36,11 +37,11 @@ def begun(data: Experiment) -> Experiment:
 
 
 def _settled(forward, batch: Batch) -> float:
-    """Time in s to simulate at first."""
+    """Time in s to simulate at first; infinite where that is the whole."""
     data = forward.experiment
     wanted = [data.runs[run].scalars for run in batch.runs]
     if any(data.runs[run].has_signals for run in batch.runs) or any(map(_of_the_end, wanted)):
-        return batch.duration
+        return math.inf
     seen = forward.simulate(batch, forward.nominal(batch, np.zeros((1, forward.layout.size))))
 
     def settled(samples):
@@ -49,9 +50,9 @@ def _settled(forward, batch: Batch) -> float:
 
     whole = len(seen.history.time)
     if not np.isfinite(seen.readings).all() or not settled(whole):
-        return batch.duration
+        return math.inf
     needed = ROOM * batch.interval * (_FEWEST + bisect_left(range(_FEWEST, whole), True, key=settled))
-    return needed if WORTH * needed < batch.duration else batch.duration
+    return needed if WORTH * needed < batch.duration else math.inf
 
 
 def _of_the_end(scalars):
