@@ -50,8 +50,7 @@ class Loaded:
     @classmethod
     def of(cls, run: OneRun, contact: int) -> "Loaded":
         """The contact at its peak; NaN where it has none."""
-        pulse = main_pulse(run.contact(contact))
-        force = pulse.force + run.static_force(contact)
+        pulse, force = _peak(run, contact)
         depth = float(run.depth_at(contact, [force])[0])
         coatings = 1 if contact == run.card.beads else 2
         return cls(run, contact, pulse, force, depth, *run.touched(contact, depth), coatings)
@@ -76,8 +75,14 @@ class Loaded:
 
 def heaviest(run: OneRun) -> Loaded:
     """The contact with the largest force between the first and the last embedded gauge."""
-    found = [Loaded.of(run, c) for c in run.contacts_between_gauges()]
-    return max(found, key=lambda c: -math.inf if math.isnan(c.force) else c.force)
+    forces = {c: _peak(run, c)[1] for c in run.contacts_between_gauges()}
+    return Loaded.of(run, max(forces, key=lambda c: -math.inf if math.isnan(forces[c]) else forces[c]))
+
+
+def _peak(run, contact):
+    """Main pulse of a contact, and the total force at its peak."""
+    pulse = main_pulse(run.contact(contact))
+    return pulse, pulse.force + run.static_force(contact)
 
 
 def entries(run: OneRun) -> Iterator[tuple[str, str, str, Measured]]:

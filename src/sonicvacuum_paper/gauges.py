@@ -10,7 +10,6 @@ from sonicvacuum.gauges import Gauge
 from sonicvacuum.gauges.electronics import high_passed
 from sonicvacuum.observe import quantities as q
 from sonicvacuum.observe.pulse import main_pulse
-from sonicvacuum.observe.shape import ending
 from sonicvacuum.observe.trace import Measured, Trace, missing
 from sonicvacuum.physics.solitary import SolitaryWave
 from sonicvacuum_paper.one_run import OneRun
@@ -38,9 +37,7 @@ def duration(run: OneRun, gauge: Gauge, level: float = 0.01) -> Measured:
     """Time in us above a level; absent where the reflection comes before the signal has fallen to it."""
     view = run.view
     lasting = q.duration(view, gauge.id, level)
-    if lasting.known and ending(view.trace(gauge.id), view.main(gauge.id), level).value > view.free_until(
-        gauge.id
-    ):
+    if lasting.known and view.edge(gauge.id, level, rising=False).value > view.free_until(gauge.id):
         return missing(f"merged: the reflection comes before the signal falls to {level:g} of the peak")
     return scaled(lasting, MICRO)
 

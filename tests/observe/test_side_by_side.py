@@ -66,7 +66,7 @@ def test_what_is_usual_is_found_side_by_side():
     for sensor in ("g", "h", "wall"):
         assert None not in runs[0].together.pulses(sensor)
         for rising in (True, False):
-            assert None not in runs[0].together.edges(sensor, 0.5, rising)
+            assert np.isfinite(runs[0].together.crossings(sensor, 0.5, rising)).all()
     for quantity, options in ASKED:
         usual = (
             "nowhere" not in options.values() and quantity != "pulse_count" and 1.5 not in options.values()

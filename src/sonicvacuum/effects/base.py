@@ -36,6 +36,11 @@ class Setup:
     sensors: tuple = ()
     catalogue: Catalogue = EMPTY
 
+    def take(self, lanes: np.ndarray) -> "Setup":
+        """Some of the chains, with the sensors that read them."""
+        sensors = tuple(sensor.take(lanes) for sensor in self.sensors)
+        return replace(self, chain=self.chain.take(lanes), sensors=sensors)
+
 
 @dataclass(frozen=True)
 class Parameter:

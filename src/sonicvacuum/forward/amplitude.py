@@ -14,13 +14,13 @@ from sonicvacuum.gauges import Gauge, position
 from sonicvacuum.laboratory.bodies import Bodies
 from sonicvacuum.observe.quantities import measure_run
 from sonicvacuum.observe.run import Geometry
-from sonicvacuum.observe.trace import Measured, missing
+from sonicvacuum.observe.trace import Measured, Unsettled, missing
 from sonicvacuum.physics.chain import Chain
 from sonicvacuum.physics.scales import (
     EMBEDDED_SHARE,
     STRIKER_POWER,
     WAVE_POWER,
-    impact_scales,
+    impact_forces,
     passage_of,
     sampling_of,
 )
@@ -35,8 +35,9 @@ STRIDE = math.log(4.0)
 REACH = 2
 # Beads before the wall in which the reflection lies on the pulse.
 CLEAR = 2
-# The wave has reached the wall, and has passed all gauges, after so many crossings of the chain.
-CROSSED = 1.7
+# The wave has reached the wall, and has passed all gauges, after so many crossings of the slowest chain; most
+# waves have after MOSTLY.
+MOSTLY, CROSSED = 0.7, 1.7
 # Within these the exponent that two strikes show is believed; strikes nearer than this show none.
 _LEAST, _MOST, _APART = 0.4, 1.6, 1e-4
 
@@ -62,10 +63,12 @@ def speed_at_amplitude(
     if pair is None:
         return [missing("short: the chain has too few beads for a speed at this gauge")] * chain.lanes
     target = math.log(amplitude)
-    strike = last = np.log(_first_guess(chain, amplitude))
-    before = None
+    strike = last = first = np.log(_first_guess(chain, amplitude))
+    before, mostly = None, passage_of(chain.struck_at(np.exp(first)), MOSTLY)
     for _ in range(TRIES):
-        seen = np.log(_struck(chain, diameters, sensor, pair, np.exp(strike), refine))
+        # A contact time goes as the speed to the power −1/5.
+        begun = mostly * math.exp(0.2 * float((first - strike).max()))
+        seen = np.log(_struck(chain, diameters, sensor, pair, np.exp(strike), begun, refine))
         off = seen[0] - target
         known = np.isfinite(off)
         if not known.any():
@@ -81,8 +84,7 @@ def speed_at_amplitude(
 
 def _first_guess(chain, amplitude):
     """(lanes,) striker speeds at which a Hertz chain would read about that amplitude."""
-    forces = np.array([impact_scales(chain.take([k]))[0] for k in range(chain.lanes)])
-    return chain.speed * (amplitude / (EMBEDDED_SHARE * forces)) ** STRIKER_POWER
+    return chain.speed * (amplitude / (EMBEDDED_SHARE * impact_forces(chain))) ** STRIKER_POWER
 
 
 def _exponent(before, now, strike, last):
@@ -119,24 +121,44 @@ def _pair(sensor, beads):
     return Gauge("(before)", "embedded", first), Gauge("(behind)", "embedded", last)
 
 
-def _struck(chain, diameters, sensor, pair, speeds, refine):
-    """(2, lanes) amplitude at the gauge and speed across the pair, of chains struck at these speeds."""
-    lanes = replace(chain, speed=speeds)
+def _struck(chain, diameters, sensor, pair, speeds, begun, refine):
+    """(2, lanes) amplitude at the gauge and speed across the pair, of chains struck at these speeds; what is
+    settled in the first `begun` seconds is not simulated for longer.
+    """
+    lanes = chain.struck_at(speeds)
     gauges = (replace(sensor, id="(gauge)"), *pair, Gauge("(end)", "wall", None))
-    setup, duration = Setup(lanes, gauges), passage_of(lanes, CROSSED)
-    seen = see(setup, duration, sampling_of(lanes), refine=refine, forgiving=True, alone=False)
+    setup, geometry = Setup(lanes, gauges), Geometry(chain.beads, diameters, gauges)
+    interval, found, left = sampling_of(lanes), np.empty((2, chain.lanes)), np.arange(chain.lanes)
+    for goes_on in (True, False):
+        own = setup if len(left) == chain.lanes else setup.take(left)
+        duration = begun if goes_on else passage_of(lanes, CROSSED)
+        seen = see(own, duration, interval, refine=refine, forgiving=True, alone=False)
+        found[:, left], unsettled = _shown(seen, geometry, goes_on)
+        left = left[unsettled]
+        if not len(left):
+            break
+    return found
+
+
+def _shown(seen, geometry, goes_on):
+    """(2, lanes) amplitude and speed that a simulation shows; (lanes,) whether more of it may change them."""
     # And with them compiled code, as in `motion.see`.
     from sonicvacuum.forward.columns import Columns, filled
     from sonicvacuum.forward.together import runs_of
 
-    runs = runs_of(seen.readings, seen.history.time, Geometry(chain.beads, diameters, gauges))
+    runs = runs_of(seen.readings, seen.history.time, geometry, goes_on)
     columns, finite = Columns(runs), np.isfinite(seen.readings).all(axis=(1, 2))
+    unsettled = np.zeros(len(runs), dtype=bool)
 
     def shown(quantity, **options):
         def closer(lane):
-            return measure_run(quantity, runs[lane], **options).value if finite[lane] else math.nan
+            try:
+                return measure_run(quantity, runs[lane], **options).value if finite[lane] else math.nan
+            except Unsettled:
+                unsettled[lane] = True
+                return math.nan
 
         return np.where(finite, filled(columns.of(quantity, options), np.arange(len(runs)), closer), math.nan)
 
     height = shown("amplitude", sensor="(gauge)")
-    return np.stack([height, shown("speed", **{"from": "(before)", "to": "(behind)"})])
+    return np.stack([height, shown("speed", **{"from": "(before)", "to": "(behind)"})]), unsettled

@@ -23,7 +23,12 @@ def virtual(gauges: tuple[Gauge, ...], beads: int) -> tuple[Gauge, ...]:
 
 
 def passages(
-    seen: Seen, lanes, signals: np.ndarray, gauges: tuple[Gauge, ...], diameters: Bodies | float
+    seen: Seen,
+    lanes,
+    signals: np.ndarray,
+    gauges: tuple[Gauge, ...],
+    diameters: Bodies | float,
+    goes_on: bool = False,
 ) -> list[Run]:
     """What `observe` measures on: the readings of each lane, those of the virtual gauges added.
 
@@ -33,6 +38,7 @@ def passages(
         signals: (L, S, T) readings of those lanes.
         gauges: where the S gauges sit.
         diameters: of the beads in m.
+        goes_on: whether this is the beginning of a longer simulation.
     """
     from sonicvacuum.forward.together import runs_of  # and with it compiled code, as in `motion.see`
 
@@ -41,7 +47,7 @@ def passages(
     geometry = Geometry(beads, diameters, (*gauges, *extra))
     if extra:
         signals = np.concatenate([signals, readings(extra, history.take(lanes), beads)], axis=1)
-    return runs_of(signals, history.time, geometry)
+    return runs_of(signals, history.time, geometry, goes_on)
 
 
 def measured(

@@ -11,9 +11,19 @@ from types import FunctionType
 import numpy as np
 
 from sonicvacuum.observe import pulse, trace
-from sonicvacuum.observe.pulse import MAIN, PROMINENCE, Pulse
+from sonicvacuum.observe.pulse import HIGHER, MAIN, PROMINENCE, Pulse
 from sonicvacuum.observe.run import Geometry, Run
-from sonicvacuum.observe.trace import DEGREE, TOP, Measured, cubic, grid, newton, root, summit, value_at
+from sonicvacuum.observe.trace import (
+    AHEAD,
+    DEGREE,
+    TOP,
+    cubic,
+    grid,
+    newton,
+    root,
+    summit,
+    value_at,
+)
 from sonicvacuum.physics.kernels import Compiled
 
 # Neither reordered nor fused: the same roundings as in Python.
@@ -23,12 +33,15 @@ _OPTIONS = {"error_model": "numpy", "nogil": True, "_nrt": False}
 _USUAL, _PEAK, _SEEN, _LEFT, _RIGHT = range(5)
 
 
-def runs_of(signals: np.ndarray, time: np.ndarray, geometry: Geometry) -> list[Run]:
-    """Simulated runs from their readings (L, S, T), gauges as in the geometry, and times (T,) in s."""
+def runs_of(signals: np.ndarray, time: np.ndarray, geometry: Geometry, goes_on: bool = False) -> list[Run]:
+    """Simulated runs from their readings (L, S, T), gauges as in the geometry, and times (T,) in s.
+
+    `goes_on`: whether these are the beginnings of longer ones.
+    """
     ids = [sensor.id for sensor in geometry.sensors]
-    together = Together(np.asarray(time, dtype=float), signals, ids)
+    together = Together(np.asarray(time, dtype=float), signals, ids, goes_on)
     return [
-        Run(dict(zip(ids, one, strict=True)), time, geometry, together=together, lane=lane)
+        Run(dict(zip(ids, one, strict=True)), time, geometry, together=together, lane=lane, goes_on=goes_on)
         for lane, one in enumerate(signals)
     ]
 
@@ -36,12 +49,14 @@ def runs_of(signals: np.ndarray, time: np.ndarray, geometry: Geometry) -> list[R
 class Together:
     """Signals (L, S, T) of L lanes at S gauges and equidistant times (T,) in s; ValueError for other times.
 
+    Where they go on, one has to look closer at what more of them may change.
+
     Attributes:
         grid: first time and interval in s.
     """
 
-    def __init__(self, time: np.ndarray, signals: np.ndarray, sensors: list[str]):
-        self.grid = grid(time)
+    def __init__(self, time: np.ndarray, signals: np.ndarray, sensors: list[str], goes_on: bool = False):
+        self.grid, self._goes_on = grid(time), goes_on
         self._signals = np.ascontiguousarray(signals, dtype=float)
         self._place = {sensor: s for s, sensor in enumerate(sensors)}
         self._found: dict[str, tuple[np.ndarray, ...]] = {}
@@ -79,16 +94,17 @@ class Together:
             self._times[key] = self._crossings(*key)
         return self._times[key]
 
-    def edges(self, sensor: str, level: float, rising: bool) -> list[Measured | None]:
-        """The same lane by lane; None where one has to look closer."""
-        return [Measured(t) if t == t else None for t in self.crossings(sensor, level, rising).tolist()]
-
     def _of(self, sensor):
         """What is known of each lane's pulse, its time and its height."""
         if sensor not in self._found:
             s, known = self._place[sensor], np.zeros((len(self), 5), dtype=np.int64)
             _find_tops(self._signals, s, known)
-            self._found[sensor] = (known, *self._summits(s, known))
+            time, height = self._summits(s, known)
+            if self._goes_on:
+                stays = known[:, _RIGHT] < self._signals.shape[2] - AHEAD
+                stays &= self._signals[:, s].max(axis=1) <= HIGHER * height
+                time[~stays], height[~stays], known[~stays, _USUAL] = np.nan, np.nan, 0
+            self._found[sensor] = known, time, height
         return self._found[sensor]
 
     def _summits(self, s, known):
@@ -114,6 +130,8 @@ class Together:
         places = np.full(len(self), np.nan)
         if 0.0 < level < 1.0:
             _find_crossings(self._signals, self._place[sensor], peak, target, rising, places)
+        if self._goes_on:
+            places[~(np.ceil(places) < self._signals.shape[2] - AHEAD)] = np.nan
         start, interval = self.grid
         return start + interval * places
 

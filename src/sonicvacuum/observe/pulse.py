@@ -10,6 +10,7 @@ the wave's own tail add small ones. Rules, so that a count means something:
 * A pulse that the record does not show is absent; one whose rise or fall the record cuts off is truncated;
   one that does not fall to a level before the next separate pulse is merged at that level. Values are then
   NaN, with the reason.
+* The beginning of a longer signal (`Trace.goes_on`) tells what the whole would tell, or raises `Unsettled`.
 """
 
 import math
@@ -18,9 +19,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sonicvacuum.observe.trace import Trace, maximum, top_of
+from sonicvacuum.observe.trace import Trace, Unsettled, maximum, top_of
 
 MAIN = 0.25
+# The main pulse of a beginning is that of the whole as long as no later force exceeds it 1/`MAIN` times; it
+# is taken for that where no force so far has exceeded it so many times.
+HIGHER = 2.0
 PROMINENCE = 0.05
 THRESHOLD = 0.15
 _NOISE_SWING = 8.0
@@ -54,7 +58,18 @@ class Pulse:
 
 
 def main_pulse(trace: Trace, floor: float = 0.0) -> Pulse:
-    """The main pulse; absent where no force exceeds `floor` (N) or six standard deviations of the noise."""
+    """The main pulse; absent where no force exceeds `floor` (N) or six standard deviations of the noise.
+
+    Raises:
+        Unsettled: where more of the signal may show another one.
+    """
+    found = _main_pulse(trace, floor)
+    if trace.goes_on and not (found.found and trace.force.max() <= HIGHER * found.force):
+        raise Unsettled
+    return found
+
+
+def _main_pulse(trace, floor):
     force = trace.force
     largest = float(force.max())
     floor = max(floor, _NOISE_FLOOR * trace.noise)
@@ -91,16 +106,25 @@ def pulses(
     Returns:
         Pulses in the order of time; empty without a main pulse. A peak whose fall the record cuts off is left
         out.
+
+    Raises:
+        Unsettled: where more of the signal may show another one before `until`.
     """
     if not main.found:
         return ()
     end = len(trace.force) if until == math.inf else 2 + int((until - trace.start) / trace.interval)
+    trace.settled(end)
     found = [main, *_later(trace, main, end, prominence)]
     return tuple(p for p in found if p.force >= threshold * main.force and (p.time < until or p is main))
 
 
 def highest(trace: Trace, main: Pulse, start: float, end: float) -> Pulse:
-    """The highest peak between two times in s; absent where it is below `PROMINENCE` × the main one."""
+    """The highest peak between two times in s; absent where it is below `PROMINENCE` × the main one.
+
+    Raises:
+        Unsettled: where the signal goes on and ends before that.
+    """
+    trace.settled((end - trace.start) / trace.interval)
     first = max(0, int((start - trace.start) / trace.interval) + 1)
     window = trace.force[first : int((end - trace.start) / trace.interval) + 1]
     if len(window) < 3:
@@ -120,6 +144,7 @@ def _no_pulse(reason):
 
 def _fitted(trace, peak, seen, height):
     first, last = top_of(trace, peak, height)
+    trace.settled(last)
     place, force = maximum(trace.force, first, last)
     return Pulse(trace.time(place), force, peak, seen, last - first + 1)
 
@@ -128,7 +153,10 @@ def _later(trace, main, end, prominence):
     """Separate peaks after the main one whose highest sample lies before sample `end`."""
     drop = drop_of(trace, main, prominence)
     for valley, peak, seen in turns(trace.force, main.seen, drop):
-        if seen is None or peak >= end:
+        if peak >= end:
+            return
+        if seen is None:
+            trace.settled(len(trace.force))
             return
         yield _fitted(trace, peak, seen, trace.force[peak] - trace.force[valley])
 

@@ -100,14 +100,16 @@ class Geometry:
 
 
 class Together(Protocol):
-    """Pulses of many runs, found side by side; None where one has to look closer, see `forward.together`."""
+    """Pulses of many runs, found side by side; None or NaN where one has to look closer, see
+    `forward.together`.
+    """
 
     grid: tuple[float, float]
 
     def pulses(self, sensor: str) -> list[Pulse | None]:
         """Main pulse of each run at a gauge."""
 
-    def edges(self, sensor: str, level: float, rising: bool) -> list[Measured | None]:
+    def crossings(self, sensor: str, level: float, rising: bool) -> np.ndarray:
         """Time in s at which the main pulse of each run passes `level` × its peak."""
 
 
@@ -125,9 +127,11 @@ class Run:
         safety: fraction of the way to the wall and back after which pulses no longer count.
         together: the same readings with those of further runs, for a run without noise and floor.
         lane: place of this run there.
+        goes_on: whether the readings are the beginning of longer ones.
 
     Raises:
         ValueError: for times that are not equidistant; for a malformed reading, when it is used.
+        Unsettled: when what is asked for may change as the readings go on.
     """
 
     readings: Mapping[str, np.ndarray]
@@ -139,6 +143,7 @@ class Run:
     safety: float = SAFETY
     together: Together | None = None
     lane: int = 0
+    goes_on: bool = False
     _grid: tuple[float, float] = field(init=False, repr=False)
     _known: dict = field(init=False, repr=False, default_factory=dict)
 
@@ -163,10 +168,7 @@ class Run:
 
     def edge(self, sensor: str, level: float, rising: bool) -> Measured:
         """Time in s at which the pulse of `first` rises or falls through `level` × its peak."""
-        found = self._seen(sensor) and self.together.edges(sensor, level, rising)[self.lane]
-        if found:
-            return found
-        return (onset if rising else ending)(self.trace(sensor), self.first(sensor), level)
+        return self._once((level, rising), sensor, lambda sensor: self._edge(sensor, level, rising))
 
     def reflection_time(self, sensor: str) -> Measured:
         """Time in s at which the reflection of the main pulse peaks at a gauge.
@@ -223,13 +225,20 @@ class Run:
             raise ValueError(f"sensor {sensor}: reading has shape {force.shape}, time {self.time.shape}")
         noise = self.noise.get(sensor, 0.0) if isinstance(self.noise, Mapping) else self.noise
         try:
-            return Trace(*self._grid, force, noise).checked()
+            return Trace(*self._grid, force, noise, self.goes_on).checked()
         except ValueError as error:
             raise ValueError(f"sensor {sensor}: {error}") from None
 
     def _first(self, sensor):
         found = self._seen(sensor) and self.together.pulses(sensor)[self.lane]
         return found or main_pulse(self.trace(sensor), self.floor)
+
+    def _edge(self, sensor, level, rising):
+        if self._seen(sensor):
+            found = float(self.together.crossings(sensor, level, rising)[self.lane])
+            if not math.isnan(found):
+                return Measured(found)
+        return (onset if rising else ending)(self.trace(sensor), self.first(sensor), level)
 
     def _seen(self, sensor):
         """Whether pulses of this gauge are found together with those of other runs."""

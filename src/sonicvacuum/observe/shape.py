@@ -99,6 +99,8 @@ def _edge(trace, pulse, level, rising):
     if outward[0] < target:
         return missing(f"unresolved: no sample reaches {level:g} of the peak")
     low = outward < target - min(_NOISE_DIP * trace.noise, 0.5 * target)
+    if not rising:
+        trace.settled(pulse.peak + int(low.argmax()) if low.any() else len(trace.force))
     if not low.any():
         return missing(f"truncated: the record {'starts' if rising else 'ends'} above {level:g} of the peak")
     outward = outward[: int(low.argmax()) + 1]

@@ -18,6 +18,8 @@ DEGREE = 6
 TOP = 0.2
 NOISY_TOP = 0.5
 _NOISY_DIP = 6.0
+# What is told of a beginning has ended so many samples before it does: crossings and filters look ahead.
+AHEAD = 3
 
 
 @dataclass(frozen=True)
@@ -38,6 +40,10 @@ class Measured:
         return not self.reason
 
 
+class Unsettled(Exception):
+    """What more of a record may change, asked of its beginning."""
+
+
 def missing(reason: str) -> Measured:
     """No value, for this reason."""
     return Measured(float("nan"), reason)
@@ -52,12 +58,14 @@ class Trace:
         interval: time between samples in s.
         force: (S,) reading, change from rest: N, or the unit of the gauge that it comes from.
         noise: standard deviation of one sample in the same unit, 0 for a simulated signal.
+        goes_on: whether this is the beginning of a signal: what more of it may change is `Unsettled`.
     """
 
     start: float
     interval: float
     force: np.ndarray
     noise: float = 0.0
+    goes_on: bool = False
 
     @classmethod
     def of(cls, time: np.ndarray, force: np.ndarray, noise: float = 0.0) -> "Trace":
@@ -81,6 +89,11 @@ class Trace:
         if not 0.0 <= self.noise < float("inf"):
             raise ValueError(f"noise is {self.noise}; it must be zero or more")
         return self
+
+    def settled(self, samples: float) -> None:
+        """Raise `Unsettled` where this is a beginning that ends less than `AHEAD` after so many samples."""
+        if self.goes_on and not samples < len(self.force) - AHEAD:
+            raise Unsettled
 
     def time(self, sample: float) -> float:
         """Time in s of a sample, also between samples."""

@@ -66,6 +66,12 @@ class History:
             step=self.step[lanes],
         )
 
+    def until(self, samples: int) -> "History":
+        """The first samples; without the balance."""
+        recorded = ("time", "force", "velocity", "acceleration")
+        begun = {name: getattr(self, name)[:samples] for name in recorded}
+        return replace(self, **begun, energy=self.energy[:0], momentum=self.momentum[:0])
+
     def without_numbers(self) -> "History":
         """The same with NaN for all forces and motions: what a motion that does not stay finite leaves."""
         lost = {n: np.full_like(getattr(self, n), np.nan) for n in ("force", "velocity", "acceleration")}

@@ -2,6 +2,8 @@
 
 import math
 
+import numpy as np
+
 from sonicvacuum.physics.chain import Chain
 from sonicvacuum.physics.contact import compression_at, contact_time
 from sonicvacuum.physics.laws import HERTZ, elastic_at
@@ -40,6 +42,14 @@ def impact_scales(chain: Chain) -> tuple[float, float]:
     spring = 1.5 * _largest(stiffness) ** (2.0 / 3.0) * _largest(chain.load) ** (1.0 / 3.0)
     linear = _largest(chain.speed) * math.sqrt(spring * _largest(mass))
     return max(force, linear), _HERTZ * _largest(contact_time(mass, softest, chain.speed))
+
+
+def impact_forces(chain: Chain) -> np.ndarray:
+    """(lanes,) force in N as in `impact_scales`, of each chain that has beads."""
+    stiffness, load = chain.stiffness, np.broadcast_to(chain.load, chain.speed.shape)
+    force = stiffness * (1.25 * chain.striker_mass * chain.speed**2 / stiffness) ** 0.6
+    spring = 1.5 * stiffness ** (2.0 / 3.0) * load ** (1.0 / 3.0)
+    return np.maximum(force, chain.speed * np.sqrt(spring * chain.heaviest))
 
 
 def sampling_of(chain: Chain) -> float:

@@ -62,4 +62,6 @@ def write_signals(simulated, path):
         for run, speed in enumerate(simulated.speeds):
             columns = [np.full(len(time), run), np.full(len(time), speed), time]
             table = np.column_stack([*columns, *(r[:, run] for r in readings.values())])
-            np.savetxt(stream, table, delimiter=",", fmt=["%d", "%.9g", "%.9g", *["%.9g"] * len(readings)])
+            # As `numpy.savetxt` has it, which formats row after row and takes twice as long.
+            row = ",".join(["%d", *["%.9g"] * (table.shape[1] - 1)]) + "\n"
+            stream.write(row * len(table) % tuple(table.ravel().tolist()))

@@ -97,14 +97,16 @@ class Batch:
         return self.seen.setup.chain.lanes
 
     @cached_property
-    def _geometry(self):
-        return Geometry(self.card.beads, self.card.specimen.diameters, self.seen.setup.sensors)
+    def _runs(self):
+        """Pulses of all lanes are found side by side."""
+        from sonicvacuum.forward.together import runs_of  # and with it compiled code, as in `forward.see`
+
+        geometry = Geometry(self.card.beads, self.card.specimen.diameters, self.seen.setup.sensors)
+        return runs_of(self.seen.readings, self.seen.history.time, geometry)
 
     def lane(self, lane: int) -> "Lane":
         """One of the chains."""
-        names = [s.id for s in self.seen.setup.sensors]
-        readings = dict(zip(names, self.seen.readings[lane], strict=True))
-        return Lane(self.card, Run(readings, self.seen.history.time, self._geometry))
+        return Lane(self.card, self._runs[lane])
 
 
 @dataclass(frozen=True, eq=False)

@@ -83,6 +83,7 @@ class Batch:
         interval: time between simulated samples in s, a whole fraction of the runs' own.
         duration: simulated time in s.
         gauges: where the gauges sat in these runs; None: as everywhere.
+        settled_s: what is simulated at first where that may be enough (`beginnings`).
     """
 
     chain: Chain
@@ -90,6 +91,12 @@ class Batch:
     interval: float
     duration: float
     gauges: tuple[Gauge, ...] | None = None
+    settled_s: float = math.inf
+
+    @property
+    def first_s(self) -> float:
+        """What is simulated at first in s."""
+        return min(self.settled_s, self.duration)
 
 
 @dataclass(frozen=True)

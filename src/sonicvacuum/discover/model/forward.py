@@ -261,7 +261,7 @@ class Forward:
         lost = ~(np.abs(nu[:, own] * self.nuisance_sigma[own]) < NO_CHAIN).all(axis=1)
         nu = np.where(lost[:, None], 0.0, nu)
         setup = change(self.nominal(batch, nu), np.repeat(part, len(batch.runs)))
-        seen, gain = self.simulate(batch, setup), self._gain(nu)
+        seen, gain = self.simulate(batch, setup, batch.first_s), self._gain(nu)
         traces = {}
         for places in self._recorded_alike(batch):
             traces |= gauges.traces(
@@ -275,7 +275,11 @@ class Forward:
                 nu,
                 rate_of or len(nu),
             )
-        observed = scalars.of_batch(e, self.layout, batch, seen, gain, nu, self._refine)
+
+        def again(lanes, duration):
+            return self.simulate(batch, setup.take(lanes), duration)
+
+        observed = scalars.of_batch(e, self.layout, batch, seen, gain, nu, again, self._refine)
         for run, measured in zip(batch.runs, observed, strict=True):
             value, timing = traces[run]
             flat = e.whitened_on(run, value, measured)
@@ -321,13 +325,13 @@ class Forward:
             self._tiled[key] = batch.chain.take(np.tile(np.arange(len(batch.runs)), lanes))
         return self._tiled[key]
 
-    def simulate(self, batch, setup: Setup) -> Seen:
-        """What a batch shows, with what the scalars need besides."""
+    def simulate(self, batch, setup: Setup, duration: float | None = None) -> Seen:
+        """What a batch shows in so many seconds (None: all of them), with what the scalars need besides."""
         self.simulations += setup.chain.lanes
         asked = any(run.scalars for run in self.experiment.runs)
         return see(
             setup,
-            batch.duration,
+            batch.duration if duration is None else duration,
             batch.interval,
             besides=virtual(self.experiment.gauges, setup.chain.beads) if asked else (),
             striker=asked,

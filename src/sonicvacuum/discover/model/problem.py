@@ -13,6 +13,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from sonicvacuum.discover.model.beginnings import begun
 from sonicvacuum.discover.model.experiment import (
     Batch,
     Experiment,
@@ -54,9 +55,11 @@ def experiment(record: Record, catalogue: Catalogue = CATALOGUE) -> Experiment:
 
 
 def _ready(data: Experiment, records) -> Experiment:
-    """The data set with baselines and drifts in its noise, and with a start for what is not known."""
+    """The data set with baselines and drifts in its noise, with a start for what is not known, and with what
+    is simulated at first.
+    """
     unknown = any(not math.isfinite(r.trigger_sigma_s) for r in records)
-    return started(replace(data, slow=slow(data)), unknown)
+    return begun(started(replace(data, slow=slow(data)), unknown))
 
 
 def _experiment(record, catalogue):

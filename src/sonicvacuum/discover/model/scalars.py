@@ -2,14 +2,12 @@
 
 import numpy as np
 
-from sonicvacuum.forward import measured, of_amplitude, passages
-from sonicvacuum.forward.columns import Columns, filled
+from sonicvacuum.discover.model.beginnings import SOLITARY, is_inside, settled
+from sonicvacuum.forward import measured, of_amplitude
+from sonicvacuum.forward.columns import filled
 from sonicvacuum.forward.striker import Strikers
 from sonicvacuum.observe.contacts import BALL_QUANTITIES
 from sonicvacuum.physics.scales import WAVE_POWER
-
-# What needs further strikes, of all lanes side by side.
-SOLITARY = "speed_at_amplitude"
 
 
 def gain_power(scalar, gauge: str) -> float:
@@ -77,7 +75,7 @@ def shared_column(experiment, run: int, value: np.ndarray, source: str) -> np.nd
     return columns
 
 
-def of_batch(experiment, layout, batch, seen, gain, nu, refine: float = 1.0) -> list[np.ndarray]:
+def of_batch(experiment, layout, batch, seen, gain, nu, again, refine: float = 1.0) -> list[np.ndarray]:
     """For each run of a batch (L, n) observables as they are compared.
 
     Args:
@@ -87,54 +85,47 @@ def of_batch(experiment, layout, batch, seen, gain, nu, refine: float = 1.0) -> 
         seen: the simulation.
         gain: (L, S) of the gauges.
         nu: (L, q) nuisances over their standard errors.
+        again: as `beginnings.settled` takes it.
         refine: divides the step of further simulations.
     """
     wanted = [experiment.runs[run].scalars for run in batch.runs]
     if not any(wanted):
         return [np.zeros((len(nu), 0))] * len(wanted)
     errors = {layout.named(p): nu[:, p] for p in layout.other("shared")}
-    signals = seen.readings * np.repeat(gain, len(wanted), axis=0)[..., None]
-    predicted = predict(experiment, wanted, seen, signals, refine)
+    values = settled(experiment, batch, seen, np.repeat(gain, len(wanted), axis=0), again)
+    predicted = predict(experiment, wanted, seen, values, refine)
     return [read(scalars, own, errors) for scalars, own in zip(wanted, predicted, strict=True)]
 
 
-def predict(experiment, wanted, seen, signals: np.ndarray, refine: float = 1.0) -> list[np.ndarray]:
+def predict(experiment, wanted, seen, values: np.ndarray, refine: float = 1.0) -> list[np.ndarray]:
     """For each of R runs (L, n) values of its scalars in SI, 0 where the readings show no such thing.
 
     Args:
         experiment: the data set.
         wanted: the n scalars of each run.
         seen: the simulation, R runs for each of L lanes.
-        signals: (L R, S, T') readings in N.
+        values: (L R, n') what gauges in the chain tell.
         refine: divides the step of further simulations.
     """
-    runs = [None] * len(signals)
-    if any(_inside(one) for scalars in wanted for one in scalars):
-        runs = passages(seen, slice(None), signals, experiment.gauges, experiment.diameter)
     of_ball = any(one.quantity in BALL_QUANTITIES for scalars in wanted for one in scalars)
     strikers = Strikers(seen.history, seen.setup.chain) if of_ball else None
-    columns, found = Columns(runs) if runs[0] else None, []
+    found = []
     for k, scalars in enumerate(wanted):
-        lanes = np.arange(k, len(signals), len(wanted))
-        own = [_column(experiment, one, seen, lanes, runs, columns, strikers, refine) for one in scalars]
-        values = np.array(own, dtype=float).reshape(len(scalars), len(lanes)).T
-        found.append(np.nan_to_num(values, nan=0.0, posinf=0.0, neginf=0.0))
+        lanes = np.arange(k, len(values), len(wanted))
+        own = values[lanes, : len(scalars)]
+        for n, one in enumerate(scalars):
+            if not is_inside(one):
+                own[:, n] = _outside(experiment, one, seen, lanes, strikers, refine)
+        found.append(np.nan_to_num(own, nan=0.0, posinf=0.0, neginf=0.0))
     return found
 
 
-def _inside(scalar):
-    """Whether a scalar is measured on readings of gauges in the chain."""
-    return scalar.quantity not in (*BALL_QUANTITIES, SOLITARY)
-
-
-def _column(experiment, scalar, seen, lanes, runs, columns, strikers, refine):
-    """One scalar of some lanes."""
+def _outside(experiment, scalar, seen, lanes, strikers, refine):
+    """A number of some lanes that no gauge in the chain tells."""
 
     def closer(lane):
-        return _value(experiment, scalar, seen, lane, runs[lane], refine)
+        return _value(experiment, scalar, seen, lane, refine)
 
-    if _inside(scalar):
-        return filled(columns.of(scalar.quantity, scalar.options)[lanes], lanes, closer)
     try:
         if scalar.quantity == SOLITARY:
             return [one.value for one in of_amplitude(scalar, seen, lanes, experiment.diameter, refine)]
@@ -144,9 +135,9 @@ def _column(experiment, scalar, seen, lanes, runs, columns, strikers, refine):
     return filled(found, lanes, closer)
 
 
-def _value(experiment, scalar, seen, lane, passage, refine):
+def _value(experiment, scalar, seen, lane, refine):
     """One scalar of one lane; no number where its motion does not stay finite."""
     try:
-        return measured(scalar, seen, lane, passage, experiment.diameter, refine).value
+        return measured(scalar, seen, lane, None, experiment.diameter, refine).value
     except (FloatingPointError, ValueError):
         return np.nan
