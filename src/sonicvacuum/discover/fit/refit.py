@@ -32,7 +32,10 @@ FAR_U, FAR_NU = 0.5, 3.0
 # Neither step nor distance is longer in the logarithm of a nuisance that is hardly known: slopes bend there.
 LONGEST_LOG, FAR_LOG = 0.5, 0.15
 _HELD = 1e12
-_AIM = 4.0
+# Steps of finite differences change the data by so many standard errors, and a coordinate by no more than
+# this. Slopes to second order take steps twice as long, over which a duration at 2 % of the peak was no
+# parabola any more with 0.05: its slope came out with the wrong sign.
+_AIM, _LONGEST = 4.0, 0.02
 
 
 @dataclass(frozen=True)
@@ -244,7 +247,7 @@ class _Held:
 def _differences(part):
     """(L, p) steps of finite differences that change all data together by a few standard errors."""
     slopes = np.sqrt(np.einsum("lnn->ln", part.hessian.sum(axis=0))[:, : part.free])
-    return np.clip(_AIM / np.maximum(slopes, 1e-9), 1e-5, 0.05)
+    return np.clip(_AIM / np.maximum(slopes, 1e-9), 1e-5, _LONGEST)
 
 
 def _promise(gradient, hessian, step):
