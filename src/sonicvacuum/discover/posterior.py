@@ -201,8 +201,7 @@ def _averaged(fit, drawn, found):
     """How coordinates are told, values and weights, with what rivals make of them."""
     low, high = _bounds(fit)
     result = []
-    for k, (how, u, weight) in enumerate(drawn):
-        share, off = rivals.shifts(fit, found)[k]
+    for k, ((how, u, weight), (share, off)) in enumerate(zip(drawn, rivals.shifts(fit, found), strict=True)):
         if share @ np.square(off) > (NOTABLE * fit.sigma[k]) ** 2:
             u = (u + off[:, None]).clip(low[k], high[k]).ravel()
             how, weight = AVERAGED, np.outer(share, weight).ravel()

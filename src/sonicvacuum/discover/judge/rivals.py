@@ -15,7 +15,7 @@ from sonicvacuum.discover.fit.evidence import Candidate, Combination
 from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.judge import explanations
 
-# Less probable explanations are left aside: of what moves nothing in most cases nothing is said.
+# Explanations less probable than this are left aside.
 LEAST = 1e-3
 
 
@@ -57,19 +57,17 @@ def shifts(fit: Fit, found: Sequence[Rival]) -> list[tuple[np.ndarray, np.ndarra
     """For each coordinate of a fit (n,) probabilities of the rivals that have it, which sum to 1, and (n,) by
     how much theirs lies off it; ([1], [0]) where none has.
     """
-    own, u = _places(fit), fit.u
+    others = [(one.probability, _coordinates(one.fit)) for one in found]
     result = []
-    for k, place in enumerate(own):
-        there = [(one, _places(one.fit)) for one in found]
-        there = [
-            (one.probability, one.fit.u[names.index(place)] - u[k]) for one, names in there if place in names
-        ]
+    for name, value in _coordinates(fit).items():
+        there = [(p, own[name] - value) for p, own in others if name in own]
         share, off = np.array(there or [(1.0, 0.0)]).T
         result.append((share / share.sum(), off))
     return result
 
 
-def _places(fit):
-    """Effect, its place and the parameter of each coordinate."""
+def _coordinates(fit):
+    """(effect, its place, parameter) → coordinate."""
     components = fit.hypothesis.components
-    return [(c.effect.id, c.place, free.parameter.name) for c in components for free in c.free]
+    names = [(c.effect.id, c.place, free.parameter.name) for c in components for free in c.free]
+    return dict(zip(names, fit.u, strict=True))
