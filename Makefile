@@ -113,14 +113,14 @@ bench: .venv/benched  ## measure the engine against other codes, on one core
 nested: .venv/benched  ## evidence by nested sampling beside that of the search; takes an hour
 	$(START) --cores 1 results/nested.csv
 
-study: .venv/studied  ## the full blind study with its baselines and further runs; takes hours
+study: .venv/studied  ## the full blind study with its baselines and further runs; takes an hour or two
 	$(BIN)/pytest workflow/study
 	$(START) --cores $(CORES) blind_full blind_resolved blind_fresh
 
-slips: env  ## slips of the laboratory in 270 records, searched and counted; takes hours
+slips: env  ## slips of the laboratory in 270 records, searched and counted; takes an hour or two
 	$(START) --cores $(CORES) results/blind_slips/summary.csv
 
-extras: env  ## smooth systematic errors, three and four effects: 139 records, searched and counted; takes hours
+extras: env  ## smooth systematic errors, three and four effects: 139 records, searched and counted; takes an hour or two
 	$(START) --cores $(CORES) results/blind_extras/summary.csv
 
 laws: env  ## contact laws from outside the catalogue: 30 records, their free-form laws tried on fresh runs; half an hour

@@ -18,7 +18,7 @@ from sonicvacuum_blind.record import as_record
 from sonicvacuum_blind.strength import Rival, rivals
 from sonicvacuum_blind.systematics import Smooth
 
-SEED = 65_927_677
+SEED = 549_454_550
 SIZES = (0.003, 0.01, 0.03)
 STRENGTHS = (20.0, 50.0, 150.0, 500.0)
 NULLS, SETS, OF_EACH = 11, 20, 20.0
