@@ -23,6 +23,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from sonicvacuum.blas import one_thread
 from sonicvacuum.physics.layered import Layer, solve
 
 # The term of the force law that it is.
@@ -85,6 +86,8 @@ def fitted(layer: Layer, refine: float = COARSE) -> np.ndarray:
 def _at_node(poisson, node, core_poisson):
     from sonicvacuum.physics.compiled import kept  # and with it LLVM: not for a chain without a layer
 
+    # The same to the last bit whoever needs it first: what is kept is read by all.
+    @one_thread
     def made():
         return fitted(Layer(poisson, float(np.exp(STEP * node)), core_poisson)).tobytes()
 
