@@ -69,6 +69,8 @@ def faced(deep, a, facing):
     return own * deep + (1.0 - own), own[..., None] * a
 
 
+# The same to the last bit whoever needs it first: what is kept is read by all.
+@one_thread
 def fitted(layer: Layer, refine: float = COARSE) -> np.ndarray:
     """(POWERS,) coefficients of one layer under a rigid body, from its exact solution."""
     exact = solve(layer, RADII, refine)
@@ -86,8 +88,6 @@ def fitted(layer: Layer, refine: float = COARSE) -> np.ndarray:
 def _at_node(poisson, node, core_poisson):
     from sonicvacuum.physics.compiled import kept  # and with it LLVM: not for a chain without a layer
 
-    # The same to the last bit whoever needs it first: what is kept is read by all.
-    @one_thread
     def made():
         return fitted(Layer(poisson, float(np.exp(STEP * node)), core_poisson)).tobytes()
 
