@@ -1,7 +1,5 @@
 """Scales of a chain's impact: its force and contact time, how finely and for how long to look at it."""
 
-import math
-
 import numpy as np
 
 from sonicvacuum.physics.chain import Chain
@@ -38,18 +36,22 @@ def impact_scales(chain: Chain) -> tuple[float, float]:
     softest = chain.softest if chain.beads else stiffness
     mass = chain.heaviest if chain.beads else chain.striker_mass
     energy = _largest(1.25 * chain.striker_mass * chain.speed**2)
-    force = _largest(stiffness) * (energy / _largest(stiffness)) ** 0.6
-    spring = 1.5 * _largest(stiffness) ** (2.0 / 3.0) * _largest(chain.load) ** (1.0 / 3.0)
-    linear = _largest(chain.speed) * math.sqrt(spring * _largest(mass))
-    return max(force, linear), _HERTZ * _largest(contact_time(mass, softest, chain.speed))
+    largest = map(_largest, (stiffness, chain.load, mass, chain.speed))
+    return float(_impact_force(energy, *largest)), _HERTZ * _largest(contact_time(mass, softest, chain.speed))
 
 
 def impact_forces(chain: Chain) -> np.ndarray:
     """(lanes,) force in N as in `impact_scales`, of each chain that has beads."""
-    stiffness, load = chain.stiffness, np.broadcast_to(chain.load, chain.speed.shape)
-    force = stiffness * (1.25 * chain.striker_mass * chain.speed**2 / stiffness) ** 0.6
+    energy = 1.25 * chain.striker_mass * chain.speed**2
+    return _impact_force(energy, chain.stiffness, chain.load, chain.heaviest, chain.speed)
+
+
+def _impact_force(energy, stiffness, load, mass, speed):
+    """The larger of the Hertz impact's force and of that of stiff springs, see `impact_scales`; `energy` is
+    5 m v²/4 of the striker.
+    """
     spring = 1.5 * stiffness ** (2.0 / 3.0) * load ** (1.0 / 3.0)
-    return np.maximum(force, chain.speed * np.sqrt(spring * chain.heaviest))
+    return np.maximum(stiffness * (energy / stiffness) ** 0.6, speed * np.sqrt(spring * mass))
 
 
 def sampling_of(chain: Chain) -> float:
