@@ -9,6 +9,9 @@ from sonicvacuum.discover.rounds import Investigation
 from sonicvacuum.discover.search.free_law import FreeLaw
 from sonicvacuum.effects.base import MICRO
 
+# Distance from which a law is hardly nearer than the nominal one.
+FAR = 0.8
+
 
 class Near(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A contact law of the catalogue, and how far its best fit is from the free-form law: 0 is the same, 1 no
@@ -68,14 +71,17 @@ def reasons(law: Law) -> list[str]:
     share = (
         ""
         if law.closed is None
-        else f" closes {law.closed:.0%} of what is left on runs left out of its fit and"
+        else f" closes {min(law.closed, 1.0):.0%} of what is left on runs left out of its fit and"
     )
-    near = (
-        f"; nearest name: {law.nearest[0].effect}, distance {law.nearest[0].distance:.2f}"
-        if law.nearest
-        else ""
-    )
-    return [f"a free-form contact law{share} is in the model: {law.formula}{near}"]
+    return [f"a free-form contact law{share} is in the model: {law.formula}{_nearest(law.nearest)}"]
+
+
+def _nearest(names: list[Near]) -> str:
+    """Which name comes nearest, or that none comes near."""
+    if not names:
+        return ""
+    told = f"{names[0].effect}, distance {names[0].distance:.2f}"
+    return f"; nearest name: {told}" if names[0].distance < FAR else f"; no name comes near ({told})"
 
 
 def rows(seen: Surface):

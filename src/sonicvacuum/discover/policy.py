@@ -87,12 +87,14 @@ RIVAL, AT_BOUND = 9.0, 0.6
 # All that failed a test may together be at most this share as probable as what is named.
 REFUSED = 0.5
 
-# A free-form law is kept where it is so much likelier than none (natural log), ...
+# A free-form law is kept where it is so much likelier than none, or than names beside something unknown
+# (natural log), ...
 LAW_LOG_BAYES = 7.0
-# ... of the smallest set of coefficients that gains this share of what the likeliest gains ...
-LAW_SHARE = 0.98
 # ... and closes this share of what was left, as fitted and on runs left out of its fit.
 LAW_CLOSES = 0.5
+# Its first group of coefficients takes away this share of what is left, or none is tried with it; a further
+# one this share of what those before leave.
+LAW_FIRST, LAW_FURTHER = 0.1, 0.25
 
 # Standard errors from the middle of a Gaussian to either end of its 90 % interval; one tail holds 5 %.
 NINETY = 1.645

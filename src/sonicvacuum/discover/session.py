@@ -10,7 +10,7 @@ from msgspec import UNSET
 
 from sonicvacuum import stages
 from sonicvacuum.blas import one_thread
-from sonicvacuum.discover import draws, given, law, next_experiment, quantities, upper, verdict
+from sonicvacuum.discover import draws, given, law, next_experiment, quantities, unnamed, upper, verdict
 from sonicvacuum.discover.draws import Draws
 from sonicvacuum.discover.faults import competition
 from sonicvacuum.discover.fit import goodness, heldout
@@ -22,7 +22,7 @@ from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.nuisances import exact
 from sonicvacuum.discover.posterior import posterior
 from sonicvacuum.discover.rounds import Investigation
-from sonicvacuum.discover.search.free_law import FreeLaw, free_law
+from sonicvacuum.discover.search.free_law import FreeLaw
 from sonicvacuum.discover.search.screen import Screen
 from sonicvacuum.discover.verdict import Verdict
 from sonicvacuum.effects import CATALOGUE, Catalogue
@@ -98,7 +98,7 @@ def discover(
     forward = found.forward
     stages.begin("places and limits")
     places = locate.locate(forward, found.null)
-    free = free_law(forward, found.final) if explanations.UNKNOWN in found.named else None
+    found, free = unnamed.with_law(found)
     clock.mark("free-form law")
     model, final = (free.forward, free.fit) if free else (forward, found.final)
     after = locate.locate(model, final) if final is not found.null else places

@@ -1,27 +1,36 @@
 """A contact law of no particular form, as it is fitted to data that no effect of the catalogue explains.
 
-It is no candidate of a search: with eleven coefficients it would explain everything a little. `discover`
+It is no candidate of a search: with fifteen coefficients it would explain everything a little. `discover`
 fits it where something is left that has no name, and a model that holds it is read, compared and simulated
 like any other.
 """
 
 from sonicvacuum.effects.base import MICRO, Effect, Parameter, Setup, add_term
-from sonicvacuum.physics.lanes import absolute, root
+from sonicvacuum.physics.lanes import root
 from sonicvacuum.physics.laws import Term
 
 # What each coefficient multiplies; r = √(δ/depth), w = rate/speed. The first nine times the Hertz force.
 SHAPES = ("1", "w", "|w|", "r", "r w", "r |w|", "r²", "r² w", "r² |w|", "force w", "force r w")
+SHAPES += ("|w|½", "r |w|½", "|w|½ sgn w", "r |w|½ sgn w")
 COEFFICIENTS = tuple(f"a{k}" for k in range(len(SHAPES)))
 
 
-def free_force(delta, rate, elastic, depth, pace, load, a, b, c, d, e, f, g, h, i, j, k):
+def free_force(delta, rate, elastic, depth, pace, load, a, b, c, d, e, f, g, h, i, j, k, m, n, o, p):
     """Force in N beside the elastic one; depth (1/m), pace (s/m), load (N) scale its arguments to order 1."""
     r = root(delta * depth)
     w = rate * pace
-    s = absolute(w)
+    # |w| and its root, rounded off.
+    far = root(w * w + SOFT * SOFT)
+    s = w * w / far
+    bent = 1.0 / root(far)
     shape = a + b * w + c * s + r * (d + e * w + f * s) + r * r * (g + h * w + i * s)
-    return elastic * shape + load * w * (j + k * r)
+    concave = bent * (s * (m + n * r) + w * (o + p * r))
+    return elastic * (shape + concave) + load * w * (j + k * r)
 
+
+# Rates below this, relative, are small: a law with a corner at rest would be integrated less accurately than
+# noise asks for.
+SOFT = 0.05
 
 TERM = Term("free-form", "force", free_force, 3 + len(COEFFICIENTS))
 
@@ -45,10 +54,12 @@ EFFECT = Effect(
     id="free-form",
     title="Free-form contact law",
     missing="a contact law that no effect of the catalogue describes",
-    equation="F = K delta^{3/2} (1 + sum_ij a_ij r^i {1, w, |w|}_j) + force w (a9 + a10 r), "
-    "r = (delta/depth)^{1/2}, w = v/speed, cut at zero",
+    equation="F = K delta^{3/2} (1 + sum_ij a_ij r^i {1, w, |w|}_j + sum_ij b_ij r^i {|w|^{1/2}, "
+    "|w|^{1/2} sgn w}_j) + force w (a9 + a10 r), r = (delta/depth)^{1/2}, w = v/speed, cut at zero, "
+    "|w| rounded off below 0.05",
     energy="stores and takes what its coefficients say",
-    reference="chosen here: a polynomial in the root of the compression, of first order in the rate",
+    reference="chosen here: a polynomial in the roots of compression and rate, up to the first power of the "
+    "latter",
     parameters=(
         _scale("depth_um", "um", 1.0, "compression at which r is 1"),
         _scale("speed_m_s", "m/s", 1.0, "rate at which w is 1"),

@@ -218,7 +218,7 @@ def law(verdict: Verdict, catalogue: Catalogue = CATALOGUE) -> str:
         scale = "with their distance from it (0: the same, 1: no nearer than Hertz)"
         text += f" The nearest named laws, {scale}: {joined(near)}."
     if found.closed is not None:
-        part = f"{100.0 * found.closed:.0f} %" if found.closed > 0.0 else "nothing"
+        part = f"{100.0 * min(found.closed, 1.0):.0f} %" if found.closed > 0.0 else "nothing"
         text += f" On runs left out of its fit it closes {part} of what was left."
     return text
 
@@ -254,7 +254,7 @@ def alternatives(verdict: Verdict, catalogue: Catalogue = CATALOGUE) -> str:
 def gap(verdict: Verdict) -> str:
     """How the misfit shrinks."""
     fitted, held_out = verdict.gap.fitted, verdict.gap.held_out
-    if not effects_of(verdict):
+    if not effects_of(verdict) and not verdict.law:
         text = (
             f"The nominal model leaves a mean squared misfit of {fitted.before:.3g} times the noise; 1 is "
             "expected."

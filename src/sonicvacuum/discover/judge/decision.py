@@ -79,14 +79,8 @@ class Case:
     def _unknown(self, alarms, reasons, seen: Left, tried=()) -> Decision:
         """Something is missing, and nothing can be said of it."""
         size = seen.size.size if seen.size.found else 0.0
-        view = self._view(seen.size, self.null) if size else None
+        view = viewed(self.forward, self.null, self.null, self.known, seen.size) if size else None
         return Decision([UNKNOWN], self.null, alarms, reasons, seen.p, list(tried), size, view)
-
-    def _view(self, one: smooth.Size, final: Fit) -> View:
-        counted = smooth.with_size(self.forward.experiment, one.size, self.known, one.excess, one.kernel)
-        forward = Forward(counted, self.forward.threads)
-        null = several.moved(forward, self.null)
-        return View(forward, null, null if final is self.null else several.moved(forward, final))
 
     def decide(self) -> Decision:
         """Name the best single, a pair, more, or unknown."""
@@ -330,6 +324,16 @@ class Case:
         near = [c for c in self.found if c.gain > 0.5 * most and frozenset((c.effect,)) not in grown.tried]
         fits = [several.moved(grown.forward, c.fit) for c in near[:4]]
         return [pairs.combination(grown.null, f, self.setup) for f in fits]
+
+
+def viewed(
+    forward: Forward, null: Fit, final: Fit, known: discrepancy.Shapes | None, one: smooth.Size
+) -> View:
+    """The nominal model and a final one with a smooth discrepancy of one size counted as noise."""
+    noisy = smooth.with_size(forward.experiment, one.size, known, one.excess, one.kernel)
+    counted = Forward(noisy, forward.threads)
+    moved = several.moved(counted, null)
+    return View(counted, moved, moved if final is null else several.moved(counted, final))
 
 
 def _together(tried, grown, own: Combination) -> list[Combination]:

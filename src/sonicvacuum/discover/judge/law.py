@@ -21,6 +21,8 @@ CONTACTS = 20
 TOUCHING = 0.02
 # Powers from which formulas start.
 _POWERS = (0.25, 0.5, 1.0, 1.5, 2.0, 3.0)
+# Terms of formulas: elastic, stiffening with the rate, lossy.
+_KINDS = (("e",), ("s",), ("l",), ("e", "l"), ("s", "l"))
 # What one more parameter of a formula must gain in χ² per number on the surface.
 _WORTH = 0.05
 
@@ -134,15 +136,16 @@ def _predicted(forward, one):
 def formula(seen: Surface) -> str:
     """The shortest of a few formulas that says what the surface has beside the nominal force.
 
-    Tried are c x^p, c |v|^q sgn v and c x^p |v|^q sgn v with x = δ/µm and v in m/s, alone or an elastic one
-    and a lossy one together; one more parameter must gain `_WORTH` per number.
+    Tried are c x^p, c x^p |v|^q and c x^p |v|^q sgn v with x = δ/µm and v in m/s: an elastic one, one that
+    stiffens with the rate and a lossy one, alone or a lossy one beside one of the others; one more parameter
+    must gain `_WORTH` per number.
     """
     x = np.repeat(seen.depth[:, None] / MICRO, len(seen.rate), axis=1)
     v = np.repeat(seen.rate[None], len(seen.depth), axis=0)
     where = seen.visited & (x > 0.0)
     error = np.hypot(seen.band, 0.01 * np.abs(seen.beside).max())[where]
     data = (x[where], v[where], seen.beside[where], error)
-    found = [one for kinds in (("e",), ("l",), ("e", "l")) if (one := _short(kinds, *data))]
+    found = [one for kinds in _KINDS if (one := _short(kinds, *data))]
     return min(found)[1] if found else ""
 
 
@@ -155,10 +158,10 @@ def _short(kinds, x, v, beside, error):
 
     best = None
     for power in _POWERS:
-        start = np.concatenate([[0.1, power, 1.0 if kind == "l" else 0.0] for kind in kinds])
+        start = np.concatenate([[0.1, power, 0.0 if kind == "e" else 1.0] for kind in kinds])
         start = start * np.where(np.arange(len(start)) % 3 == 0, np.abs(beside).max() / 0.1, 1.0)
         free = np.ones(len(start), dtype=bool)
-        free[2::3] = [kind == "l" for kind in kinds]
+        free[2::3] = [kind != "e" for kind in kinds]
 
         def left(p, start=start, free=free):
             whole = start.copy()
@@ -178,11 +181,12 @@ def _short(kinds, x, v, beside, error):
 
 
 def _term(kind, p, x, v):
-    size = p[0] * x ** p[1]
-    return size if kind == "e" else size * np.abs(v) ** p[2] * np.sign(v)
+    size = p[0] * x ** p[1] * np.abs(v) ** (0.0 if kind == "e" else p[2])
+    return size * np.sign(v) if kind == "l" else size
 
 
 def _text(kind, p):
     sign = "−" if p[0] < 0.0 else "+"
     what = f" {sign} {abs(p[0]):.3g} N (δ/µm)^{p[1]:.2g}"
-    return what if kind == "e" else what + f" |v/(m/s)|^{p[2]:.2g} sgn v"
+    rate = "" if kind == "e" else f" |v/(m/s)|^{p[2]:.2g}"
+    return what + rate + (" sgn v" if kind == "l" else "")

@@ -1,14 +1,16 @@
 """The free-form contact law fitted to what nothing of the catalogue explains.
 
-Sets of coefficients are tried: what stores energy, what takes it in proportion to the rate, both, and all.
-The width of the prior, which regularises, is the likeliest of a few, by the evidence of the linearised model
-(MacKay, Neural Comput. 4, 415, 1992). Of the sets, the smallest is taken that does nearly as much as the
-likeliest: no polynomial is the true law, and what it errs by is no reason for more of it. A law is kept where
-it is surely likelier than none and closes, on runs left out of its fit, a good share of what was left.
+Its coefficients come in groups: what stores energy, what takes it in proportion to the rate, what stiffens
+with the rate either way, and both of the latter as the root of the rate. From none on, the group that is
+worth most is added as long as one is. The width of the prior, which regularises, is the likeliest of a few,
+by the evidence of the linearised model (MacKay, Neural Comput. 4, 415, 1992). Of the sets on the way the
+smallest is taken that does nearly as much as the last: no polynomial is the true law, and what it errs by is
+no reason for more of it. A law is kept where it is surely likelier than none and closes, on runs left out of
+its fit, a good share of what was left.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -18,14 +20,22 @@ from sonicvacuum.discover.model.experiment import Experiment
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.free_law import Scales, of_some, scales_of, with_law
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis
-from sonicvacuum.effects.free_form import COEFFICIENTS, EFFECT
+from sonicvacuum.effects.free_form import EFFECT
 
-# Sets of coefficients in the order in which they are tried, see `effects.free_form.SHAPES`.
-_ELASTIC, _LOSSY = ("a0", "a3", "a6"), ("a1", "a4", "a7", "a9", "a10")
-SETS = (_ELASTIC, _LOSSY, (*_ELASTIC, *_LOSSY), COEFFICIENTS)
+# Groups of coefficients, see `effects.free_form.SHAPES`.
+GROUPS = (
+    ("a0", "a3", "a6"),
+    ("a1", "a4", "a7", "a9", "a10"),
+    ("a2", "a5", "a8"),
+    ("a11", "a12"),
+    ("a13", "a14"),
+)
 # Widths of the prior that are compared; the first fit is made with the middle one.
 WIDTHS = (0.03, 0.1, 0.3, 1.0)
 FIRST = 0.3
+# A group more starts where the law without it ended; a fit that ends this much higher (its prior's width is
+# another one) has lost its way.
+_UPHILL = 10.0
 
 
 @dataclass(frozen=True)
@@ -89,73 +99,80 @@ def free_law(forward: Forward, base: Fit) -> FreeLaw | None:
     e = forward.experiment
     if not any(run.has_signals for run in e.runs):
         return None
-    typical = scales_of(e)
-    best, tried = None, []
-    for names in SETS:
-        one = _fitted(forward, base, names, typical, best)
-        if one is not None:
-            tried.append(one)
-            best = max(tried, key=lambda t: t[0])
-    if best is None or best[0] < policy.LAW_LOG_BAYES:
-        return None
-    most = base.objective - best[2].objective
-    if most <= 0.0:  # nuisances that are hardly known can carry evidence where nothing is gained
-        return None
-    evidence_, width, found, model = next(
-        t for t in tried if base.objective - t[2].objective >= policy.LAW_SHARE * most
-    )
-    size = sum(e.size(k) for k in range(len(e.runs)))
-    left, before = float(found.normal.chi2.sum()) - size, float(base.normal.chi2.sum()) - size
-    if left > (1.0 - policy.LAW_CLOSES) * before:
-        return None
-    names = _names(model)
-    unseen = _unseen(forward, base, names, width, typical, found.nu[-len(names) :] * width)
-    result = FreeLaw(model, found, typical, names, width, evidence_, *unseen)
-    size = np.array([e.size(k) for k in range(len(e.runs))])
-    if len(e.runs) > 1:
-        after, before = float((unseen[0] - size).sum()), float((unseen[1] - size).sum())
-        if not after < (1.0 - policy.LAW_CLOSES) * before:
-            return None
-    return result
+    for one in reversed(_grown(forward, base, scales_of(e))):
+        # Nuisances that are hardly known can carry evidence where nothing is gained.
+        worth = one.log_bayes > policy.LAW_LOG_BAYES and one.fit.objective < base.objective
+        if worth and _closes(_left(e, one.fit), _left(e, base)):
+            one = replace(one, **_unseen(forward, base, one))
+            size = sum(e.size(k) for k in range(len(e.runs)))
+            after, before = (float(part.sum()) - size for part in (one.held_out, one.held_out_before))
+            if len(e.runs) < 2 or _closes(after, before):
+                return one
+    return None
 
 
-def _fitted(forward, base, names, typical, known):
-    """(log evidence against none, width, fit, forward) of one set of coefficients.
-
-    It starts where the best set `known` before it ended, of those coefficients that both have.
-    """
-    e, threads = forward.experiment, forward.threads
-    start = np.zeros(len(names))
-    if known is not None:
-        _, scale, one, model = known
-        values = dict(zip(_names(model), scale * one.nu[model.layout.other("law")], strict=True))
-        start = np.array([values.get(name, 0.0) for name in names])
-    first = _at(e, base, names, FIRST, typical, threads, start)
-    if first is None:
-        return None
-    values = {w: _evidence(first[0], FIRST, w, len(names)) for w in WIDTHS}
-    width = max(values, key=values.get)
-    found = first
-    if width != FIRST:
-        found = _at(e, base, names, width, typical, threads, first[0].nu[-len(names) :] * FIRST)
-    if found is None:
-        return None
-    own = _evidence(found[0], width, width, len(names)) - _evidence(base, 1.0, 1.0, 0)
-    return own, width, *found
+def _closes(after: float, before: float) -> bool:
+    """Whether what is left after is a small enough part of what was before."""
+    return after < (1.0 - policy.LAW_CLOSES) * before
 
 
-def _names(forward):
-    """Coefficients that are free in a forward model."""
-    return tuple(one.of for one in forward.experiment.shared if one.kind == "law")
+def _grown(forward: Forward, base: Fit, typical: Scales) -> list[FreeLaw]:
+    """Laws of more and more groups, each surely worth it and taking away enough of what is left before."""
+    e = forward.experiment
+    found, groups, least, left = [], list(GROUPS), policy.LAW_FIRST, _left(e, base)
+    while groups and left > 0.0:
+        known = found[-1] if found else None
+        tried = [
+            one for group in groups if (one := _fitted(forward, base, group, typical, known)) is not None
+        ]
+        best = max(tried, key=lambda one: one.log_bayes, default=None)
+        surer = policy.LEAST_LOG10_BAYES * math.log(10.0) + (known.log_bayes if known else 0.0)
+        if best is None or best.log_bayes < surer or left - _left(e, best.fit) < least * left:
+            break
+        found.append(best)
+        least, left = policy.LAW_FURTHER, _left(e, best.fit)
+        groups = [group for group in groups if group[0] not in best.names]
+    return found
 
 
-def _at(experiment: Experiment, base: Fit, names, width, typical, threads, law):
-    """Fit and forward model with a prior of one width, from coefficients `law` on.
+def _left(experiment: Experiment, one: Fit) -> float:
+    """χ² beyond the number of data."""
+    return float(one.normal.chi2.sum()) - sum(experiment.size(k) for k in range(len(experiment.runs)))
+
+
+def _fitted(forward, base, group, typical, known: FreeLaw | None) -> FreeLaw | None:
+    """The law of one group more than one that is `known`, from where that stands; None where it fails."""
+    names = (*(known.names if known else ()), *group)
+    law = np.concatenate([known.coefficients if known else np.zeros(0), np.zeros(len(group))])
+    near = known.fit if known else base
+    highest = near.objective
+    nothing = _evidence(base, 1.0, 1.0, 0)
+    best, width = None, known.width if known else FIRST
+    for _ in range(2):
+        one = _at(forward.experiment, near, names, width, typical, forward.threads, law)
+        if one is None or not one[0].objective < highest + _UPHILL:
+            break
+        worth = {w: _evidence(one[0], width, w, len(names)) - nothing for w in WIDTHS}
+        if best is None or worth[width] > best.log_bayes:
+            own, nan = one[0], np.full(len(forward.experiment.runs), math.nan)
+            best = FreeLaw(one[1], own, typical, names, width, worth[width], nan, nan)
+            near, law = own, best.coefficients
+        likeliest = max(worth, key=worth.get)
+        if likeliest == width:
+            break
+        width = likeliest
+        highest = math.inf
+    return best
+
+
+def _at(experiment: Experiment, near: Fit, names, width, typical, threads, law):
+    """Fit and forward model with a prior of one width, from a fit and coefficients `law` on.
 
     None where the chain, or one beside it, cannot be simulated.
     """
     forward = Forward(with_law(experiment, names, width, typical), threads)
-    found = fit(forward, base.hypothesis, base.u[None], np.concatenate([base.nu, law / width])[None])
+    own = near.nu[: forward.layout.size - len(names)]
+    found = fit(forward, near.hypothesis, near.u[None], np.concatenate([own, law / width])[None])
     known = math.isfinite(found.objective) and found.normal.has_slopes[0]
     return (found, forward) if known else None
 
@@ -177,31 +194,32 @@ def _evidence(one: Fit, fitted: float, width: float, count: int) -> float:
     return -0.5 * objective - 0.5 * np.linalg.slogdet(hessian)[1] + count * math.log(fitted / width)
 
 
-def _unseen(forward, base, names, width, typical, law):
-    """(R,) χ² of runs left out of the law's fit, which starts at `law`, and of the same without the law."""
-    e = forward.experiment
+def _unseen(forward, base, one: FreeLaw):
+    """`held_out` and `held_out_before` of a law: χ² of runs left out of a fit of its like, and without."""
+    e, names, width, typical = forward.experiment, one.names, one.width, one.scales
     runs = len(e.runs)
     if runs < 2:
-        return np.full(runs, math.nan), np.full(runs, math.nan)
+        return {}
     after, before = [], []
     for run in range(runs):
         others = of_some(e, [k for k in range(runs) if k != run])
-        learned = _at(others, base, names, width, typical, forward.threads, law)
+        learned = _at(others, one.fit, names, width, typical, forward.threads, one.coefficients)
         alone = Forward(of_some(e, [run]), forward.threads)
-        before.append(_chi2(alone, base.hypothesis, base))
+        before.append(_chi2(alone, base.hypothesis, base, base.nu))
         if learned is None:
             after.append(before[-1])
             continue
         values = learned[0].nu[-len(names) :] * width
         given = typical.parameters | dict(zip(names, map(float, values), strict=True))
-        after.append(_chi2(alone, base.hypothesis.with_component(Component(EFFECT, (), given)), base))
-    return np.array(after), np.array(before)
+        whole = base.hypothesis.with_component(Component(EFFECT, (), given))
+        after.append(_chi2(alone, whole, base, one.fit.nu[: len(base.nu)]))
+    return {"held_out": np.array(after), "held_out_before": np.array(before)}
 
 
-def _chi2(forward, hypothesis: Hypothesis, base):
-    """χ² of what counts, the model's effects held as found and the nuisances free."""
+def _chi2(forward, hypothesis: Hypothesis, base, nu):
+    """χ² of what counts, the model's effects held as found and the nuisances, which start at `nu`, free."""
     held = Hypothesis(tuple(_held(hypothesis, base)))
-    one = fit(forward, held, np.zeros((1, 0)), base.nu[None])
+    one = fit(forward, held, np.zeros((1, 0)), nu[None])
     return float(one.normal.chi2.sum())
 
 
