@@ -140,3 +140,18 @@ def test_nothing_named_has_no_draws(tmp_path):
     draws.write(tmp_path, ())
     assert draws.read(tmp_path) == {}
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_point_that_its_nuisances_exclude_is_not_simulated(verdict, monkeypatch):
+    """A search did not end: a modulus a thousand times what was stated, in the profile of a striker's error,
+    asked for steps without end.
+    """
+    forward, fit = verdict.found.forward, verdict.found.final
+    point = np.tile(np.concatenate([fit.u, fit.nu]), (3, 1))
+    point[1, -1] = 650.0  # standard errors of a modulus: a hundredth of it each
+    asked, sampled = [], forward.sampled
+    monkeypatch.setattr(forward, "sampled", lambda h, u, nu: asked.append(len(u)) or sampled(h, u, nu))
+    objective, gradient = posterior._misfit(forward, fit, point)
+    assert sum(asked) == 2
+    assert np.isfinite(objective).tolist() == [True, False, True]
+    assert np.isfinite(gradient).all(axis=1).tolist() == [True, False, True]

@@ -40,6 +40,9 @@ FEW, STEPS = 12, 3
 NOTABLE = 0.3
 # A valley is drawn from where it has so many points.
 SHORTEST = 5
+# What nuisances cost by themselves, in χ² above the whole of the fit, from which a point weighs nothing in
+# any arithmetic and is not simulated: its chain may be one without end.
+NOTHING = 1500.0
 # The widest proposal, as a share of the range that is searched.
 WIDEST = 0.5
 
@@ -168,20 +171,23 @@ def _bent(forward, fit, point, away, free, inner):
 
 def _misfit(forward, fit, point):
     """(n,) χ² and the penalty of the nuisances, and (n, p + q) minus half its slopes, with the columns of the
-    fit, at (n, p + q) points; a batch at a time.
+    fit, at (n, p + q) points, a batch at a time; infinite and no numbers where the penalty alone excludes it.
     """
     p = len(fit.u)
     low, high = _bounds(fit)
     u, nu = point[:, :p].clip(low, high), point[:, p:]
     columns = forward.columns(fit.hypothesis, fit.u[None], fit.nu[None])
     objective, gradient = np.square(nu).sum(axis=1), np.concatenate([np.zeros_like(u), -nu], axis=1)
+    possible = np.flatnonzero(objective < fit.objective + NOTHING)
+    objective[np.setdiff1d(np.arange(len(u)), possible)] = np.inf
+    gradient[~np.isfinite(objective)] = np.nan
     lanes = max(1, CHUNK // forward.layout.runs)
-    for part in (slice(first, first + lanes) for first in range(0, len(u), lanes)):
+    for part in (possible[first : first + lanes] for first in range(0, len(possible), lanes)):
         for run, value in enumerate(forward.sampled(fit.hypothesis, u[part], nu[part])):
             left = forward.data(run) - value
             objective[part] += np.square(left).sum(axis=1)
             own = np.concatenate([np.arange(p), p + forward.local(run)])
-            gradient[part, own] += left @ columns[run][0, 1:].T
+            gradient[part[:, None], own] += left @ columns[run][0, 1:].T
     return objective, gradient
 
 
