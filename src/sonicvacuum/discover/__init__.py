@@ -3,8 +3,9 @@
 Five rooms, each of which knows only those before it: `model` (the experiment, and the simulator as a function
 of what is unknown), `fit` (one hypothesis against the data), `search` (which hypotheses are tried), `judge`
 (what is concluded from them) and `faults` (slips made in measuring, in competition with effects). Every
-constant that decides stands in `policy`. `rounds` runs the search, `session` the whole of it; `verdict` is
-what is written, `compare` scores a model on a record, `next_experiment` proposes what to measure next.
+constant that decides stands in `policy`. `rounds` runs the search, `unnamed` holds a contact law without a
+name against what was named, `session` runs the whole; `verdict` is what is written, `compare` scores a model
+on a record, `next_experiment` proposes what to measure next.
 """
 
 import sys
