@@ -9,7 +9,7 @@ from sonicvacuum import stages
 from sonicvacuum.discover import policy
 from sonicvacuum.discover.fit import bounds, discrepancy, enough, evidence, places, smooth, wide
 from sonicvacuum.discover.fit.evidence import Candidate, Combination
-from sonicvacuum.discover.fit.refit import Fit, polish
+from sonicvacuum.discover.fit.refit import Fit, fit, polish
 from sonicvacuum.discover.judge import explanations
 from sonicvacuum.discover.judge.decision import Case, Decision, View
 from sonicvacuum.discover.judge.rivals import Rival, of_odds
@@ -79,7 +79,7 @@ class Investigation:
 
 def investigate(experiment: Experiment, threads: int = 1, null: Fit | None = None) -> Investigation:
     """Find what is missing from the nominal model of a data set; `null` is its fit, where at hand."""
-    known = discrepancy.Shapes(experiment)
+    given, known = experiment, discrepancy.Shapes(experiment)
     if experiment.model_floor_rel:
         experiment = smooth.with_size(experiment, experiment.model_floor_rel, known)
     if experiment.model_floor_rel is not None:
@@ -91,6 +91,9 @@ def investigate(experiment: Experiment, threads: int = 1, null: Fit | None = Non
     scores = screen.screen(forward, null, directions.catalogue(setup, experiment.excluded))
     threshold = scores.threshold(policy.FALSE_ALARM)
     found = _polished(forward, null, singles.fit_all(forward, null, scores), threshold)
+    lower = _lower(forward, null, found, threshold)
+    if lower is not None:
+        return investigate(given, threads, lower)
     prior = experiment.prior_odds
     few = enough.told(forward, (c for c in found if significant(c, threshold, prior)))
     passes = (
@@ -217,6 +220,18 @@ def _polished(forward, null, found, threshold):
 
     result = abreast.each(forward, polished, found, "leading effects")
     return enough.first(forward, evidence.ranked(result, forward.experiment.prior_odds))
+
+
+def _lower(forward, null, found, threshold) -> Fit | None:
+    """A lower nominal minimum from where the leading effect has left the nuisances; None where there is none.
+
+    A nominal fit that has stopped short of its minimum by less than the scatter of χ² looks like noise, and
+    any effect, however weak, seems to gain what it has missed.
+    """
+    if not found or found[0].gain <= threshold or wide.leaves_much(forward, null.objective):
+        return None
+    one = fit(forward, null.hypothesis, np.zeros((1, 0)), found[0].fit.nu[None])
+    return one if one.objective < null.objective - policy.SAME_MINIMUM else None
 
 
 def _beyond(forward, null, c):

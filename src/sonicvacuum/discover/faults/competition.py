@@ -56,6 +56,7 @@ from sonicvacuum.discover.judge import explanations
 from sonicvacuum.discover.model.experiment import Experiment
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.problem import together
+from sonicvacuum.discover.policy import SAME_MINIMUM
 from sonicvacuum.discover.rounds import Investigation, investigate
 from sonicvacuum.discover.search import directions, screen, singles
 from sonicvacuum.effects import CATALOGUE, Catalogue
@@ -141,6 +142,11 @@ class Search:
         else:
             ranked, looked = [], True
         found = self._investigate()
+        if model.bench is self.bench and found.null.objective < model.fit.objective - SAME_MINIMUM:
+            # What slips gained on a nominal fit that had stopped short is none of their own.
+            model = self._nominal = Model(self.bench, model.forward, found.null)
+            looked = suspicious(model)
+            ranked = self.ranked(model) if looked else []
         if not looked and set(found.named) - {explanations.UNKNOWN}:
             ranked = self._as_small(model, found)
         elif ranked and any(self._like_slips(found, name) for name in found.named):
