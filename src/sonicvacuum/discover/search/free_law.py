@@ -2,11 +2,10 @@
 
 Its coefficients come in groups: what stores energy, what takes it in proportion to the rate, what stiffens
 with the rate either way, and both of the latter as the root of the rate. From none on, the group that is
-worth most is added as long as one is. The width of the prior, which regularises, is the likeliest of a few,
-by the evidence of the linearised model (MacKay, Neural Comput. 4, 415, 1992). Of the sets on the way the
-smallest is taken that does nearly as much as the last: no polynomial is the true law, and what it errs by is
-no reason for more of it. A law is kept where it is surely likelier than none and closes, on runs left out of
-its fit, a good share of what was left.
+worth most is added as long as it takes away enough of what is left: no polynomial is the true law, and what
+it errs by is no reason for more of it. The width of the prior, which regularises, is the likeliest of a few,
+by the evidence of the linearised model (MacKay, Neural Comput. 4, 415, 1992). A law is kept where it is
+surely likelier than none and closes, on runs left out of its fit, a good share of what was left.
 """
 
 import math
