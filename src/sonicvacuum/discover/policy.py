@@ -81,6 +81,9 @@ ALIAS_GAIN = 4.0
 # χ² of a nominal fit above the number of data, in standard deviations of χ², from which it may have ended in
 # one of several minima and starts once more from running integrals; by how much another minimum is lower.
 MINIMA, SAME_MINIMUM = 3.0, 0.5
+# Where a nominal fit has stopped short of its minimum by more than this share of what the leading effect
+# gains, the search begins anew from the minimum; by less, that takes its place.
+STOPPED_SHORT = 0.1
 # A fit that ends at a bound could fit better: where the named effect or a rival within this Δχ² has, what is
 # named is not held surer than that.
 RIVAL, AT_BOUND = 9.0, 0.6

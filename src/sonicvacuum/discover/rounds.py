@@ -88,13 +88,18 @@ def investigate(experiment: Experiment, threads: int = 1, null: Fit | None = Non
     stages.begin("nominal model")
     null = null or wide.nominal(forward)
     setup = singles.setup_of(forward)
-    scores = screen.screen(forward, null, directions.catalogue(setup, experiment.excluded))
+    families = directions.catalogue(setup, experiment.excluded)
+    scores = screen.screen(forward, null, families)
     threshold = scores.threshold(policy.FALSE_ALARM)
     found = _polished(forward, null, singles.fit_all(forward, null, scores), threshold)
+    prior = experiment.prior_odds
     lower = _lower(forward, null, found, threshold)
     if lower is not None:
-        return investigate(given, threads, lower)
-    prior = experiment.prior_odds
+        missed = null.objective - lower.objective
+        if missed > policy.STOPPED_SHORT * found[0].gain:
+            return investigate(given, threads, lower)
+        found, null = [_moved(c, lower, c.fit, c.places, c.flags) for c in found], lower
+        scores = screen.screen(forward, null, families)
     few = enough.told(forward, (c for c in found if significant(c, threshold, prior)))
     passes = (
         bool(found)
