@@ -43,6 +43,12 @@ def _tell():
         listener(*_now)
 
 
+def silent() -> None:
+    """Nobody is told of anything any more."""
+    _listeners.clear()
+    _compilations.clear()
+
+
 @contextmanager
 def compilations_told_to(listener: Callable[[int], None]) -> Iterator[None]:
     """Within this, `listener` alone gets 1 where kernels begin to be compiled, and -1 where they are."""

@@ -1,22 +1,27 @@
 """Hypotheses followed side by side: as one after the other, whatever is ready first, fails or is stopped."""
 
+import multiprocessing
+import os
+import signal
 import time
 
 import numpy as np
 import pytest
 
 from sonicvacuum import stages
-from sonicvacuum.discover.model import abreast
+from sonicvacuum.discover.model import abreast, copies
 from sonicvacuum.discover.model import forward as model
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Hypothesis
 from sonicvacuum.discover.model.problem import experiment
 
+needs_copies = pytest.mark.skipif(not copies.possible(), reason="this system makes no copies of a process")
+
 
 @pytest.fixture
-def long_calls(monkeypatch):
-    """As if every call took long."""
-    monkeypatch.setattr(model, "LONG_CALL", -1.0)
+def worth_it(monkeypatch):
+    """As if copies always gained."""
+    monkeypatch.setattr(abreast, "SAVED", -1.0)
 
 
 def sampled(forward):
@@ -31,7 +36,7 @@ def ready(hidden, threads):
 
 
 @pytest.mark.parametrize("threads", [1, 3])
-def test_results_and_what_serves_come_in_the_order_of_the_items(hidden, long_calls, threads):
+def test_results_and_what_serves_come_in_the_order_of_the_items(hidden, worth_it, threads):
     forward = ready(hidden, threads)
     forward.strengths["kept"] = forward.strengths["both"] = np.zeros(1)
 
@@ -41,17 +46,19 @@ def test_results_and_what_serves_come_in_the_order_of_the_items(hidden, long_cal
         assert branch.strengths["both"] == 0.0  # what others found is not known here
         branch.strengths["both"] = np.array([float(k)])
         branch.memory.recalled(Hypothesis(), np.zeros(0), np.zeros(1), k, lambda: k)
+        sampled(branch.coarse)
         return 10 * k
 
     before = forward.simulations
     assert abreast.each(forward, work, range(4)) == [0, 10, 20, 30]
     assert forward.simulations == 5 * before and forward.calls == 5
+    assert forward.coarse.simulations == 4 * before
     assert forward.strengths["both"] == 3.0 and forward.strengths["kept"] == 0.0
     known = [forward.memory.recalled(Hypothesis(), np.zeros(0), np.zeros(1), k, lambda: "") for k in range(4)]
     assert known == [0, 1, 2, 3]
 
 
-def test_threads_and_chains_in_the_memory_are_shared_out(hidden, long_calls):
+def test_threads_and_chains_in_the_memory_are_shared_out(hidden, worth_it):
     forward = ready(hidden, 5)
     shares = abreast.each(forward, lambda branch, k: (branch.threads, branch.chunk), range(2))
     assert shares == [(2, model.CHUNK // 2)] * 2
@@ -69,44 +76,60 @@ def test_predictions_do_not_depend_on_how_many_chains_are_simulated_at_once(hidd
 
 
 @pytest.mark.parametrize("threads", [1, 2])
-def test_one_that_fails_ends_all(hidden, long_calls, threads):
-    forward, begun = ready(hidden, threads), []
-
+def test_one_that_fails_raises_here(hidden, worth_it, threads):
     def work(branch, k):
-        begun.append(k)
-        if k == 0:
-            raise ZeroDivisionError("of the first")
-        for _ in range(100_000):
-            sampled(branch)
+        if k == 1:
+            raise ZeroDivisionError("of the second")
 
-    with pytest.raises(ZeroDivisionError, match="of the first"):
-        abreast.each(forward, work, range(9))
-    assert len(begun) <= threads + 1
+    with pytest.raises(ZeroDivisionError, match="of the second"):
+        abreast.each(ready(hidden, threads), work, range(3))
+    assert not multiprocessing.active_children()
 
 
-def test_an_interruption_stops_threads_at_their_next_call(hidden, long_calls):
-    forward, ended = ready(hidden, 2), []
-
-    def work(branch, k):
-        try:
-            for _ in range(100_000 * k):
-                sampled(branch)
-        finally:
-            ended.append(k)
-
+@needs_copies
+def test_an_interruption_ends_all_copies(hidden, worth_it):
     def interrupted(name, done, total):
         if done:
             raise KeyboardInterrupt
 
     with stages.told_to(interrupted), pytest.raises(KeyboardInterrupt):
-        abreast.each(forward, work, range(2), "a stage")
-    assert sorted(ended) == [0, 1]
+        abreast.each(ready(hidden, 2), lambda branch, k: time.sleep(1000.0 * k), range(2), "a stage")
+    assert not multiprocessing.active_children()
 
 
-def test_threads_are_for_long_calls(hidden):
+@needs_copies
+def test_what_a_copy_cannot_do_or_hand_over_is_done_here(hidden, worth_it):
+    """A result that cannot be pickled; a copy that is killed, as for want of memory."""
+    forward, here = ready(hidden, 2), os.getpid()
+
+    def work(branch, k):
+        if k == 2 and os.getpid() != here:
+            os.kill(os.getpid(), signal.SIGKILL)
+        return (lambda: k) if k == 1 else (k, os.getpid() == here)
+
+    first, second, third, last = abreast.each(forward, work, range(4))
+    assert first == (0, False) and second() == 1 and third == (2, True) and last == (3, False)
+
+
+@needs_copies
+def test_a_copy_tells_nobody_and_makes_no_copies(hidden, worth_it):
+    told = []
+
+    def work(branch, k):
+        inner = abreast.each(branch, lambda branch, k: os.getpid(), range(2), "an inner stage")
+        return {os.getpid(), *inner}
+
+    with stages.told_to(lambda *one: told.append(one)):
+        processes = abreast.each(ready(hidden, 4), work, range(2), "a stage")
+    assert told == [("a stage", k, 2) for k in range(3)]
+    assert [len(own) for own in processes] == [1, 1] and os.getpid() not in set.union(*processes)
+
+
+def test_copies_are_for_what_takes_long(hidden):
     forward = ready(hidden, 2)
-    assert forward.calls == 1 and forward.seconds > 0.0
-    forward.calls, forward.seconds = 2, 2.1 * model.LONG_CALL
-    assert forward.long_calls
-    forward.seconds = 1.9 * model.LONG_CALL
-    assert not forward.long_calls
+    assert forward.calls == 1 and forward.seconds_of_call == forward.seconds > 0.0
+    forward.seconds = 1.1 * abreast.SAVED / (2 * abreast.FIT)
+    assert abreast._beside(forward, 4, abreast.FIT) == (2 if copies.possible() else 1)
+    assert abreast._beside(forward, 4, abreast.SLOPES) == abreast._beside(forward, 1, abreast.FIT) == 1
+    forward.seconds = 0.9 * abreast.SAVED / (2 * abreast.FIT)
+    assert abreast._beside(forward, 4, abreast.FIT) == 1

@@ -85,8 +85,8 @@ def test_probabilities_cover_the_catalogue_and_add_up(verdict):
 
 
 def test_the_verdict_does_not_depend_on_threads(hidden, verdict, monkeypatch):
-    # Calls of this small record are short, and would be one thread's.
-    monkeypatch.setattr("sonicvacuum.discover.model.forward.LONG_CALL", -1.0)
+    # Fits of this small record are short, and would follow one another.
+    monkeypatch.setattr("sonicvacuum.discover.model.abreast.SAVED", -1.0)
     again = session.discover(hidden, threads=2).verdict
     same = ("named", "probabilities", "parameters", "gap", "where", "upper_limits", "simulations")
     assert all(getattr(again, key) == getattr(verdict.verdict, key) for key in same)

@@ -32,7 +32,7 @@ from sonicvacuum.files import in_one_line
 @click.option(
     "--threads",
     type=click.IntRange(1),
-    help="Threads; all processors by default. Results do not depend on it.",
+    help="Processors to use; all of them by default. Results do not depend on it.",
 )
 @click.option("--quiet", is_flag=True, help="Say nothing but the verdicts.")
 @click.option(

@@ -1,7 +1,8 @@
 """Many records searched side by side, each in a process of its own.
 
-A search gains little from a second thread: its calls are too short. Records have nothing in common, so that
-each processor takes one; what is found does not depend on how many there are.
+Records have nothing in common, while much of one search waits for what came before: so each processor takes
+a record, and shares one out only where there are more processors than records. What is found does not depend
+on how many there are.
 """
 
 import multiprocessing

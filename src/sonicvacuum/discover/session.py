@@ -76,8 +76,8 @@ def discover(
 
     Args:
         *records: one record, or records of one chain and its gauges, which get one verdict.
-        threads: of the compiled engine, and hypotheses followed at a time where a call of it is long; all
-            processors by default. The result does not depend on it.
+        threads: processors to use, by threads of the compiled engine and, on Linux, copies of this process
+            that follow hypotheses side by side; all of them by default. The result does not depend on it.
         catalogue: the effects that may be missing, see `sonicvacuum.plugins.catalogue`.
         limits: refuse a search that asks for more memory than the machine has.
 

@@ -31,6 +31,11 @@ def tell(part: float) -> None:
         listener(part)
 
 
+def silent() -> None:
+    """Nobody is told of anything any more."""
+    _listeners.clear()
+
+
 def run(work: Callable, shares: Iterable[tuple], threads: int, stop: Callable, part: Callable) -> None:
     """Call work(*share) for each share, in threads, so that the caller can be interrupted.
 

@@ -81,7 +81,7 @@ def valley(
     def side(branch, sign):
         return replace(walk, forward=branch).side(start, sign * min(FIRST * length, LONGEST))
 
-    before, behind = abreast.each(forward, side, (-1.0, 1.0))
+    before, behind = abreast.each(forward, side, (-1.0, 1.0), calls=abreast.VALLEY)
     points = [*reversed(before), start, *behind]
     stacked = (np.array([getattr(p, name) for p in points]) for name in _Point.__annotations__)
     return Valley(axis, across, *stacked)

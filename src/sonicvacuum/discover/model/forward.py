@@ -7,11 +7,9 @@ further simulation.
 """
 
 from collections.abc import Iterable
-from concurrent.futures import CancelledError
 from copy import copy
 from dataclasses import replace
 from functools import cached_property
-from threading import Event
 from time import perf_counter
 
 import numpy as np
@@ -19,7 +17,7 @@ import numpy as np
 from sonicvacuum.discover.model import accuracy, differences, gauges, scalars
 from sonicvacuum.discover.model.experiment import Experiment
 from sonicvacuum.discover.model.hypothesis import Hypothesis
-from sonicvacuum.discover.model.memory import Memory
+from sonicvacuum.discover.model.memory import Learned, Memory
 from sonicvacuum.discover.model.nuisances import Layout
 from sonicvacuum.discover.model.slopes import Slopes
 from sonicvacuum.effects import Setup
@@ -27,7 +25,6 @@ from sonicvacuum.forward import Seen, see, virtual
 from sonicvacuum.physics.chain import Chain
 
 CHUNK = 512  # chains simulated at once, to bound the memory
-LONG_CALL = 0.01  # s
 # Natural logarithm of a ratio at which a chain is none that a laboratory has: a speed, a modulus or a mass a
 # thousand times what was stated. A step that runs away to there would ask for steps without end.
 NO_CHAIN = 7.0
@@ -41,7 +38,6 @@ class Forward:
         strengths: directions of a family → strengths at which its slopes were taken last.
         memory: columns, slopes and tests at the points asked for last.
         calls, seconds: predictions asked for at once, and the time that they took.
-        stop: set where nobody waits for the predictions any more; None: somebody does.
     """
 
     def __init__(self, experiment: Experiment, threads: int = 1):
@@ -54,43 +50,51 @@ class Forward:
         self._alike: dict[tuple, list[list[int]]] = {}
         self.calls, self.seconds = 0, 0.0
         self.chunk = CHUNK
-        self.stop: Event | None = None
 
-    def branch(self, stop: Event, beside: int = 1) -> "Forward":
-        """The same predictor for one of several threads, with a memory of its own that begins as it is;
+    def branch(self, beside: int = 1) -> "Forward":
+        """The same predictor for one of several hypotheses, with a memory of its own that begins as it is;
         `beside`: among how many at a time threads and chains are shared out.
         """
         other = copy(self)
         other.threads, other.chunk = max(1, self.threads // beside), max(1, self.chunk // beside)
-        other.stop = stop
         other.simulations, other.calls, other.seconds = 0, 0, 0.0
         other.strengths, other.memory = dict(self.strengths), self.memory.copy()
-        other._coarse = self._coarse.branch(stop, beside) if self._coarse else None
+        other._coarse = self._coarse.branch(beside) if self._coarse else None
         return other
 
-    def join(self, branches: Iterable["Forward"]) -> None:
+    def learned(self, branch: "Forward") -> Learned:
+        """What a branch of this predictor, which has not changed since, counted and came to know."""
+        return Learned(
+            branch.simulations,
+            branch.calls,
+            branch.seconds,
+            {family: s for family, s in branch.strengths.items() if s is not self.strengths.get(family)},
+            branch.memory.since(self.memory),
+            self.coarse.learned(branch._coarse) if branch._coarse else None,
+        )
+
+    def join(self, learned: Iterable[Learned]) -> None:
         """Take over what branches counted and, in their order, what they know and which strengths serve."""
-        before = dict(self.strengths)
-        for branch in branches:
-            self.simulations += branch.simulations
-            self.calls, self.seconds = self.calls + branch.calls, self.seconds + branch.seconds
-            self.memory.add(branch.memory)
-            served = branch.strengths.items()
-            self.strengths.update((family, s) for family, s in served if s is not before.get(family))
-            if branch._coarse:
-                self.coarse.join([branch._coarse])
+        before = self.memory.copy()
+        for one in learned:
+            self.simulations += one.simulations
+            self.calls, self.seconds = self.calls + one.calls, self.seconds + one.seconds
+            self.memory.add(one.memory, before)
+            self.strengths.update(one.strengths)
+            if one.coarse:
+                self.coarse.join([one.coarse])
 
     @property
-    def long_calls(self) -> bool:
-        """Whether threads gain: most of a short call is interpreted, one thread at a time."""
-        return self.seconds > LONG_CALL * self.calls
+    def seconds_of_call(self) -> float:
+        """How long a call takes, on average."""
+        return self.seconds / max(1, self.calls)
 
     @property
     def coarse(self) -> "Forward":
         """The same predictor of running integrals of the traces."""
         if self._coarse is None:
             self._coarse = Forward(replace(self.experiment, integrated=True), self.threads)
-            self._coarse.chunk, self._coarse.stop = self.chunk, self.stop
+            self._coarse.chunk = self.chunk
         return self._coarse
 
     @property
@@ -255,8 +259,6 @@ class Forward:
 
     def _batch(self, batch, change, nu, part, rate_of):
         """Run, predictions and rates of a batch for the lanes `part`; no numbers where there is no chain."""
-        if self.stop and self.stop.is_set():
-            raise CancelledError
         nu, e, own = nu[part], self.experiment, self.layout.of_chain
         lost = ~(np.abs(nu[:, own] * self.nuisance_sigma[own]) < NO_CHAIN).all(axis=1)
         nu = np.where(lost[:, None], 0.0, nu)

@@ -2,10 +2,14 @@
 
 from collections import OrderedDict
 from collections.abc import Callable, Hashable
+from dataclasses import dataclass
+
+import numpy as np
 
 from sonicvacuum.discover.model.hypothesis import Hypothesis
 
 POINTS = 4
+Known = list[tuple[Hashable, dict]]
 
 
 class Memory:
@@ -24,11 +28,18 @@ class Memory:
         other._points.update((point, dict(found)) for point, found in self._points.items())
         return other
 
-    def add(self, other: "Memory") -> None:
-        """Take over what another one knows besides."""
-        for point, found in other._points.items():
-            found = {**found, **self._points.get(point, {})}
-            self._keep(point, found)
+    def since(self, before: "Memory") -> Known:
+        """The points asked for last, in their order, with what `before` does not know of them."""
+        return [
+            (point, {what: one for what, one in found.items() if what not in before._points.get(point, {})})
+            for point, found in self._points.items()
+        ]
+
+    def add(self, learned: Known, before: "Memory") -> None:
+        """Take over what another one, which began as `before`, has learned since."""
+        for point, found in learned:
+            known = {**before._points.get(point, {}), **self._points.get(point, {})}
+            self._keep(point, {**found, **known})
 
     def recalled(self, hypothesis: Hypothesis, u, nu, what: Hashable, work: Callable):
         """The result of `work()` at (p,) coordinates and (q,) nuisances, which goes by the name `what`."""
@@ -45,3 +56,15 @@ class Memory:
         if len(self._points) > self._most:
             self._points.popitem(last=False)
         return found
+
+
+@dataclass(frozen=True)
+class Learned:
+    """What a branch of a predictor brings back: what it counted, and what it came to know; see `Forward`."""
+
+    simulations: int
+    calls: int
+    seconds: float
+    strengths: dict[tuple, np.ndarray]
+    memory: Known
+    coarse: "Learned | None" = None

@@ -15,6 +15,7 @@ import numpy as np
 
 from sonicvacuum.discover import policy
 from sonicvacuum.discover.fit.refit import Fit, fit
+from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.experiment import Experiment
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.free_law import Scales, of_some, scales_of, with_law
@@ -121,9 +122,11 @@ def _grown(forward: Forward, base: Fit, typical: Scales) -> list[FreeLaw]:
     found, groups, least, left = [], list(GROUPS), policy.LAW_FIRST, _left(e, base)
     while groups and left > 0.0:
         known = found[-1] if found else None
-        tried = [
-            one for group in groups if (one := _fitted(forward, base, group, typical, known)) is not None
-        ]
+
+        def with_group(branch, group, known=known):
+            return _fitted(branch, base, group, typical, known)
+
+        tried = [one for one in abreast.each(forward, with_group, groups) if one is not None]
         best = max(tried, key=lambda one: one.log_bayes, default=None)
         surer = policy.LEAST_LOG10_BAYES * math.log(10.0) + (known.log_bayes if known else 0.0)
         if best is None or best.log_bayes < surer or left - _left(e, best.fit) < least * left:
@@ -199,20 +202,21 @@ def _unseen(forward, base, one: FreeLaw):
     runs = len(e.runs)
     if runs < 2:
         return {}
-    after, before = [], []
-    for run in range(runs):
+
+    def left_out(branch, run):
         others = of_some(e, [k for k in range(runs) if k != run])
-        learned = _at(others, one.fit, names, width, typical, forward.threads, one.coefficients)
-        alone = Forward(of_some(e, [run]), forward.threads)
-        before.append(_chi2(alone, base.hypothesis, base, base.nu))
+        learned = _at(others, one.fit, names, width, typical, branch.threads, one.coefficients)
+        alone = Forward(of_some(e, [run]), branch.threads)
+        before = _chi2(alone, base.hypothesis, base, base.nu)
         if learned is None:
-            after.append(before[-1])
-            continue
+            return before, before
         values = learned[0].nu[-len(names) :] * width
         given = typical.parameters | dict(zip(names, map(float, values), strict=True))
         whole = base.hypothesis.with_component(Component(EFFECT, (), given))
-        after.append(_chi2(alone, whole, base, one.fit.nu[: len(base.nu)]))
-    return {"held_out": np.array(after), "held_out_before": np.array(before)}
+        return _chi2(alone, whole, base, one.fit.nu[: len(base.nu)]), before
+
+    after, before = np.transpose(abreast.each(forward, left_out, range(runs)))
+    return {"held_out": after, "held_out_before": before}
 
 
 def _chi2(forward, hypothesis: Hypothesis, base, nu):

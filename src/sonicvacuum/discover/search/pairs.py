@@ -303,7 +303,9 @@ def beside(
         hypothesis = joined(first.hypothesis, Component(effect, free), setup)
         return Start(gained + more, hypothesis, u, nu, places)
 
-    return [s for s in abreast.each(forward, start, scores.best().items()) if s is not None]
+    return [
+        s for s in abreast.each(forward, start, scores.best().items(), calls=abreast.SLOPES) if s is not None
+    ]
 
 
 def fitted(forward, start: Start) -> Fit:

@@ -127,7 +127,7 @@ def screen(forward: Forward, fit: Fit, families: list[ways.Family], rough: bool 
         alike = ways.like_nuisance(branch, family, base, fit.normal.free)
         return alike or ways.simulate(branch, fit.hypothesis, fit.u, fit.nu, family, rough)[0]
 
-    parts = abreast.each(forward, taken, families)
+    parts = abreast.each(forward, taken, families, calls=abreast.SLOPES)
     slopes = [np.concatenate([p[run] for p in parts]) for run in range(len(base))]
     directions = tuple(d for f in families for d in f.directions)
     return from_columns(forward, fit, directions, base, slopes)
