@@ -191,6 +191,9 @@ class Case:
             most = unknown.simplest(grown.forward, grown.null)[1]
             behind = _behind(grown.null.objective - grown.best.fit.objective, most)
         after = left(self.forward, final, self.known, behind=behind) if effects else seen
+        if len(effects) > 1 and not after.failed:
+            final, after = self._rivalled(turns, final, after, most)
+            effects = list(final.hypothesis.ids)
         alarms["set"] = after.p
         if len(effects) > 1:
             own = pairs.combination(self.null, final, self.setup)
@@ -218,10 +221,24 @@ class Case:
         after = left(self.forward, best.fit, self.known, behind=_behind(best.gain, most))
         if after.failed:
             return None
+        final, after = self._rivalled(turns, best.fit, after, most)
+        best = pairs.combination(self.null, final, self.setup)
         reason = f"{len(best.effects)} effects together leave nothing significant"
         ranked = _together(tried, grown.tried.values(), best)
         found = {**alarms, "set": after.p}
         return Decision(list(best.effects), best.fit, found, [reason], after.p, ranked)
+
+    def _rivalled(self, turns: several.Turns, final: Fit, after: Left, most) -> tuple[Fit, Left]:
+        """A set that leaves nothing, or a likelier one like it that does so too, and what it leaves; those
+        that might stand in its place have been fitted then, and share its probability.
+        """
+        other = turns.rivals(final)
+        if other is not final:
+            behind = _behind(self.null.objective - other.objective, most)
+            instead = left(self.forward, other, self.known, behind=behind)
+            if not instead.failed:
+                return other, instead
+        return final, after
 
     def _standing_out(self, standing: gross.Standing, alarms, seen: Left, tried, shape, most) -> Decision:
         """What stands out of a misfit that is large beside the noise, and something unknown."""

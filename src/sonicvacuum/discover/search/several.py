@@ -9,6 +9,7 @@ names nothing.
 """
 
 import itertools
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -28,6 +29,9 @@ from sonicvacuum.effects import Setup
 TRIED, FIRST, EXCHANGES = 2, 5, 1
 # What slopes promise may fall short of what a fit gains by this share.
 PROMISE = 0.6
+# Once a set is found, all that slopes promise this share of what an effect gains there are fitted in its
+# place, so many of each.
+STANDS, STANDING = 0.7, 6
 # One more effect is hoped to gain so many times the log evidence of the one before it.
 HOPED = 2.0
 # One run may be predicted worse by so much of what all runs gain.
@@ -175,13 +179,16 @@ class Turns:
 
     def _earned(self, before: Fit, after: Fit) -> bool:
         """Whether one more effect is worth it."""
+        return self._worth(before, after) and heldout.better(before, after, share=WORSE)
+
+    def _worth(self, before: Fit, after: Fit) -> bool:
+        """The same, whatever becomes of runs left out."""
         gain = before.objective - after.objective
         ratio = self._evidence(after) - self._evidence(before)
         return (
             gain > self._asked(before)
             and ratio > policy.LEAST_LOG10_BAYES * np.log(10.0)
             and enough.suffice(self.forward, after)
-            and heldout.better(before, after, share=WORSE)
         )
 
     def _asked(self, before: Fit) -> float:
@@ -195,16 +202,42 @@ class Turns:
 
     def _added(self, fit):
         """The fit with the effect that earns most, None where none does."""
+        for one in self._beside(fit):
+            if self._earned(fit, one):
+                return one
+            further = self._further(fit, one)
+            if further is not None:
+                return further
+        return None
+
+    def _beside(self, fit) -> Iterator[Fit]:
+        """Fits with one effect more, the likeliest first."""
         if len(fit.hypothesis.components) >= policy.MOST_EFFECTS:
-            return None
+            return
         scores = pairs.screened(self.forward, fit, self.setup)
         promised = pairs.beside(self.forward, self.null, fit, self.setup, scores)
         enough = self.null.objective - fit.objective + PROMISE * self._asked(fit)
-        best = self._likeliest(promised, enough)
-        return best if best is not None and self._earned(fit, best) else None
+        yield from self._ranked(promised, enough)
+
+    def _further(self, fit, one) -> Fit | None:
+        """A fit with two effects more, where the first is worth it but predicts a run worse: while the second
+        is missing, it makes up for that in each run by another size.
+        """
+        if not self._worth(fit, one):
+            return None
+        further = next(self._beside(one), None)
+        return (
+            further
+            if further is not None and self._earned(one, further) and self._earned(fit, further)
+            else None
+        )
 
     def _likeliest(self, starts, enough) -> Fit | None:
-        """The likeliest of the most promising starts, fitted; what was tried before is not tried again."""
+        """The likeliest of the most promising starts, fitted."""
+        return next(self._ranked(starts, enough), None)
+
+    def _ranked(self, starts, enough) -> Iterator[Fit]:
+        """The most promising starts, fitted, likeliest first; what was tried before is not tried again."""
         chosen = [s for s in starts if s.gain > enough and s.effects not in self.tried]
         first = self.size.size and all(len(s.effects) == 1 for s in chosen)
         chosen = sorted(chosen, key=lambda s: -s.gain)[: FIRST if first else TRIED]
@@ -212,11 +245,11 @@ class Turns:
         found = [one for one in found if np.isfinite(one.objective)]
         for one in found:
             self._noted(one)
-        best = max(found, key=self._evidence, default=None)
-        if best is not None and places.placed(best):
-            best = places.settled(self.forward, best, self.setup)
-            self._noted(best)
-        return best
+        for one in sorted(found, key=self._evidence, reverse=True):
+            if places.placed(one):
+                one = places.settled(self.forward, one, self.setup)
+                self._noted(one)
+            yield one
 
     def _exchanged(self, fit):
         """The fit with one effect exchanged for a likelier one, None where there is none.
@@ -248,6 +281,28 @@ class Turns:
         best = max((one for one in found if one is not None), key=self._evidence, default=None)
         better = best is not None and self._evidence(best) > self._evidence(fit) + pairs.WORTH
         return best if better else None
+
+    def rivals(self, fit) -> Fit:
+        """The fit, or what is likelier with one effect exchanged, once all have been fitted that may stand in
+        an effect's place; the turns fit no more than it takes to find the best.
+
+        What is stated of a set holds only beside all of these: laws of loss often stand in for each other.
+        """
+        gained, starts = self.null.objective - fit.objective, {}
+        fewer = self._each_less(fit, range(len(fit.hypothesis.components)))
+        for less in fewer:
+            left = self.null.objective - less.objective
+            promised = pairs.beside(self.forward, self.null, less, self.setup)
+            standing = [s for s in promised if s.gain > left + STANDS * (gained - left)]
+            for s in sorted(standing, key=lambda s: -s.gain)[:STANDING]:
+                if s.effects not in self.tried:
+                    starts[s.effects] = max(s, starts.get(s.effects, s), key=lambda s: s.gain)
+        for one in abreast.each(self.forward, pairs.fitted, starts.values()):
+            if np.isfinite(one.objective):
+                self._noted(one)
+        same = len(fit.hypothesis.components)
+        likeliest = max((c for c in self.tried.values() if len(c.effects) == same), key=lambda c: c.log_bayes)
+        return likeliest.fit if likeliest.log_bayes > self._evidence(fit) + pairs.WORTH else fit
 
     def _again(self, fit):
         """The same effects from other starts, None where that leads nowhere else."""
