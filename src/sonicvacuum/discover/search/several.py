@@ -226,11 +226,9 @@ class Turns:
         if not self._worth(fit, one):
             return None
         further = next(self._beside(one), None)
-        return (
-            further
-            if further is not None and self._earned(one, further) and self._earned(fit, further)
-            else None
-        )
+        if further is None or not (self._earned(one, further) and self._earned(fit, further)):
+            return None
+        return further
 
     def _likeliest(self, starts, enough) -> Fit | None:
         """The likeliest of the most promising starts, fitted."""
