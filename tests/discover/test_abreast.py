@@ -4,6 +4,7 @@ import multiprocessing
 import os
 import signal
 import time
+from collections import deque
 
 import numpy as np
 import pytest
@@ -109,6 +110,14 @@ def test_what_a_copy_cannot_do_or_hand_over_is_done_here(hidden, worth_it):
 
     first, second, third, last = abreast.each(forward, work, range(4))
     assert first == (0, False) and second() == 1 and third == (2, True) and last == (3, False)
+
+
+def test_a_copy_that_is_gone_is_asked_nothing():
+    ours, theirs = multiprocessing.Pipe()
+    theirs.close()
+    asked = {}
+    copies._ask(ours, deque([0]), asked)
+    assert asked == {}
 
 
 @needs_copies

@@ -81,8 +81,12 @@ def each(task: Callable[[int], Result], count: int, processes: int, done: Callab
 def _ask(pipe, left, asked):
     """Give a copy the next that is left, if there is one."""
     if left:
-        asked[pipe] = left.popleft()
-        pipe.send(asked[pipe])
+        k = left.popleft()
+        try:
+            pipe.send(k)
+        except OSError:
+            return  # it was ended from outside
+        asked[pipe] = k
 
 
 def _copy(task):
