@@ -62,33 +62,23 @@ def told(study: Study) -> str:
 
 def provenance(score: pd.DataFrame) -> str:
     """How a study was made, from the rows of its records."""
-    from sonicvacuum_blind.study import SEEDS, TAG, cases  # and with it the integrator
+    from sonicvacuum_blind import study  # and with it the integrator
 
     kinds = ", ".join(f"{sum(score['kind'] == kind)} {words}" for kind, words in KINDS.items())
-    hours, all_cases = score["seconds"].astype(float).sum() / 3600.0, len(cases("full"))
+    hours, all_cases = score["seconds"].astype(float).sum() / 3600.0, len(study.cases("full"))
     part = "" if len(score) == all_cases else f"{len(score)} of {all_cases}, the first batches: "
     asked = int((score["errors_before"] != "nan").sum())
     ideal = "" if asked == len(score) else f" The ideal rule was asked about {asked} of them, evenly spread."
     return (
-        f"Method: git tag `{TAG}`. The seed, {SEEDS['full']}, was drawn after that tag; nothing of what was "
-        "made with it was read before all verdicts stood. Of the study before, of seed 20062, a part had "
-        f"been read while its method was mended. {mended()} Records: {part}{kinds}.{ideal} Verdicts took "
+        f"Method: git tag `{study.TAG}`, commit {study.METHOD}. The seed, {study.SEEDS['full']}, was drawn "
+        "after that; nothing of what was made with it was read before all verdicts stood. Studies of seeds "
+        f"{' and '.join(map(str, study.BEFORE))} came before (tables of the last: commit "
+        f"{study.KEPT_BEFORE}); what was found in them was mended. "
+        f"Records: {part}{kinds}.{ideal} Verdicts took "
         f"{hours:.1f} hours, one thread each. Made with `snakemake --cores 2 publish_study`, in batches that "
         f"can be resumed, on one machine or a cluster. Of each record [score.csv](../{TABLES}/score.csv) has "
         f"what was found, of each stated interval [parameters.csv](../{TABLES}/parameters.csv); the tables "
         f"follow from these: `sonicvacuum blind tables {TABLES} --out tables`."
-    )
-
-
-def mended() -> str:
-    """What of the study commits later than the tag searched, and why."""
-    from sonicvacuum_blind.study import BOTH, BROKEN, MENDED
-
-    return (
-        f"The search broke on three records, {', '.join(BROKEN)}: two ended it, one did not let it end. "
-        f"Their batches, {', '.join(map(str, BROKEN.values()))} of 0 to 47, are searched by commits "
-        f"{' and '.join(MENDED)}, which mend that; {BOTH} records searched by the tagged method and by the "
-        "last of these have the same verdicts."
     )
 
 
