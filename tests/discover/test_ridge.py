@@ -23,12 +23,15 @@ class Valley:
     `jumps`: data that jump as the coordinates pass multiples of short distances.
     """
 
-    simulations, threads, stop, long_calls = 0, 1, None, False
+    simulations, threads = 0, 1
 
-    def branch(self, stop, beside):
+    def branch(self, beside):
         return self
 
-    def join(self, branches):
+    def learned(self, branch):
+        pass
+
+    def join(self, learned):
         pass
 
     def __init__(self, middle, jumps=0):
