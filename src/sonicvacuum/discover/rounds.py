@@ -11,7 +11,8 @@ from sonicvacuum.discover.fit import bounds, discrepancy, enough, evidence, plac
 from sonicvacuum.discover.fit.evidence import Candidate, Combination
 from sonicvacuum.discover.fit.refit import Fit, fit, polish
 from sonicvacuum.discover.judge import explanations
-from sonicvacuum.discover.judge.decision import Case, Decision, View
+from sonicvacuum.discover.judge.decided import Decision, View
+from sonicvacuum.discover.judge.decision import Case
 from sonicvacuum.discover.judge.rivals import Rival, of_odds
 from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.experiment import Experiment

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from sonicvacuum.discover import policy
 from sonicvacuum.discover.fit import discrepancy, smooth
 from sonicvacuum.discover.fit.refit import Fit
-from sonicvacuum.discover.judge import decision, explanations
+from sonicvacuum.discover.judge import decided, explanations
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.rounds import Investigation
 from sonicvacuum.discover.search import pairs, several
@@ -131,7 +131,7 @@ class _Weighed:
             final=best.base,
             probabilities=odds,
             reasons=[reason, *found.forward.experiment.notes],
-            counted=decision.viewed(found.forward, found.null, best.base, self.known, seen)
+            counted=decided.viewed(found.forward, found.null, best.base, self.known, seen)
             if seen.found
             else None,
             smooth=best.size.size if best.size.found else 0.0,

@@ -1,7 +1,7 @@
 """What is named, once single effects are fitted: one, several, or unknown, by what each leaves."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -10,8 +10,9 @@ from sonicvacuum.discover.fit import discrepancy, enough, evidence, heldout, smo
 from sonicvacuum.discover.fit.evidence import Candidate, Combination
 from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.judge import explanations, gross, weighing
+from sonicvacuum.discover.judge.decided import Decision, View, viewed
 from sonicvacuum.discover.judge.left import Left, left, sure
-from sonicvacuum.discover.judge.rivals import Rival, of_weights
+from sonicvacuum.discover.judge.rivals import of_weights
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.search import directions, pairs, restart, screen, several, singles, unknown
 from sonicvacuum.effects import Setup
@@ -19,39 +20,6 @@ from sonicvacuum.effects import Setup
 # Pairs that are asked what they leave.
 ASKED = 2
 UNKNOWN = explanations.UNKNOWN
-
-
-@dataclass(frozen=True)
-class View:
-    """The models with a smooth discrepancy counted as noise, so that errors and limits allow for it."""
-
-    forward: Forward
-    null: Fit
-    final: Fit
-
-
-@dataclass(frozen=True)
-class Decision:
-    """What is named, and why; attributes as those of `Investigation`.
-
-    Attributes:
-        left: p-value of what the best explanation without anything unknown leaves.
-        beside: explanation → log weight with a smooth discrepancy counted as noise.
-        singles: single effects, best first, where pairs led some of them to lower minima.
-        rivals: probable explanations as they are fitted beside what is left.
-    """
-
-    named: list[str]
-    final: Fit
-    alarms: dict[str, float]
-    reasons: list[str]
-    left: float
-    combinations: list[Combination] = field(default_factory=list)
-    smooth: float = 0.0
-    counted: View | None = None
-    beside: dict[str, float] | None = None
-    singles: list[Candidate] | None = None
-    rivals: list[Rival] | None = None
 
 
 @dataclass(frozen=True)
@@ -341,16 +309,6 @@ class Case:
         near = [c for c in self.found if c.gain > 0.5 * most and frozenset((c.effect,)) not in grown.tried]
         fits = [several.moved(grown.forward, c.fit) for c in near[:4]]
         return [pairs.combination(grown.null, f, self.setup) for f in fits]
-
-
-def viewed(
-    forward: Forward, null: Fit, final: Fit, known: discrepancy.Shapes | None, one: smooth.Size
-) -> View:
-    """The nominal model and a final one with a smooth discrepancy of one size counted as noise."""
-    noisy = smooth.with_size(forward.experiment, one.size, known, one.excess, one.kernel)
-    counted = Forward(noisy, forward.threads)
-    moved = several.moved(counted, null)
-    return View(counted, moved, moved if final is null else several.moved(counted, final))
 
 
 def _together(tried, grown, own: Combination) -> list[Combination]:
