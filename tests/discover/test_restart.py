@@ -11,7 +11,7 @@ from sonicvacuum.discover.fit.refit import Fit, fit, polish
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, variants
 from sonicvacuum.discover.model.problem import experiment
-from sonicvacuum.discover.search import pairs, restart, secants, singles
+from sonicvacuum.discover.search import directions, pairs, restart, screen, secants, singles
 from sonicvacuum.effects import effect
 
 GAP, MASS = ("contact-gap", {"gap_um": 0.15, "contact": 5}), ("mass-defect", {"mass_ratio": 0.95, "bead": 8})
@@ -113,3 +113,41 @@ def test_an_effect_of_which_slopes_promised_nothing_is_fitted_alone_where_a_pair
     assert [c.effect for c in found] == ["viscous-drag", "sensor-gain"]
     assert found[1].fit.objective < rival.objective
     assert np.exp(found[1].fit.u[0]) == pytest.approx(1.3, rel=0.1)  # each gauge's own gain is known to 2 %
+
+
+def test_a_large_gap_is_found_where_pulses_miss_each_other():
+    """Gaps of d′ 450 and a bead of two thirds of its mass had ended among the last of the singles."""
+    forward = Forward(experiment(made([("contact-gap", {"gap_um": 10.0, "contact": 3})], seed=9)[0]), 1)
+    null, setup = wide.nominal(forward), singles.setup_of(forward)
+    scores = screen.screen(forward, null, directions.catalogue(setup, forward.experiment.excluded))
+    best = singles.fit_all(forward, null, scores)[0]
+    assert best.effect == "contact-gap"
+    assert [c.place for c in best.fit.hypothesis.components] == [3]
+    assert best.fit.u[0] == pytest.approx(np.log(10.0), abs=5.0 * best.fit.sigma[0])  # five standard errors
+    size = sum(forward.experiment.size(k) for k in range(2))
+    assert best.fit.objective == pytest.approx(size, abs=5.0 * np.sqrt(2.0 * size))  # that of χ²
+
+
+def test_a_single_effect_that_sets_come_down_to_is_known_by_its_lower_minimum():
+    hidden = [("sensor-gain", {"gain_ratio": 1.3, "sensor": 1})]
+    forward = Forward(experiment(made(hidden, seed=3)[0]), 1)
+    null, setup = wide.nominal(forward), singles.setup_of(forward)
+    free = variants(effect("sensor-gain"), setup)[0]
+    there = fit(
+        forward,
+        Hypothesis((Component(effect("sensor-gain"), free, place=1),)),
+        np.log([[1.3]]),
+        null.nu[None],
+    )
+    elsewhere = Hypothesis((Component(effect("sensor-gain"), free, place=0),))
+    short = Fit(elsewhere, linearise(forward, elsewhere, np.log([[1.1]]), null.nu[None]))
+    own = Candidate("sensor-gain", short, null.objective - short.objective, -5.0, ((0, 1.0),))
+    other = Candidate("viscous-drag", short, own.gain, 0.0)
+    led = restart.led(null, there, [own, other])
+    assert [c.effect for c in led] == ["sensor-gain", "viscous-drag"]
+    assert led[0].fit is there and led[0].places == ((1, 1.0),)
+    assert led[0].gain == pytest.approx(null.objective - there.objective)
+    # Of the evidence only the misfit has changed.
+    assert led[0].log_bayes == pytest.approx(-5.0 + 0.5 * (led[0].gain - own.gain))
+    assert restart.led(null, there, led) is None
+    assert [c.effect for c in restart.led(null, there, [other])] == ["viscous-drag", "sensor-gain"]

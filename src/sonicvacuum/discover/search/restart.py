@@ -84,11 +84,26 @@ def lower(
             inside = polish(forward, one)
             one, held = bounds.beyond(forward, inside)
             if one.objective < before - LOWER:
-                gain = null.objective - one.objective
-                log_bayes = own.log_bayes + 0.5 * (gain - own.gain) if own else evidence.log_bayes(one, gain)
-                place = one.hypothesis.components[0].place
-                where = (own.places if own else ()) if place is None else ((place, 1.0),)
                 flags = ("beyond",) * (one is not inside) + ("bound",) * held
-                flags += ("unsettled",) * (not one.settled)
-                better[name] = Candidate(name, one, gain, log_bayes, where, flags)
+                better[name] = _alone(null, one, own, flags)
     return [*(known | better).values()] if better else None
+
+
+def led(null: Fit, one: Fit, singles: list[Candidate]) -> list[Candidate] | None:
+    """Single effects with one that a search of sets has led to a lower minimum; None where it has not."""
+    known = {c.effect: c for c in singles}
+    (name,) = one.hypothesis.ids
+    own = known.get(name)
+    if own and not one.objective < own.fit.objective - LOWER:
+        return None
+    return [*(known | {name: _alone(null, one, own)}).values()]
+
+
+def _alone(null: Fit, one: Fit, own: Candidate | None, flags: tuple[str, ...] = ()) -> Candidate:
+    """A single effect as it is fitted now; `own` is what was known of it."""
+    gain = null.objective - one.objective
+    log_bayes = own.log_bayes + 0.5 * (gain - own.gain) if own else evidence.log_bayes(one, gain)
+    (component,) = one.hypothesis.components
+    where = (own.places if own else ()) if component.place is None else ((component.place, 1.0),)
+    flags += ("unsettled",) * (not one.settled)
+    return Candidate(component.effect.id, one, gain, log_bayes, where, flags)

@@ -7,11 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from sonicvacuum.discover.fit import wide
+from sonicvacuum.discover.fit.enough import data
 from sonicvacuum.discover.fit.evidence import Candidate, log_bayes, ranked
+from sonicvacuum.discover.fit.places import settled
 from sonicvacuum.discover.fit.refit import Fit, fit
 from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.forward import Forward
-from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, variants
+from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, of_one_strength, variants
 from sonicvacuum.discover.search import secants
 from sonicvacuum.discover.search.screen import Screen
 from sonicvacuum.effects import Effect, Setup
@@ -31,6 +33,9 @@ CLEAR = 9.0
 STRAINED = 5.0
 # A deviation that the screen puts beyond this many typical ones may lie where slopes do not reach.
 FAR = 0.1
+# Far from the data, where all effects leave more than this share of the misfit, starts may have been missed:
+# pulses that miss each other lead nowhere. Trials then at each place, and starts of them that are followed.
+MISSED, TRIALS = 0.05, 12
 # Steps of the search; of the first one where all effects are followed and the best are polished later.
 ITERATIONS, FIRST = 14, 5
 COARSE = 6
@@ -81,7 +86,45 @@ def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
         else:
             break
     found = [c for c in found if c is not None]
+    if nonlinear and traced and not rough:
+        found = _once_more(forward, null, scores, found, setup)
     return ranked(found, forward.experiment.prior_odds)
+
+
+def _once_more(forward, null, scores, found, setup):
+    """The same with effects at one bead or contact searched densely, and along the chain, where all that was
+    found leaves much.
+    """
+    excess = null.objective - data(forward)
+    if excess - max((c.gain for c in found), default=0.0) < max(NONLINEAR, MISSED * excess):
+        return found
+
+    def denser(branch, c):
+        one = _densely(branch, null, c.fit.hypothesis.components[0], setup)
+        if one is None or not one.objective < c.fit.objective:
+            return c
+        gain = null.objective - one.objective
+        log = c.log_bayes + 0.5 * (gain - c.gain)
+        flags = ("bound",) * bool(one.at_bound().any()) + ("unsettled",) * (not one.settled)
+        return Candidate(c.effect, one, gain, log, ((one.hypothesis.components[0].place, 1.0),), flags)
+
+    def local(c):
+        component = c.fit.hypothesis.components[0]
+        return component.effect.places in secants.PLACES and of_one_strength(component.free)
+
+    rest = [c for c in found if not local(c)]
+    return rest + abreast.each(forward, denser, [c for c in found if local(c)], "effects at one place")
+
+
+def _densely(forward, null: Fit, component: Component, setup: Setup) -> Fit | None:
+    """The best fit of an effect with a place, from trials of finite strength all over; None without any."""
+    trials = secants.tried(forward, null, component, setup, TRIALS, secants.finely(component.free[0]))
+    if not trials:
+        return None
+    u, nu, at = (np.array(x) for x in zip(*((t.u, t.nu, [t.place]) for t in trials), strict=True))
+    twice = [np.concatenate(pair) for pair in ((u, u), (nu, 0.0 * nu), (at, at))]
+    one = fit(forward, Hypothesis((component,)), *twice, TRIALS, ITERATIONS, COARSE)
+    return settled(forward, one, setup)
 
 
 def _strained(forward: Forward, null: Fit) -> bool:
