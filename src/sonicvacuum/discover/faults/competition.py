@@ -4,7 +4,7 @@ First what traces show by themselves is put right. Then, while the nominal model
 is looked at; one that takes away nearly all of it is put right before any effect is searched for. The search
 for effects follows, and what it finds is weighed against the best of the other slips: the evidence of all
 explanations of the record as it is against that of all explanations of the record put right. Where effects
-leave a misfit, slips are looked at once more beside them.
+leave a misfit, slips are looked at once more beside them, those that the traces showed included.
 """
 
 import math
@@ -32,6 +32,7 @@ from sonicvacuum.discover.faults.judging import (
     without_slip,
 )
 from sonicvacuum.discover.faults.lines import drifts
+from sonicvacuum.discover.faults.retract import retracted, value
 from sonicvacuum.discover.faults.slips import hypotheses
 from sonicvacuum.discover.faults.table import FAULTS
 from sonicvacuum.discover.faults.timing import time_zero, with_starts
@@ -89,15 +90,21 @@ def discover(records: Sequence[Record], catalogue: Catalogue = CATALOGUE, thread
     Of several records only what traces show by themselves is looked for: they share a chain and its gauges,
     and each has its own slips.
     """
-    benches, findings = [], []
-    for record in records:
-        seen = predicted(together((record,), catalogue), threads) if record.signals else {}
-        bench, own = examine(record, seen)
-        benches.append(bench)
-        findings += own
+    seen = [predicted(together((r,), catalogue), threads) if r.signals else {} for r in records]
+    looked = [examine(*one) for one in zip(records, seen, strict=True)]
+    benches, findings = [bench for bench, _ in looked], [f for _, own in looked for f in own]
     if len(records) > 1 or not benches[0].record.signals:
         return Outcome(_investigated(benches, catalogue, threads), tuple(findings), benches[0].record)
-    return Search(benches[0], catalogue, threads, findings).run()
+    search = Search(benches[0], catalogue, threads, findings)
+    outcome = search.run()
+    spared = retracted(outcome.found, findings, records[0], seen[0], search.make)
+    if not spared:
+        return outcome
+    bench, findings = examine(records[0], seen[0], spared)
+    other = Search(bench, catalogue, threads, findings).run()
+    worse = value(other.found.forward, other.found.final) > value(outcome.found.forward, outcome.found.final)
+    chosen = outcome if unexplained(other.found) and worse else other
+    return replace(chosen, simulations=outcome.simulations + other.simulations)
 
 
 def _investigated(benches, catalogue, threads):

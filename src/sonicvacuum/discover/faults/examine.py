@@ -1,7 +1,7 @@
 """A record looked through trace by trace: what its traces show by themselves is put right and said."""
 
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 
 import msgspec
@@ -16,18 +16,24 @@ from sonicvacuum.gauges import position
 from sonicvacuum.records import Record, Signals
 
 
-def examine(record: Record, predicted: dict[str, dict[str, np.ndarray]] | None = None):
+def examine(
+    record: Record,
+    predicted: dict[str, dict[str, np.ndarray]] | None = None,
+    spared: Collection[tuple[str, str]] = (),
+):
     """Slips that traces show by themselves.
 
     Args:
         record: as read.
         predicted: run id → gauge id → (T,) reading of the nominal model; without it, gauges without a pulse
             and gauges of the wrong sign are not looked for.
+        spared: (slip, gauge id or, where no gauge is meant, run id) that are known not to have been made, of
+            those in `FEIGNED` and `SILENCE`.
 
     Returns:
         The `Bench` with what was put right, and the findings.
     """
-    look = _Look(record, predicted or {})
+    look = _Look(record, predicted or {}, spared)
     runs = [run for run in record.runs if run.signals is not None]
     for run in runs:
         look.samples(run)
@@ -46,6 +52,9 @@ def with_noise_of(findings: list[Finding], record: Record, gauges: Sequence[str]
     return kept + [f for f in examine(record)[1] if f.fault == "noise-misstated" and f.sensor in gauges]
 
 
+# Slips that an effect may feign in a trace, so that they are asked for once more beside it; and those that a
+# pulse feigns which dies on its way.
+FEIGNED, SILENCE = ("drift", "baseline", "gauge-inverted"), ("gauge-dead", "run-without-impact")
 # Slips of which a level is part.
 UNLEVEL = ("drift", "pickup", "gauge-dead")
 # Share of a level that differs from run to run by which it may change within a run.
@@ -55,8 +64,8 @@ MOVING = 0.3
 class _Look:
     """One pass over a record."""
 
-    def __init__(self, record, predicted):
-        self.record, self.predicted = record, predicted
+    def __init__(self, record, predicted, spared=()):
+        self.record, self.predicted, self.spared = record, predicted, spared
         self.readings = {k: dict(s.readings) for k, s in record.signals.items()}
         self.lost, self.seen, self.rests = {}, defaultdict(dict), defaultdict(dict)
         self.levels = defaultdict(dict)
@@ -132,6 +141,8 @@ class _Look:
             for id, g in own.items()
         }
         self._await(run, judged)
+        dying = ("run-without-impact", run) in self.spared
+        judged |= {id: "" for id in own if dying or ("gauge-dead", id) in self.spared}
         silent = [id for id, word in judged.items() if word == "silent"]
         if own and len(silent) == len(own):
             self.blank.append(run)
@@ -139,7 +150,7 @@ class _Look:
         for id, word in judged.items():
             if word == "silent" and len(silent) < len(own):
                 self.seen["gauge-dead", id][run] = None
-            if word == "inverted":
+            if word == "inverted" and ("gauge-inverted", id) not in self.spared:
                 self.seen["gauge-inverted", id][run] = None
                 self.readings[run][id] = -self.readings[run][id]
 
@@ -176,7 +187,7 @@ class _Look:
         trace = self.readings[run.id][gauge.id]
         stretch = traces.quiet(trace, gauge.sigma)
         drifting = traces.drift(stretch, gauge.sigma)
-        if drifting is not None:
+        if drifting is not None and ("drift", gauge.id) not in self.spared:
             slope, error = drifting
             self.seen["drift", gauge.id][run.id] = slope * len(trace)
             self._unsure(gauge.id, "drift", error * len(trace))
@@ -219,7 +230,11 @@ class _Look:
         for gauge in self.record.gauges:
             id = gauge.id
             told = self._one_level(gauge)
-            if not told or any((slip, id) in self.seen for slip in UNLEVEL):
+            if (
+                not told
+                or any((slip, id) in self.seen for slip in UNLEVEL)
+                or ("baseline", id) in self.spared
+            ):
                 continue
             self.rests.pop(id)
             for run, (mean, error) in told.items():
@@ -246,7 +261,7 @@ class _Look:
         """Levels that differ from run to run."""
         for id, found in self.rests.items():
             sure = {k: (m, e) for k, (m, e) in found.items() if np.isfinite(e)}
-            if len(sure) < 2:
+            if len(sure) < 2 or ("baseline", id) in self.spared:
                 continue
             means, errors = np.array(list(sure.values())).T
             common = float(np.average(means, weights=errors**-2.0))
