@@ -100,14 +100,19 @@ class Case:
         tried = of_two.search()
         lower = restart.lower(self.forward, self.null, tried[:ASKED], self.found, self.setup)
         if lower is not None:
-            better = evidence.ranked(lower, self.forward.experiment.prior_odds)
-            return replace(replace(self, found=better).decide(), singles=better)
+            return self._anew(lower)
         passed, start, lowest = self._passing(tried, needed, most, alarms, seen)
         if passed is None and not gross.gross(self.forward, start, self.known):
             asked, tried = tried[:ASKED], of_two.again()
             if [id(pair) for pair in tried[:ASKED]] != [id(pair) for pair in asked]:
                 passed, start, lowest = self._passing(tried, needed, most, alarms, seen)
         return passed or self._set(needed, most, shape, alarms, start, lowest, tried)
+
+    def _anew(self, lower: list[Candidate]) -> Decision:
+        """The same with single effects of which one has a lower minimum than it was known to have."""
+        better = evidence.ranked(lower, self.forward.experiment.prior_odds)
+        one = replace(self, found=better).decide()
+        return one if one.singles else replace(one, singles=better)
 
     def _passing(self, tried, needed, most, alarms, seen: Left) -> tuple[Decision | None, Fit, Left]:
         """The first pair that is named, or None; the fit that sets start from, and what it leaves."""
@@ -126,12 +131,33 @@ class Case:
                 continue
             if not after.failed:
                 alarms["pair"] = after.p
-                reason = "a pair leaves nothing significant"
-                named = Decision(list(pair.effects), pair.fit, alarms, [reason], after.p, tried)
-                return named, pair.fit, after
+                singles = [pairs.combination(self.null, c.fit, self.setup) for c in self.found]
+                return self._whole(pair, singles, alarms, after, tried), pair.fit, after
             if start is best.fit:
                 start, lowest = pair.fit, after
         return None, start, lowest
+
+    def _whole(self, found: Combination, others, alarms, after: Left, tried) -> Decision:
+        """A set that leaves nothing is named; less of it and something unknown, where its last effect earns
+        so little that something outside the catalogue may as well be there.
+        """
+        fewer = [
+            c
+            for c in others
+            if len(set(found.effects) - set(c.effects)) == 1 == len(found.effects) - len(c.effects)
+        ]
+        parts = [(c, left(self.forward, c.fit, self.known)) for c in fewer]
+        part, seen = max(parts, key=lambda x: x[0].log_bayes + x[1].size.log_odds, default=(None, after))
+        count = "a pair leaves" if len(found.effects) == 2 else f"{len(found.effects)} effects together leave"
+        if part is None or found.log_bayes - part.log_bayes - seen.size.log_odds > policy.FURTHER:
+            reason = f"{count} nothing significant"
+            return Decision(list(found.effects), found.fit, alarms, [reason], after.p, tried)
+        (further,) = set(found.effects) - set(part.effects)
+        reason = (
+            f"{seen.where} is left, which {further} would explain, too little to tell it from anything else"
+        )
+        named, beside = [*part.effects, UNKNOWN], {explanations.key(part.effects): 0.0}
+        return Decision(named, part.fit, alarms, [reason], seen.p, tried, beside=beside)
 
     def _set(self, needed, most, shape, alarms, start: Fit, seen: Left, tried) -> Decision:
         """Effects added and taken away; what is found is kept, and said beside what is left."""
@@ -152,6 +178,8 @@ class Case:
         grown = turns.grow(self.null, start)
         effects = list(grown.best.effects)
         final = several.moved(self.forward, grown.best.fit) if grown.size.size else grown.best.fit
+        if len(effects) == 1 and (lower := restart.led(self.null, final, self.found)):
+            return self._anew(lower)
         behind = _behind(self.null.objective - final.objective, most)
         if behind > 0.0 and effects and grown.size.size:
             # Slow shapes take up the smooth misfit itself: they and effects are held against each other with
@@ -163,12 +191,16 @@ class Case:
             final, after = self._rivalled(turns, final, after, most)
             effects = list(final.hypothesis.ids)
         alarms["set"] = after.p
+        others = () if grown.size.size else grown.tried.values()
         if len(effects) > 1:
             own = pairs.combination(self.null, final, self.setup)
-            tried = _together(tried, () if grown.size.size else grown.tried.values(), own)
+            tried = _together(tried, others, own)
+            if not after.failed:
+                return self._whole(own, others, alarms, after, tried)
         if effects and not after.failed:
-            reason = f"{len(effects)} effects together leave nothing significant"
-            return Decision(effects, final, alarms, [reason], after.p, tried)
+            return Decision(
+                effects, final, alarms, [f"{effects[0]} leaves nothing significant"], after.p, tried
+            )
         if behind > 0.0:
             return self._unknown(alarms, [f"{shape} explains more than any effect or set"], after, tried)
         return self._beside(grown, needed, alarms, after, tried)
@@ -191,10 +223,8 @@ class Case:
             return None
         final, after = self._rivalled(turns, best.fit, after, most)
         best = pairs.combination(self.null, final, self.setup)
-        reason = f"{len(best.effects)} effects together leave nothing significant"
         ranked = _together(tried, grown.tried.values(), best)
-        found = {**alarms, "set": after.p}
-        return Decision(list(best.effects), best.fit, found, [reason], after.p, ranked)
+        return self._whole(best, grown.tried.values(), {**alarms, "set": after.p}, after, ranked)
 
     def _rivalled(self, turns: several.Turns, final: Fit, after: Left, most) -> tuple[Fit, Left]:
         """A set that leaves nothing, or a likelier one like it that does so too, and what it leaves; those

@@ -1,0 +1,53 @@
+"""A set whose last effect hardly earns its evidence is not told from one thing outside the catalogue."""
+
+from types import SimpleNamespace
+
+import pytest
+
+from sonicvacuum.discover import policy
+from sonicvacuum.discover.fit.evidence import Combination
+from sonicvacuum.discover.judge import decision, explanations
+
+LEFT = SimpleNamespace(size=SimpleNamespace(log_odds=0.0), where="a misfit in place", p=1e-5)
+NOTHING = SimpleNamespace(p=0.4)
+
+
+def found(effects, log_bayes):
+    return Combination(tuple(effects.split(" ")), effects, 100.0, log_bayes)
+
+
+def decided(monkeypatch, whole, others, smooth=0.0):
+    seen = SimpleNamespace(size=SimpleNamespace(log_odds=smooth), where=LEFT.where, p=LEFT.p)
+    monkeypatch.setattr(decision, "left", lambda forward, fit, known: seen)
+    case = decision.Case(None, None, None, [], None, None)
+    return case._whole(whole, others, {}, NOTHING, [])
+
+
+@pytest.mark.parametrize(
+    ("gained", "smooth", "kept"), [(1.1, 0.0, True), (0.9, 0.0, False), (1.1, 3.0, False)]
+)
+def test_the_last_effect_of_a_set_earns_its_evidence(monkeypatch, gained, smooth, kept):
+    """A smooth misfit beside one effect less counts for that."""
+    pair = found("gravity tsuji", 50.0)
+    others = [
+        found("tsuji", 50.0 - gained * policy.FURTHER),
+        found("gravity", 10.0),
+        found("gravity tsuji", 50.0),
+    ]
+    one = decided(monkeypatch, pair, others, smooth)
+    if kept:
+        assert (one.named, one.final, one.left) == (["gravity", "tsuji"], pair.fit, NOTHING.p)
+        return
+    assert (one.named, one.final, one.left) == (["tsuji", "unknown"], "tsuji", LEFT.p)
+    assert "gravity" in one.reasons[0]
+    odds = explanations.probabilities(
+        {"none": -50.0, "tsuji": 0.0, "gravity + tsuji": 4.0}, one.left, one.beside
+    )
+    assert max(odds, key=odds.get) == "tsuji + unknown"
+
+
+def test_only_what_has_one_effect_less_is_held_against_a_set(monkeypatch):
+    three = found("gravity mass-defect tsuji", 50.0)
+    others = [found("tsuji", 49.0), found("gravity tsuji", 20.0), found("gravity sensor-gain", 49.0)]
+    assert decided(monkeypatch, three, others).named == ["gravity", "mass-defect", "tsuji"]
+    assert decided(monkeypatch, three, []).named == ["gravity", "mass-defect", "tsuji"]
