@@ -51,3 +51,19 @@ def test_cases_without_verdict_are_named(tmp_path):
     (tmp_path / "verdicts").mkdir()
     with pytest.raises(InputError, match="no verdict for a"):
         outcomes(tmp_path / "truth", tmp_path / "verdicts")
+
+
+def test_sets_are_cases_too(tmp_path):
+    for folder in ("truth/a", "verdicts/a"):
+        (tmp_path / folder).mkdir(parents=True)
+    (tmp_path / "truth/a/truth.json").write_text('{"kind": "pair", "effects": ["tsuji", "gravity"]}')
+    (tmp_path / "verdicts/a/verdict.json").write_text('{"alarms": {"single": 1e-6, "pair": 0.5}}')
+    (tmp_path / "verdicts/a/candidates.csv").write_text(
+        "effects,delta_chi2,log10_bayes\ntsuji,60,10\ngravity+tsuji,110,20\ntsuji+gravity,112,21\n"
+    )
+    (case,) = outcomes(tmp_path / "truth", tmp_path / "verdicts")
+    assert case.truth == "gravity + tsuji"
+    assert set(case.logs) == {"none", "tsuji", "gravity + tsuji"}
+    assert case.unknown < 0.0  # the pair leaves noise
+    # The second effect has a prior of its own, which its evidence has to make up for.
+    assert case.logs["gravity + tsuji"] - case.logs["tsuji"] < 11.0 * math.log(10.0)

@@ -1,12 +1,13 @@
 """Calibration of stated probabilities on cases whose truth is known.
 
-The numbers of `discover.calibration` maximise the probability given to what was hidden: none, one effect, or
-something outside the catalogue (unknown). Pairs are left out: the probabilities are those of single effects.
+The numbers of `discover.calibration` maximise the probability given to what was hidden: none, one effect, a
+set of effects, or something outside the catalogue (unknown).
 """
 
 import math
 from dataclasses import dataclass
 from pathlib import Path
+from types import SimpleNamespace
 
 import msgspec
 import numpy as np
@@ -14,7 +15,8 @@ import scipy
 
 from sonicvacuum.blas import one_thread
 from sonicvacuum.discover.fit.calibration import Calibration, of_package
-from sonicvacuum.discover.fit.evidence import log_weights, unknown_odds
+from sonicvacuum.discover.fit.evidence import unknown_odds
+from sonicvacuum.discover.judge import explanations
 from sonicvacuum.files import InputError, replacing
 from sonicvacuum.tables import read_csv
 from sonicvacuum_blind import TRUTH
@@ -28,7 +30,7 @@ _WIDTH = 2.0
 
 @dataclass(frozen=True)
 class Outcome:
-    """One case: log weights of none and effects, log odds of unknown, and what is true."""
+    """One case: log weights of none, effects and sets, log odds of unknown, and what is true."""
 
     logs: dict[str, float]
     unknown: float
@@ -37,7 +39,7 @@ class Outcome:
 
 @one_thread
 def outcomes(truth_folder, verdict_folder) -> list[Outcome]:
-    """All cases with none or one hidden effect below two folders.
+    """All cases below two folders.
 
     Raises:
         InputError: where a case lacks verdict or table.
@@ -46,21 +48,23 @@ def outcomes(truth_folder, verdict_folder) -> list[Outcome]:
     result = []
     for id, path in sorted(truths.items()):
         truth = load(path)
-        if truth["kind"] == "pair":
-            continue
         if id not in verdicts:
             raise InputError(f"{verdict_folder}: no verdict for {id}; run sonicvacuum discover on its record")
         result.append(_outcome(truth, load(verdicts[id]), verdicts[id].parent / "candidates.csv"))
     if not result:
-        raise InputError(f"{truth_folder}: no case without or with a single hidden effect")
+        raise InputError(f"{truth_folder}: no case")
     return result
 
 
 def _outcome(truth, verdict, table: Path):
-    rows = [r for r in read_csv(table, "sonicvacuum discover writes it") if "+" not in r["effects"]]
-    logs = log_weights({r["effects"]: float(r["log10_bayes"]) * math.log(10.0) for r in rows})
-    p = verdict["alarms"].get("single", verdict["alarms"].get("none", 1.0))
-    true = {"null": NONE, "foreign": UNKNOWN}.get(truth["kind"], "+".join(truth["effects"]))
+    rows = read_csv(table, "sonicvacuum discover writes it")
+    found = {tuple(r["effects"].split("+")): float(r["log10_bayes"]) * math.log(10.0) for r in rows}
+    alone = [SimpleNamespace(effect=names[0], log_bayes=x) for names, x in found.items() if len(names) == 1]
+    sets = [SimpleNamespace(effects=names, log_bayes=x) for names, x in found.items() if len(names) > 1]
+    logs, alarms = explanations.log_weights(alone, sets), verdict["alarms"]
+    # What the best of them leaves: sets were only asked for where one effect leaves something.
+    p = next((alarms[step] for step in ("set", "pair", "single", "none") if step in alarms), 1.0)
+    true = {"null": NONE, "foreign": UNKNOWN}.get(truth["kind"], explanations.key(truth["effects"]))
     return Outcome(logs, math.log(unknown_odds(p)), true)
 
 
@@ -68,11 +72,15 @@ def _outcome(truth, verdict, table: Path):
 def calibrate(cases: list[Outcome]) -> Calibration:
     """The calibration under which what is true is most probable; what is said of sets stays as it is."""
 
+    kept = of_package().unknown_set
+
     def loss(numbers):
-        calibration = Calibration(
-            math.exp(numbers[0]), *(float(n) for n in numbers[1:3]), math.exp(numbers[3])
+        shape = (math.exp(numbers[0]), *(float(n) for n in numbers[1:3]), math.exp(numbers[3]))
+        calibration = Calibration(*shape, 0, kept)
+        given = (
+            calibration.probabilities(c.logs, c.unknown, "+" in max(c.logs, key=c.logs.get)).get(c.truth, 0.0)
+            for c in cases
         )
-        given = (calibration.probabilities(c.logs, c.unknown).get(c.truth, 0.0) for c in cases)
         return -sum(math.log(max(p, _LEAST)) for p in given) + 0.5 * float(numbers @ numbers) / _WIDTH**2
 
     found = scipy.optimize.minimize(
@@ -80,7 +88,7 @@ def calibrate(cases: list[Outcome]) -> Calibration:
     )
     temper, none, unknown, slope = (float(n) for n in found.x)
     rounded = (round(x, 4) for x in (math.exp(temper), none, unknown, math.exp(slope)))
-    return Calibration(*rounded, len(cases), of_package().unknown_set)
+    return Calibration(*rounded, len(cases), kept)
 
 
 def write(calibration: Calibration, path) -> None:
