@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from sonicvacuum.discover import verdict
 from sonicvacuum.discover.fit import evidence, heldout
 from sonicvacuum.discover.fit.normal import Normal
 from sonicvacuum.discover.fit.refit import Fit
@@ -113,3 +114,17 @@ def test_scalars_of_one_name_keep_what_is_left_of_each():
     after = [place("amplitude", 0.5), place("speed", 0.9), place("speed", 0.8)]
     assert locate.again(before, after)[:3] == [0.9, 0.5, 0.8]
     assert math.isnan(locate.again(before, after)[3])
+
+
+def test_where_holds_every_run_and_gauge_that_disagrees():
+    """At a strong effect one gauge alone fills the list with features of two runs."""
+    cells = [
+        locate.Place("r1", gauge, feature, size, 0.0, 0.0, 0.1)
+        for gauge, size in (("g1", 500.0), ("g2", -20.0))
+        for feature in locate.FEATURES
+    ]
+    cells.append(locate.Place("r1", "wall", "tail", 1.0, 0.3, 0.4, 0.1))
+    told = verdict.where(cells, most=5)
+    assert [abs(c.z) for c in told] == [500.0, 500.0, 500.0, 500.0, 20.0]
+    assert {c.sensor for c in told} == {"g1", "g2"}
+    assert len(verdict.where(cells)) == 18

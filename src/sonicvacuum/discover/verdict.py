@@ -258,8 +258,13 @@ def goodness_of_fit(nominal: Goodness, extended: Goodness, smooth_rel: float, wi
 
 
 def where(places: list[Place], most: int = 40) -> list[Where]:
-    """The largest of the significant cells, largest first."""
-    cells = sorted((p for p in places if p.found), key=lambda p: -abs(p.z))[:most]
+    """The significant cells, largest first; of more than `most` those that are the largest of their run and
+    gauge, and of the rest the largest.
+    """
+    cells = sorted((p for p in places if p.found), key=lambda p: -abs(p.z))
+    first = {(c.run, c.sensor or c.feature): c for c in reversed(cells)}.values()
+    chosen = sorted(cells, key=lambda c: not any(c is one for one in first))[:most]
+    cells = sorted(chosen, key=lambda c: -abs(c.z))
     return [Where(run=c.run, sensor=c.sensor, feature=c.feature, z=c.z, p=c.p) for c in cells]
 
 
