@@ -10,15 +10,15 @@ from pathlib import Path
 import numpy as np
 import scipy
 
-from sonicvacuum.discover.judge.locate import DISCOVERY_RATE
 from sonicvacuum.files import InputError, read_text
 from sonicvacuum.tables import read_csv
 
 UNKNOWN = "unknown"
 CREDIBLE = 0.95
 # Cells of the map of disagreement: what a model without the hidden effect leaves there is something from
-# SMALL d′ on, and must be seen from LARGE on; found is what discover's map calls so.
-SMALL, LARGE = 1.0, 5.0
+# SMALL d′ on, and must be seen from LARGE on; found is what has a corrected p below FOUND, the rate of false
+# discoveries of discover's map.
+SMALL, LARGE, FOUND = 1.0, 5.0, 0.03
 PLACES = ("bead", "contact", "sensor")
 # Parameters whose effect vanishes as they grow, and what the others are where they do nothing.
 INVERSE = (("sensor-droop", "tau_us"), ("coating-thickness", "layer_thickness_um"))
@@ -196,7 +196,7 @@ def located(cells: str, folder: Path | None) -> tuple[int, int, int, int]:
     seen = {
         f"{row['run']}/{row['sensor'] or row['feature']}"
         for row in read_csv(path, CURE, ["run", "sensor", "feature", "q_before"])
-        if float(row["q_before"] or "nan") < DISCOVERY_RATE
+        if float(row["q_before"] or "nan") < FOUND
     }
     right = sum(sizes.get(name, 0.0) >= SMALL for name in seen)
     large = {name for name, size in sizes.items() if size >= LARGE}

@@ -7,11 +7,15 @@ import pytest
 from made_records import BEADS, made
 
 from sonicvacuum.discover import session
+from sonicvacuum.discover.fit import refit, wide
 from sonicvacuum.discover.judge.decision import Case
+from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, variants
 from sonicvacuum.discover.model.problem import experiment
 from sonicvacuum.discover.rounds import investigate
-from sonicvacuum.discover.search import pairs
+from sonicvacuum.discover.search import pairs, singles
 from sonicvacuum.discover.search.directions import Direction
+from sonicvacuum.effects import effect
 
 
 def screened(columns, data, two_sided):
@@ -107,3 +111,30 @@ def test_several_effects_are_held_against_a_smooth_misfit_before_it_counts_as_no
     best = SimpleNamespace(fit="its fit")
     assert case._out_of_smooth(best, 12.0, 0.0, {}, 98.9) == "three effects"
     assert asked == [("its fit", 98.9, 2)]
+
+
+def test_a_pair_far_behind_is_spared_its_last_steps(monkeypatch):
+    """A law with a memory took eight tenths of a second for the errors of a pair 120 in chi2 behind."""
+    hidden = [("viscous-drag", {"rate_per_s": 300.0}), ("sensor-gain", {"gain_ratio": 1.2, "sensor": 1})]
+    forward = Forward(experiment(made(hidden, seed=3)[0]), 1)
+    null, setup = wide.nominal(forward), singles.setup_of(forward)
+    drag, gain, other = (
+        Component(effect(name), variants(effect(name), setup)[0], place=place)
+        for name, place in (("viscous-drag", None), ("sensor-gain", 1), ("sensor-gain", 0))
+    )
+    nu = np.zeros((1, forward.layout.size))
+    starts = []
+    for second, place in ((gain, 1), (other, 0)):
+        both = pairs.joined(Hypothesis((drag,)), second, setup)
+        u = np.array([[c.inverse(v) for c, v in zip(both.coordinates, (300.0, 1.2), strict=True)]])
+        starts.append(pairs.Start(0.0, both, u, nu, np.array([[0, place]])))
+    near, far = pairs.followed(forward, starts)
+    assert near.finished and not far.finished
+    assert far.objective > near.objective + pairs.BEHIND
+    whole = pairs.fitted(forward, starts[0])
+    assert near.objective == pytest.approx(whole.objective, abs=1e-6)  # the same steps
+    assert not pairs.followed(forward, starts[:1], near.objective - 2.0 * pairs.BEHIND)[0].finished
+    last = refit.finished(forward, far)
+    assert last.finished and refit.finished(forward, last) is last
+    assert last.objective <= far.objective + 1e-6
+    assert null.objective > far.objective

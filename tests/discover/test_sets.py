@@ -111,9 +111,7 @@ def test_all_that_may_stand_in_an_effects_place_share_a_sets_probability(turns, 
     asked = []
     monkeypatch.setattr(pairs, "beside", beside)
     monkeypatch.setattr(
-        several.abreast,
-        "each",
-        lambda forward, work, starts: asked.extend(starts) or map(one, map(_ids, asked)),
+        pairs, "followed", lambda forward, starts, least: asked.extend(starts) or map(one, map(_ids, asked))
     )
     monkeypatch.setattr(found, "_each_less", lambda fit, which: [one("bc"), one("bd"), one("cd")])
     monkeypatch.setattr(found, "_noted", noted)

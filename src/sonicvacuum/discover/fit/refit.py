@@ -7,7 +7,7 @@ coordinate at its bound that is pushed outward is held there. `scipy.optimize.le
 that the tests hold this against.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -139,12 +139,19 @@ def fit(
     return Fit(found, last, bool(settled[best]), now.objective[order[1:]], now.nu[order[1:]], finish)
 
 
-def polish(forward: Forward, one: Fit, iterations: int = ITERATIONS) -> Fit:
-    """The same fit, followed further."""
+def polish(forward: Forward, one: Fit, iterations: int = ITERATIONS, finish: bool = True) -> Fit:
+    """The same fit, followed further; without `finish` but for the last steps."""
     enough = NEARLY if one.normal.free else SETTLED
     now, settled = descend(forward, one.hypothesis, one.normal.take([0]), None, iterations, enough=enough)
-    last = _finished(forward, one.hypothesis, now)
-    return Fit(one.hypothesis, last, bool(settled[0]), one.others, one.elsewhere)
+    last = _finished(forward, one.hypothesis, now) if finish else now
+    return Fit(one.hypothesis, last, bool(settled[0]), one.others, one.elsewhere, finish)
+
+
+def finished(forward: Forward, one: Fit) -> Fit:
+    """The same fit with the last steps taken."""
+    if one.finished:
+        return one
+    return replace(one, normal=_finished(forward, one.hypothesis, one.normal), finished=True)
 
 
 def _finished(forward, hypothesis, now):

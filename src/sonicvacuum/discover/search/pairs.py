@@ -6,6 +6,7 @@ followed, and all pairs of the nominal screen, whose joint gains are algebra. On
 share one effect with it are tried as well.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -13,7 +14,7 @@ import numpy as np
 
 from sonicvacuum.discover.fit import places
 from sonicvacuum.discover.fit.evidence import Candidate, Combination, log_bayes
-from sonicvacuum.discover.fit.refit import Fit, fit, polish
+from sonicvacuum.discover.fit.refit import Fit, finished, fit, polish
 from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, is_law, of_one_strength, variants
@@ -28,7 +29,8 @@ LINEAR, BESIDE, EXCHANGED, ROUNDS = 3, 3, 4, 2
 LEADING, WORTH = 4, 0.5
 # Trials of an effect that its start is made of.
 TRIALS = 3
-# Pairs this far behind the best one are not followed along the chain.
+# Sets this far behind the best one are not followed along the chain, nor are the last steps of their fits
+# taken: these gain some hundredths, or some units with laws of several parameters.
 BEHIND = 30.0
 ITERATIONS = 12
 # Signatures closer to parallel than this span no plane.
@@ -152,7 +154,8 @@ class Pairs:
 
     def _refit(self, starts: list[Start]):
         """Fit pairs and note them."""
-        found = abreast.each(self.forward, fitted, starts, "pairs of effects")
+        least = min((p.fit.objective for p in self.found.values()), default=np.inf)
+        found = followed(self.forward, starts, least, "pairs of effects")
         for one in found:
             self._note(one)
         least = min((p.fit.objective for p in self.found.values()), default=np.inf)
@@ -308,10 +311,22 @@ def beside(
     ]
 
 
-def fitted(forward, start: Start) -> Fit:
+def followed(forward: Forward, starts: Iterable[Start], least: float = np.inf, stage: str = "") -> list[Fit]:
+    """The joint fits from starts; `finished` is false for those far behind the best one, and `least`."""
+    found = abreast.each(forward, partial(fitted, finish=False), starts, stage)
+    least = min([least, *(one.objective for one in found)])
+    near = [k for k, one in enumerate(found) if one.objective < least + BEHIND]
+    last = abreast.each(forward, finished, [found[k] for k in near])
+    for k, one in zip(near, last, strict=True):
+        found[k] = one
+    return found
+
+
+def fitted(forward, start: Start, finish: bool = True) -> Fit:
     """The joint fit from a start."""
-    one = fit(forward, start.hypothesis, start.u, start.nu, start.places, keep=3, iterations=ITERATIONS)
-    return one if one.settled else polish(forward, one, ITERATIONS)
+    how = {"keep": 3, "iterations": ITERATIONS, "finish": finish}
+    one = fit(forward, start.hypothesis, start.u, start.nu, start.places, **how)
+    return one if one.settled else polish(forward, one, ITERATIONS, finish)
 
 
 def combination(null: Fit, one: Fit, setup: Setup) -> Combination:

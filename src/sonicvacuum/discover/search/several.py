@@ -17,7 +17,7 @@ import numpy as np
 from sonicvacuum.discover import policy
 from sonicvacuum.discover.fit import enough, heldout, places, smooth
 from sonicvacuum.discover.fit.evidence import Combination
-from sonicvacuum.discover.fit.refit import ITERATIONS, Fit, fit
+from sonicvacuum.discover.fit.refit import ITERATIONS, Fit, finished, fit
 from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.search import pairs, restart
@@ -239,11 +239,12 @@ class Turns:
         chosen = [s for s in starts if s.gain > enough and s.effects not in self.tried]
         first = self.size.size and all(len(s.effects) == 1 for s in chosen)
         chosen = sorted(chosen, key=lambda s: -s.gain)[: FIRST if first else TRIED]
-        found = abreast.each(self.forward, pairs.fitted, chosen)
+        found = pairs.followed(self.forward, chosen)
         found = [one for one in found if np.isfinite(one.objective)]
         for one in found:
             self._noted(one)
         for one in sorted(found, key=self._evidence, reverse=True):
+            one = finished(self.forward, one)
             if places.placed(one):
                 one = places.settled(self.forward, one, self.setup)
                 self._noted(one)
@@ -295,7 +296,7 @@ class Turns:
             for s in sorted(standing, key=lambda s: -s.gain)[:STANDING]:
                 if s.effects not in self.tried:
                     starts[s.effects] = max(s, starts.get(s.effects, s), key=lambda s: s.gain)
-        for one in abreast.each(self.forward, pairs.fitted, starts.values()):
+        for one in pairs.followed(self.forward, starts.values(), fit.objective):
             if np.isfinite(one.objective):
                 self._noted(one)
         same = len(fit.hypothesis.components)
