@@ -13,7 +13,7 @@ from sonicvacuum.discover import session
 from sonicvacuum.discover.faults import changes
 from sonicvacuum.discover.faults.competition import LIKELIER, Search
 from sonicvacuum.discover.faults.found import Bench
-from sonicvacuum.discover.faults.judging import Judged
+from sonicvacuum.discover.faults.judged import Judged
 from sonicvacuum.discover.faults.slips import hypotheses
 from sonicvacuum.discover.faults.weights import parts
 from sonicvacuum.discover.rounds import investigate

@@ -13,7 +13,8 @@ from sonicvacuum.discover import session
 from sonicvacuum.discover.faults import changes, policy
 from sonicvacuum.discover.faults.competition import Search
 from sonicvacuum.discover.faults.found import Bench
-from sonicvacuum.discover.faults.judging import Judge, Model, excess, obvious, suspicious
+from sonicvacuum.discover.faults.judged import Model, excess, obvious, suspicious
+from sonicvacuum.discover.faults.judging import Judge
 from sonicvacuum.discover.faults.slips import hypotheses
 from sonicvacuum.discover.fit.enough import data
 from sonicvacuum.discover.rounds import investigate

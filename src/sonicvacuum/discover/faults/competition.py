@@ -18,8 +18,7 @@ from sonicvacuum.discover.faults import policy
 from sonicvacuum.discover.faults.examine import examine, with_noise_of
 from sonicvacuum.discover.faults.expected import predicted
 from sonicvacuum.discover.faults.found import Bench, Finding
-from sonicvacuum.discover.faults.judging import (
-    Judge,
+from sonicvacuum.discover.faults.judged import (
     Judged,
     Model,
     both_off,
@@ -31,6 +30,7 @@ from sonicvacuum.discover.faults.judging import (
     suspicious,
     without_slip,
 )
+from sonicvacuum.discover.faults.judging import Judge
 from sonicvacuum.discover.faults.lines import drifts
 from sonicvacuum.discover.faults.retract import retracted, value
 from sonicvacuum.discover.faults.slips import hypotheses
@@ -187,9 +187,9 @@ class Search:
         Only sizes can be so small, and only those count that explain about as much as the effects do.
         """
         judge, own = Judge(model, self.judged), found.null.objective - found.final.objective
-        looked = [judge.look(s) for s in hypotheses(model.bench.record) if s.continuous]
+        looked = judge.look_at([s for s in hypotheses(model.bench.record) if s.continuous])
         near = [j for j in looked if j.gain > own - ALIKE]
-        followed = [judge.follow(j) for j in sorted(near, key=lambda j: -j.log_odds)[: policy.FOLLOWED]]
+        followed = judge.follow_all(sorted(near, key=lambda j: -j.log_odds)[: policy.FOLLOWED])
         self.simulations += judge.simulations
         kept = [j for j in followed if j.gain > own - ALIKE and j.log_odds > 0.0]
         return sorted(kept, key=lambda j: -j.log_odds)
@@ -207,7 +207,7 @@ class Search:
         shown = [*time_zero(record, seen), *drifts(record, seen)]
         stages.begin("slips of the laboratory")
         far = excess(model) > policy.SURE_GAIN
-        looked = [judge.look(s) for s in slips]
+        looked = judge.look_at(slips)
         if far and afar:
             looked = [judge.from_afar(j) if FAULTS[j.slip.fault].curved else j for j in looked]
         looked.sort(key=lambda j: -j.log_odds)
@@ -217,10 +217,10 @@ class Search:
         if far:
             pairs = both_off(worth)
             worth += [j for j in apart if of_the_chain(j.slip) or j.slip.run in pairs]
-        whole = [judge.look(s) for s in shown if (s.fault, s.run, s.sensor) not in done]
-        followed = [judge.follow(j) for j in [*worth, *whole]]
+        whole = judge.look_at([s for s in shown if (s.fault, s.run, s.sensor) not in done])
+        followed = judge.follow_all([*worth, *whole])
         if far and not any(obvious(j, model) for j in followed):
-            followed += [judge.follow(j) for j in apart if j not in worth]
+            followed += judge.follow_all([j for j in apart if j not in worth])
         self.simulations += judge.simulations
         kept = [j for j in followed if j.gain > policy.LEAST_GAIN and j.log_odds > 0.0]
         return sorted(kept, key=lambda j: -j.log_odds)

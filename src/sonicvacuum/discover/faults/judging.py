@@ -1,22 +1,16 @@
-"""How much better a model fits the record when a slip is put right: a linear look, then a fit.
+"""How much better a model fits the record when a slip is put right: a linear look, then a fit (`judged`)."""
 
-Records that differ in a slip differ in their data and in their noise, so that not χ² but −2 log L is
-compared: χ², the penalty of the nuisances, and the logarithm of the noise of every sample that counts.
-"""
-
-import math
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from sonicvacuum.discover.faults import policy
 from sonicvacuum.discover.faults.found import Bench
+from sonicvacuum.discover.faults.judged import Judged, Model, noise_volume, occam
 from sonicvacuum.discover.faults.slips import Slip
-from sonicvacuum.discover.faults.table import FAULTS
-from sonicvacuum.discover.fit import tails
 from sonicvacuum.discover.fit.enough import data
 from sonicvacuum.discover.fit.refit import Fit, fit
+from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.experiment import Experiment
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.records import Record
@@ -27,112 +21,10 @@ STEPS, LAST = 6, 0.3
 FARTHER = 8.0
 # Tries of a search for a size without slopes, and how near it comes, in prior widths.
 TRIES, ROUGHLY = 8, 0.02
+# Calls of the predictor that a look takes, about.
+LOOK = 5
 # Farthest size from where the search starts, in prior widths.
 LONGEST = 5.0
-
-
-@dataclass(frozen=True)
-class Model:
-    """A model fitted to a record: predictor, fit and −2 log L up to a constant of the raw data."""
-
-    bench: Bench
-    forward: Forward
-    fit: Fit
-
-    @property
-    def objective(self) -> float:
-        """−2 log L with the nuisances' prior."""
-        return self.fit.objective + noise_volume(self.forward.experiment)
-
-
-@dataclass(frozen=True)
-class Judged:
-    """A slip beside a model of the record with it.
-
-    Attributes:
-        slip: the hypothesis.
-        size: where it fits best.
-        gain: Δ(−2 log L) against the model of the record as it is.
-        log_bayes: natural log of the Bayes factor against it, prior of the slip left aside.
-        model: fitted to the record put right; None after a linear look.
-    """
-
-    slip: Slip
-    size: float
-    gain: float
-    log_bayes: float
-    model: Model | None = None
-
-    @property
-    def log_odds(self) -> float:
-        """Log of prior times Bayes factor."""
-        return self.log_bayes + policy.log_prior(self.slip.alternatives)
-
-
-def excess(model: Model) -> float:
-    """χ² of a nominal fit, its nuisances' included, above the number of data."""
-    return model.fit.objective - data(model.forward)
-
-
-def most_of(objective: float, size: float) -> float:
-    """What a slip has to gain that explains a misfit: all but a share of what `size` data's noise is not."""
-    return (1.0 - policy.LEFT) * (objective - size - policy.SUSPICIOUS * math.sqrt(2.0 * size))
-
-
-def obvious(judged: Judged, model: Model) -> bool:
-    """Whether a slip takes away nearly all misfit by itself."""
-    return (
-        judged.gain > policy.SURE_GAIN
-        and judged.gain > policy.SHARE * excess(model)
-        and not FAULTS[judged.slip.fault].alias
-    )
-
-
-def without_slip(judged: Judged, model: Model) -> Model | None:
-    """The model of the record as it is, fitted from where a slip led it, if it fits better for that alone.
-
-    Far from the data a fit may end where pulses miss each other; any slip whose own fit does not would then
-    seem to explain what it has nothing to do with.
-    """
-    one = model.fit
-    found = fit(model.forward, one.hypothesis, one.u[None], judged.model.fit.nu[None])
-    return replace(model, fit=found) if one.objective - found.objective > policy.LEAST_GAIN else None
-
-
-def out_of_reach(judged: Judged, model: Model) -> bool:
-    """Whether a slip, looked at, leaves so much more misfit than there is that no fit would mend it."""
-    return excess(model) - judged.gain > policy.REACH * max(excess(model), 1.0)
-
-
-def of_the_chain(slip: Slip) -> bool:
-    """Whether a slip has no size and moves all pulses at once: another number of beads."""
-    return not slip.continuous and FAULTS[slip.fault].stretches
-
-
-def both_off(worth: list[Judged]) -> set[str]:
-    """Pairs of runs, as `runs-swapped` names them, that both look struck at another speed."""
-    off = [j.slip.run for j in worth if j.slip.fault == "run-off"]
-    return {f"{a} and {b}" for a in off for b in off if a != b}
-
-
-def suspicious(model: Model) -> bool:
-    """Whether a nominal fit leaves more than its noise, or strains its nuisances."""
-    one, size = model.fit, data(model.forward)
-    misfit = float(one.normal.chi2.sum()) - size
-    strained = float(one.nu @ one.nu)
-    return misfit > policy.SUSPICIOUS * math.sqrt(2.0 * size) or strained > tails.chi_squared_at(
-        1e-3, len(one.nu)
-    )
-
-
-def noise_volume(experiment: Experiment) -> float:
-    """Σ log σ² of all samples that count, their correlation included."""
-    sigma2 = experiment.sigma**2 * (1.0 - experiment.correlation**2)
-    counts = sum(
-        np.full(len(sigma2), len(r.time)) if r.present is None else r.present.sum(axis=1)
-        for r in experiment.runs
-    )
-    return float(np.sum(counts * np.log(sigma2))) if len(sigma2) else 0.0
 
 
 class Judge:
@@ -143,8 +35,8 @@ class Judge:
         make: record → data set; masks included.
     """
 
-    def __init__(self, model: Model, make: Callable[[Bench], Experiment]):
-        self.model, self.make = model, make
+    def __init__(self, model: Model, make: Callable[[Bench], Experiment], threads: int | None = None):
+        self.model, self.make, self.threads = model, make, threads or model.forward.threads
         self.simulations = 0
         self._columns = None
         self._own = self._residuals(model.bench.record)
@@ -153,7 +45,7 @@ class Judge:
         return replace(self.model.bench, record=record)
 
     def _forward(self, record):
-        return Forward(self.make(self._bench(record)), self.model.forward.threads)
+        return Forward(self.make(self._bench(record)), self.threads)
 
     def _residuals(self, record, afresh=False, near=False):
         """Residuals and slopes of every run for a changed record, and its Σ log σ².
@@ -192,6 +84,40 @@ class Judge:
         gain = self._least(*own) + volume - after
         return Judged(slip, size, gain, 0.5 * gain + occam(slip, size, gain))
 
+    def look_at(self, slips: Sequence[Slip]) -> list[Judged]:
+        """`look` at all of them, side by side."""
+
+        def seen(slip):
+            one = self.look(slip)
+            return one.size, one.gain, one.log_bayes
+
+        return [Judged(s, *found) for s, found in zip(slips, self._abreast(seen, slips, LOOK), strict=True)]
+
+    def follow_all(self, looked: Sequence[Judged]) -> list[Judged]:
+        """`follow` all of them, side by side."""
+
+        def fitted(judged):
+            one = self.follow(judged)
+            return one.size, one.model.fit
+
+        found = self._abreast(fitted, looked, abreast.FIT)
+        return [
+            self._judged(j.slip, size, Model(*self._put_right(j.slip, size), one))
+            for j, (size, one) in zip(looked, found, strict=True)
+        ]
+
+    def _abreast(self, work, items, calls):
+        """`work(item)` for each, none asking for another; their simulations are counted."""
+        threads, before = self.threads, self.simulations
+
+        def alone(branch, item):
+            self.threads, self.simulations = branch.threads, 0
+            return work(item), self.simulations
+
+        found = abreast.each(self.model.forward, alone, items, calls=calls)
+        self.threads, self.simulations = threads, before + sum(count for _, count in found)
+        return [result for result, _ in found]
+
     def _normal(self, parts, nu, extra=None):
         """Gradient, Hessian and χ² over all runs; the size of a slip is the last unknown."""
         one, forward = self.model.fit, self.model.forward
@@ -227,7 +153,7 @@ class Judge:
         size, model = (judged.size, judged.model) if judged.model else self._fitted(slip, judged.size)
         before = None
         for _ in range(STEPS if slip.continuous else 0):
-            inner = Judge(model, self.make)
+            inner = Judge(model, self.make, self.threads)
             step = inner._step(slip)
             self.simulations += inner.simulations
             new_size, new = self._fitted(slip, size + _farther(before, size, step), model.fit)
@@ -300,15 +226,19 @@ class Judge:
         lost = data(self.model.forward) - data(model.forward)
         return model.fit.objective + lost if slip.continuous else model.objective
 
+    def _put_right(self, slip, size):
+        """The record changed by a size, and its predictor."""
+        record, lost = self.model.bench.record, self.model.bench.lost
+        bench = replace(self._bench(slip.change(record, size)), lost=slip.lost(lost, record, size))
+        return bench, Forward(self.make(bench), self.threads)
+
     def _fitted(self, slip, size, start: Fit | None = None, afresh: bool = False):
         """The record changed by a size and its model, fitted from a start, or from the model as it is and
         from nuisances of zero; `afresh` from all of these.
         """
         far = LONGEST * slip.width
         size = float(np.clip(size, slip.start - far, slip.start + far)) if slip.continuous else 0.0
-        record, lost = self.model.bench.record, self.model.bench.lost
-        bench = replace(self._bench(slip.change(record, size)), lost=slip.lost(lost, record, size))
-        forward = Forward(self.make(bench), self.model.forward.threads)
+        bench, forward = self._put_right(slip, size)
         one = self.model.fit
         nu = ([start.nu] if start else []) + ([one.nu, 0.0 * one.nu] if afresh or not start else [])
         one = start or one
@@ -331,12 +261,3 @@ def _farther(before: tuple[float, float] | None, size: float, step: float) -> fl
 def _ridged(hessian):
     """A matrix that can be solved with where a nuisance is known exactly."""
     return hessian + 1e-9 * np.diag(np.maximum(np.diag(hessian), 1e-9))
-
-
-def occam(slip: Slip, size: float, gain: float) -> float:
-    """Log of the Occam factor: width of the posterior times the prior's density at the size."""
-    if not slip.continuous:
-        return slip.occam
-    sigma = max(abs(size), 1e-12) / math.sqrt(max(gain, 1.0))
-    density = 1.0 / (math.pi * slip.width * (1.0 + (size / slip.width) ** 2))
-    return min(0.0, math.log(max(math.sqrt(2.0 * math.pi) * sigma * density, 1e-12)))

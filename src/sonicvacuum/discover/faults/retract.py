@@ -13,7 +13,7 @@ import numpy as np
 from sonicvacuum.discover.faults import policy
 from sonicvacuum.discover.faults.examine import FEIGNED, SILENCE, examine
 from sonicvacuum.discover.faults.found import Bench, Finding
-from sonicvacuum.discover.faults.judging import noise_volume
+from sonicvacuum.discover.faults.judged import noise_volume
 from sonicvacuum.discover.faults.weights import ALIKE, unexplained
 from sonicvacuum.discover.fit.refit import Fit, fit
 from sonicvacuum.discover.model.experiment import Experiment

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from sonicvacuum.discover.faults import policy
-from sonicvacuum.discover.faults.judging import Judged, noise_volume, occam
+from sonicvacuum.discover.faults.judged import Judged, noise_volume, occam
 from sonicvacuum.discover.faults.table import FAULTS
 from sonicvacuum.discover.fit import evidence
 from sonicvacuum.discover.fit.refit import Fit

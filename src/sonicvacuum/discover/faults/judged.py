@@ -1,0 +1,133 @@
+"""A slip as it was judged, and what follows: whether it is obvious or out of reach, a record suspicious.
+
+Records that differ in a slip differ in their data and in their noise, so that not χ² but −2 log L is
+compared: χ², the penalty of the nuisances, and the logarithm of the noise of every sample that counts.
+"""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from sonicvacuum.discover.faults import policy
+from sonicvacuum.discover.faults.found import Bench
+from sonicvacuum.discover.faults.slips import Slip
+from sonicvacuum.discover.faults.table import FAULTS
+from sonicvacuum.discover.fit import tails
+from sonicvacuum.discover.fit.enough import data
+from sonicvacuum.discover.fit.refit import Fit, fit
+from sonicvacuum.discover.model.experiment import Experiment
+from sonicvacuum.discover.model.forward import Forward
+
+
+@dataclass(frozen=True)
+class Model:
+    """A model fitted to a record: predictor, fit and −2 log L up to a constant of the raw data."""
+
+    bench: Bench
+    forward: Forward
+    fit: Fit
+
+    @property
+    def objective(self) -> float:
+        """−2 log L with the nuisances' prior."""
+        return self.fit.objective + noise_volume(self.forward.experiment)
+
+
+@dataclass(frozen=True)
+class Judged:
+    """A slip beside a model of the record with it.
+
+    Attributes:
+        slip: the hypothesis.
+        size: where it fits best.
+        gain: Δ(−2 log L) against the model of the record as it is.
+        log_bayes: natural log of the Bayes factor against it, prior of the slip left aside.
+        model: fitted to the record put right; None after a linear look.
+    """
+
+    slip: Slip
+    size: float
+    gain: float
+    log_bayes: float
+    model: Model | None = None
+
+    @property
+    def log_odds(self) -> float:
+        """Log of prior times Bayes factor."""
+        return self.log_bayes + policy.log_prior(self.slip.alternatives)
+
+
+def excess(model: Model) -> float:
+    """χ² of a nominal fit, its nuisances' included, above the number of data."""
+    return model.fit.objective - data(model.forward)
+
+
+def most_of(objective: float, size: float) -> float:
+    """What a slip has to gain that explains a misfit: all but a share of what `size` data's noise is not."""
+    return (1.0 - policy.LEFT) * (objective - size - policy.SUSPICIOUS * math.sqrt(2.0 * size))
+
+
+def obvious(judged: Judged, model: Model) -> bool:
+    """Whether a slip takes away nearly all misfit by itself."""
+    return (
+        judged.gain > policy.SURE_GAIN
+        and judged.gain > policy.SHARE * excess(model)
+        and not FAULTS[judged.slip.fault].alias
+    )
+
+
+def without_slip(judged: Judged, model: Model) -> Model | None:
+    """The model of the record as it is, fitted from where a slip led it, if it fits better for that alone.
+
+    Far from the data a fit may end where pulses miss each other; any slip whose own fit does not would then
+    seem to explain what it has nothing to do with.
+    """
+    one = model.fit
+    found = fit(model.forward, one.hypothesis, one.u[None], judged.model.fit.nu[None])
+    return replace(model, fit=found) if one.objective - found.objective > policy.LEAST_GAIN else None
+
+
+def out_of_reach(judged: Judged, model: Model) -> bool:
+    """Whether a slip, looked at, leaves so much more misfit than there is that no fit would mend it."""
+    return excess(model) - judged.gain > policy.REACH * max(excess(model), 1.0)
+
+
+def of_the_chain(slip: Slip) -> bool:
+    """Whether a slip has no size and moves all pulses at once: another number of beads."""
+    return not slip.continuous and FAULTS[slip.fault].stretches
+
+
+def both_off(worth: list[Judged]) -> set[str]:
+    """Pairs of runs, as `runs-swapped` names them, that both look struck at another speed."""
+    off = [j.slip.run for j in worth if j.slip.fault == "run-off"]
+    return {f"{a} and {b}" for a in off for b in off if a != b}
+
+
+def suspicious(model: Model) -> bool:
+    """Whether a nominal fit leaves more than its noise, or strains its nuisances."""
+    one, size = model.fit, data(model.forward)
+    misfit = float(one.normal.chi2.sum()) - size
+    strained = float(one.nu @ one.nu)
+    return misfit > policy.SUSPICIOUS * math.sqrt(2.0 * size) or strained > tails.chi_squared_at(
+        1e-3, len(one.nu)
+    )
+
+
+def noise_volume(experiment: Experiment) -> float:
+    """Σ log σ² of all samples that count, their correlation included."""
+    sigma2 = experiment.sigma**2 * (1.0 - experiment.correlation**2)
+    counts = sum(
+        np.full(len(sigma2), len(r.time)) if r.present is None else r.present.sum(axis=1)
+        for r in experiment.runs
+    )
+    return float(np.sum(counts * np.log(sigma2))) if len(sigma2) else 0.0
+
+
+def occam(slip: Slip, size: float, gain: float) -> float:
+    """Log of the Occam factor: width of the posterior times the prior's density at the size."""
+    if not slip.continuous:
+        return slip.occam
+    sigma = max(abs(size), 1e-12) / math.sqrt(max(gain, 1.0))
+    density = 1.0 / (math.pi * slip.width * (1.0 + (size / slip.width) ** 2))
+    return min(0.0, math.log(max(math.sqrt(2.0 * math.pi) * sigma * density, 1e-12)))
