@@ -11,6 +11,7 @@ from made_slips import altered
 from sonicvacuum.blas import one_thread
 from sonicvacuum.discover.faults.examine import examine
 from sonicvacuum.discover.faults.expected import predicted
+from sonicvacuum.discover.faults.found import Finding
 from sonicvacuum.discover.faults.retract import retracted
 from sonicvacuum.discover.fit.refit import fit
 from sonicvacuum.discover.model.forward import Forward
@@ -102,3 +103,14 @@ def test_a_shot_that_missed_is_kept_out():
     taken_back, shown = beside_friction(record, [], 0.2)
     assert shown == {("run-without-impact", "v0")}
     assert taken_back == set()
+
+
+def test_a_gauge_that_reads_nothing_is_no_effect_in_place_of_a_dead_one(dying):
+    gain = SimpleNamespace(effect=effect("sensor-gain"))
+    final = SimpleNamespace(hypothesis=SimpleNamespace(components=(gain,)), objective=0.0)
+    experiment = SimpleNamespace(sigma=None, correlation=None)
+    found = SimpleNamespace(
+        forward=SimpleNamespace(experiment=experiment), null=None, final=final, named=["sensor-gain"]
+    )
+    slip = Finding("gauge-dead", sensor="g4", corrected=True)
+    assert retracted(found, [slip], dying, {}, make) == set()

@@ -249,3 +249,17 @@ def test_traces_without_a_model_are_put_right_too(empty):
     assert [f.fault for f in found] == ["pickup"]
     assert not bench.record.signals["v0"].equals(empty.signals["v0"])
     assert bench.lines.keys() == {("v0", "wall"), ("v1", "wall")}
+
+
+def test_a_dead_gauge_is_dead_where_little_is_expected_of_it_too():
+    """Its slow shot was told as a gauge that reads nothing (`sensor-gain`), with 0.95."""
+    record = made(speeds=(0.05, 0.9))[0]
+    seen = predicted(together((record,)))
+    assert 0.0 < np.abs(seen["v0"]["g7"]).max() < 20.0 * SIGMA < np.abs(seen["v1"]["g7"]).max()
+    bench, (one,) = examine(altered(record, "g7", lambda _: SIGMA * NOISE), seen)
+    assert (one.fault, one.run, one.sensor) == ("gauge-dead", None, "g7")
+    assert all("g7" not in signals.readings for signals in bench.record.signals.values())
+    # A pulse in the slow shot, however small, and only the other trace is dead.
+    bench, (one,) = examine(altered(record, "g7", lambda _: SIGMA * NOISE, "v1"), seen)
+    assert (one.fault, one.run, one.sensor) == ("gauge-dead", "v1", "g7")
+    assert "g7" in bench.record.signals["v0"].readings

@@ -37,6 +37,7 @@ def examine(
     runs = [run for run in record.runs if run.signals is not None]
     for run in runs:
         look.samples(run)
+    look.dead()
     for gauge in record.gauges:
         look.pickup(gauge)
     for run in runs:
@@ -153,6 +154,15 @@ class _Look:
             if word == "inverted" and ("gauge-inverted", id) not in self.spared:
                 self.seen["gauge-inverted", id][run] = None
                 self.readings[run][id] = -self.readings[run][id]
+
+    def dead(self):
+        """A gauge that is silent where a pulse is expected is so where less is expected of it, too."""
+        for id in sorted(id for fault, id in self.seen if fault == "gauge-dead"):
+            sigma = next(g.sigma for g in self.record.gauges if g.id == id)
+            rest = [k for k, own in self.readings.items() if id in own and (k, id) not in self.silent]
+            if all(expected.quiet(self.readings[k][id], sigma) for k in rest):
+                self.silent |= {(k, id) for k in rest}
+                self.seen["gauge-dead", id] |= dict.fromkeys(rest)
 
     def _await(self, run, judged):
         """Nothing is said of gauges whose pulse comes after the record's end if it is as late as others, or

@@ -34,14 +34,17 @@ def verdict(trace: np.ndarray, model: np.ndarray, sigma: float) -> str:
     power = float(model @ model)
     found = _slid(trace, model) / power
     up, down = float(found.max()), float(-found.min())
-    if max(up, down) < max(SHARE, SILENT * sigma / np.sqrt(power)) and np.abs(trace).max() < SILENT * max(
-        sigma, 1e-12
-    ):
+    if max(up, down) < max(SHARE, SILENT * sigma / np.sqrt(power)) and quiet(trace, sigma):
         return "silent"
     # A motion gauge's reading swings both ways by itself: what the model's own would show.
     own = correlated(model, model) / power
     swing = max(1.0, INVERTED * max(float(-own.min()), 0.0))
     return "inverted" if down > INVERTED * up and down * swing > SHARE and down > up else ""
+
+
+def quiet(trace: np.ndarray, sigma: float) -> bool:
+    """Whether no sample of (T,) readings stands out of the noise."""
+    return bool(np.abs(trace).max() < SILENT * max(sigma, 1e-12))
 
 
 def _slid(trace, model):

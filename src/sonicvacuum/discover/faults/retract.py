@@ -80,7 +80,11 @@ class _Asked:
         return set(best) if lower > policy.LEAST_GAIN else set()
 
     def silence(self, slip: Slipped) -> bool:
-        """Whether the effects say of the traces that were left out what silence says of them."""
+        """Whether the effects say of the traces that were left out what silence says of them; a gauge's own
+        effect, which takes its reading down to nothing, is that slip in other words.
+        """
+        if any(c.effect.places == "sensor" for c in self.found.final.hypothesis.components):
+            return False
         forward, one = self._fitted({slip})
         more = one.objective - self.found.final.objective
         return more < self._silent(slip, forward.experiment) + ALIKE
