@@ -3,6 +3,7 @@ place and size; nulls are not suspicious, and what is put right is the sound rec
 """
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from sonicvacuum.discover import session
 from sonicvacuum.discover.faults import changes, policy
 from sonicvacuum.discover.faults.competition import Search
 from sonicvacuum.discover.faults.found import Bench
-from sonicvacuum.discover.faults.judged import Model, excess, obvious, suspicious
+from sonicvacuum.discover.faults.judged import Judged, Model, excess, obvious, suspicious
 from sonicvacuum.discover.faults.judging import Judge
 from sonicvacuum.discover.faults.slips import hypotheses
 from sonicvacuum.discover.fit.enough import data
@@ -232,3 +233,18 @@ def test_a_bead_less_is_not_looked_for_beside_an_effect_at_the_last():
     assert "bead-count" not in {
         j.slip.fault for j in one.ranked(Model(one.bench, found.forward, found.final))
     }
+
+
+def test_a_slip_that_leaves_a_misfit_is_held_against_every_effect_alone(monkeypatch):
+    """A gauge in volts was told as swapped with its neighbour, and a bead more beside it."""
+    monkeypatch.setattr(policy, "SURE_GAIN", 20.0)  # of a record that is small enough for a test
+    record = made()[0]
+    one, model, _ = search(altered(record, "g7", lambda y: 0.3 * y))
+    swapped = next(s for s in hypotheses(record) if s.fault == "gauges-swapped")
+    whole = excess(model)
+    for leaves, held in ((0.03, True), (0.0001, False)):
+        gain = (1.0 - leaves) * whole
+        judged = Judged(swapped, 0.0, gain, 0.5 * gain, SimpleNamespace())
+        assert obvious(judged, model)
+        assert one._matched(judged, model) is held
+    assert one._matching == {"sensor-gain"}

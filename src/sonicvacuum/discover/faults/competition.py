@@ -226,8 +226,12 @@ class Search:
         return sorted(kept, key=lambda j: -j.log_odds)
 
     def _matched(self, judged: Judged, model: Model) -> bool:
-        """Whether an effect alone explains about as much as a slip that moves all pulses as it may."""
-        if not FAULTS[judged.slip.fault].stretches:
+        """Whether an effect alone explains about as much as a slip, or more: one that moves all pulses as an
+        effect may, or leaves a misfit of its own. A gauge in volts fits far better in its neighbour's place.
+        """
+        rest = excess(model) - judged.gain
+        leaves = rest > max(policy.SURE_GAIN, policy.REST * excess(model))
+        if not (FAULTS[judged.slip.fault].stretches or leaves):
             return False
         forward, before = model.forward, model.forward.chains
         known = directions.catalogue(singles.setup_of(forward), forward.experiment.excluded)

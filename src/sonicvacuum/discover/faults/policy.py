@@ -12,6 +12,8 @@ LEAST_GAIN = 18.0
 SHARE = 0.9
 # ... and gains so much that no prior matters.
 SURE_GAIN = 200.0
+# One that leaves more than this share of it is held against every effect alone first.
+REST = 0.01
 # A slip that leaves more than this share of the misfit, whatever else is added, is no explanation.
 LEFT = 0.3
 # Slips that are followed to their minimum after a linear look at all of them.
