@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from made_records import made
 
-from sonicvacuum.discover.faults import judging
+from sonicvacuum.discover.faults import judged
 from sonicvacuum.discover.fit import normal, refit, wide
 from sonicvacuum.discover.fit.enough import data
 from sonicvacuum.discover.model.forward import Forward
@@ -74,6 +74,6 @@ def test_a_slip_does_not_explain_what_a_better_fit_does(empty):
         for nu in (there, 0.0 * there)
     )
     slip = SimpleNamespace(model=SimpleNamespace(fit=good))
-    lower = judging.without_slip(slip, judging.Model(None, forward, stuck))
+    lower = judged.without_slip(slip, judged.Model(None, forward, stuck))
     assert lower.fit.objective < data(forward) + 5.0 * np.sqrt(2.0 * data(forward))
-    assert judging.without_slip(slip, lower) is None
+    assert judged.without_slip(slip, lower) is None
