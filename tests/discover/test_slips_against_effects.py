@@ -10,7 +10,7 @@ from made_slips import altered
 from msgspec.structs import replace
 
 from sonicvacuum.discover import session
-from sonicvacuum.discover.faults import changes
+from sonicvacuum.discover.faults import changes, competition
 from sonicvacuum.discover.faults.competition import LIKELIER, Search
 from sonicvacuum.discover.faults.found import Bench
 from sonicvacuum.discover.faults.judged import Judged
@@ -149,3 +149,23 @@ def test_a_slip_that_an_effect_explains_away_is_not_put_right_first():
     assert told.named == ["dynamic-modulus"] and not told.faults
     found = told.parameters["dynamic-modulus"]["modulus_ratio"]
     assert found.value == pytest.approx(3.0, abs=3.0 * found.sigma)  # three standard errors
+
+
+@pytest.mark.parametrize(("foreseen", "followed"), [(0.45, True), (0.2, False)])
+def test_a_small_slip_is_followed_where_slopes_foresee_half_of_what_the_effect_gains(
+    empty, monkeypatch, foreseen, followed
+):
+    """Beads a tenth too heavy were told as dynamic-modulus with 0.98: half of their gain was foreseen."""
+    seen, asked = found(), []
+    own = seen.null.objective - seen.final.objective
+    fitted = judged(empty, "bead-mass", gain=own + 5.0)
+    judge = SimpleNamespace(
+        simulations=0,
+        look_at=lambda slips: [judged(empty, "bead-mass", gain=foreseen * own)],
+        follow_all=lambda near: asked.extend(near) or [fitted for _ in near],
+    )
+    monkeypatch.setattr(competition, "Judge", lambda model, make: judge)
+    search = Search(Bench(empty), CATALOGUE, 1, [])
+    kept = search._as_small(SimpleNamespace(bench=Bench(empty)), seen)
+    assert kept == [fitted] * followed
+    assert len(asked) == followed
