@@ -141,18 +141,15 @@ class Case:
         """A set that leaves nothing is named; less of it and something unknown, where its last effect earns
         so little that something outside the catalogue may as well be there.
         """
-        fewer = [
-            c
-            for c in others
-            if len(set(found.effects) - set(c.effects)) == 1 == len(found.effects) - len(c.effects)
-        ]
+        names = set(found.effects)
+        fewer = [c for c in others if set(c.effects) < names and len(c.effects) == len(names) - 1]
         parts = [(c, left(self.forward, c.fit, self.known)) for c in fewer]
         part, seen = max(parts, key=lambda x: x[0].log_bayes + x[1].size.log_odds, default=(None, after))
         count = "a pair leaves" if len(found.effects) == 2 else f"{len(found.effects)} effects together leave"
         if part is None or found.log_bayes - part.log_bayes - seen.size.log_odds > policy.FURTHER:
             reason = f"{count} nothing significant"
             return Decision(list(found.effects), found.fit, alarms, [reason], after.p, tried)
-        (further,) = set(found.effects) - set(part.effects)
+        (further,) = names - set(part.effects)
         reason = (
             f"{seen.where} is left, which {further} would explain, too little to tell it from anything else"
         )

@@ -85,7 +85,7 @@ def lower(
             one, held = bounds.beyond(forward, inside)
             if one.objective < before - LOWER:
                 flags = ("beyond",) * (one is not inside) + ("bound",) * held
-                better[name] = _alone(null, one, own, flags)
+                better[name] = alone(null, one, own, flags)
     return [*(known | better).values()] if better else None
 
 
@@ -96,10 +96,10 @@ def led(null: Fit, one: Fit, singles: list[Candidate]) -> list[Candidate] | None
     own = known.get(name)
     if own and not one.objective < own.fit.objective - LOWER:
         return None
-    return [*(known | {name: _alone(null, one, own)}).values()]
+    return [*(known | {name: alone(null, one, own)}).values()]
 
 
-def _alone(null: Fit, one: Fit, own: Candidate | None, flags: tuple[str, ...] = ()) -> Candidate:
+def alone(null: Fit, one: Fit, own: Candidate | None, flags: tuple[str, ...] = ()) -> Candidate:
     """A single effect as it is fitted now; `own` is what was known of it."""
     gain = null.objective - one.objective
     log_bayes = own.log_bayes + 0.5 * (gain - own.gain) if own else evidence.log_bayes(one, gain)

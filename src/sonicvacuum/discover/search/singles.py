@@ -14,7 +14,7 @@ from sonicvacuum.discover.fit.refit import Fit, fit
 from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, of_one_strength, variants
-from sonicvacuum.discover.search import secants
+from sonicvacuum.discover.search import restart, secants
 from sonicvacuum.discover.search.screen import Screen
 from sonicvacuum.effects import Effect, Setup
 
@@ -87,11 +87,11 @@ def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
             break
     found = [c for c in found if c is not None]
     if nonlinear and traced and not rough:
-        found = _once_more(forward, null, scores, found, setup)
+        found = _once_more(forward, null, found, setup)
     return ranked(found, forward.experiment.prior_odds)
 
 
-def _once_more(forward, null, scores, found, setup):
+def _once_more(forward, null, found, setup):
     """The same with effects at one bead or contact searched densely, and along the chain, where all that was
     found leaves much.
     """
@@ -103,10 +103,7 @@ def _once_more(forward, null, scores, found, setup):
         one = _densely(branch, null, c.fit.hypothesis.components[0], setup)
         if one is None or not one.objective < c.fit.objective:
             return c
-        gain = null.objective - one.objective
-        log = c.log_bayes + 0.5 * (gain - c.gain)
-        flags = ("bound",) * bool(one.at_bound().any()) + ("unsettled",) * (not one.settled)
-        return Candidate(c.effect, one, gain, log, ((one.hypothesis.components[0].place, 1.0),), flags)
+        return restart.alone(null, one, c, ("bound",) * bool(one.at_bound().any()))
 
     def local(c):
         component = c.fit.hypothesis.components[0]
