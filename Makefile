@@ -17,8 +17,10 @@ BIN := .venv/bin
 PIP := $(BIN)/python -m pip --quiet --quiet --no-input --disable-pip-version-check
 INSTALL := $(PIP) install --no-build-isolation
 LOCKED := $(INSTALL) --require-hashes -r
-# On all cores, and of what is imported: pip would do it on one, tests of packages included.
-BYTECODE = $(BIN)/python -m compileall -qq -j 0 -x '[/\\]tests?[/\\]' .venv/lib || true
+# On all cores, and of what is imported: pip would do it on one, tests of packages included. Our own modules too: where
+# PYTHONDONTWRITEBYTECODE is set, every process would compile them anew, a sixth of a verdict.
+COMPILEALL = $(BIN)/python -m compileall -qq -j 0
+BYTECODE = $(COMPILEALL) -x '[/\\]tests?[/\\]' .venv/lib || true
 COMPILE := pip compile --quiet --universal --generate-hashes --no-emit-index-url --no-annotate --python-version 3.11 \
 	--custom-compile-command "make lock"
 
@@ -44,6 +46,7 @@ STAMP = { echo "built in $(CURDIR)"; cat requirements-build.lock requirements.lo
 
 .venv/installed: .venv/locked pyproject.toml
 	@$(INSTALL) --no-deps --editable .
+	@$(COMPILEALL) src || true
 	@touch $@
 
 .venv/benched: .venv/installed requirements-bench.lock
