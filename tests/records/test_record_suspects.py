@@ -7,11 +7,12 @@ import numpy as np
 import pytest
 from record_cases import BALL, CONTENT, STRIKER, TRACES, content, made, put
 
+from sonicvacuum.discover.fit.wide import WIDE
 from sonicvacuum.records import Record, Signals
 from sonicvacuum.records.commands import summary
 from sonicvacuum.records.expected import expected
 from sonicvacuum.records.reader import parse
-from sonicvacuum.records.review import review
+from sonicvacuum.records.review import HARDLY_KNOWN, LONGER, review
 from sonicvacuum.records.suspects import suspects
 from sonicvacuum.report.checked import check
 
@@ -111,6 +112,25 @@ def test_text_and_json_say_the_same(tmp_path):
     assert "near: peak at" in text
     assert "needed" in text
     assert found["discover_s"]["low"] < found["discover_s"]["estimate"] < found["discover_s"]["high"]
+
+
+@pytest.mark.parametrize(
+    "known",
+    [
+        lambda error: {
+            "runs": [r | {"striker": STRIKER | {"speed_rel_sigma": error}} for r in CONTENT["runs"]]
+        },
+        lambda error: {"materials": {"stainless-steel": {"modulus_rel_sigma": error}}},
+        lambda error: {"tolerances": {"speed_common_rel": error}},
+    ],
+    ids=["speeds", "a modulus", "a common speed"],
+)
+def test_a_search_takes_longer_where_speeds_or_moduli_are_hardly_known(known):
+    assert HARDLY_KNOWN == WIDE  # from there on fits start all over what they may be
+    well, hardly = (
+        review(Record(parse(content(**known(error))), TRACES, "made")).discover_s for error in (0.05, 0.2)
+    )
+    assert hardly == LONGER * well
 
 
 def test_a_gauge_without_a_pulse_has_no_number():

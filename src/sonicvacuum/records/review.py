@@ -8,11 +8,15 @@ from sonicvacuum.records.expected import Expected, Feature, expected
 from sonicvacuum.records.record import Record
 from sonicvacuum.records.suspects import suspects
 
-# A search in a record of four runs, three gauges and 480 samples takes 12 s on one core (measured by `make
-# bench`, table in the README); it grows with their product. Records of that size differ by a factor of four.
-SECONDS_PER_VALUE = 12.0 / (4 * 3 * 480)
-LEAST_SECONDS = 2.0
-UNCERTAIN = 4.0
+# Traces of four runs, three gauges and 480 samples take 0.4 s on one core where nothing is missing, 1.3 s
+# where one effect is, 4 where two are and up to 20 where more is, scalars 2 to 11 s (the blind study of
+# docs/study.md); the start and the page 0.5 s more.
+SECONDS_PER_VALUE = 2.0 / (4 * 3 * 480)
+LEAST_SECONDS = 1.5
+UNCERTAIN = 5.0
+# Speeds and moduli with such errors have fits start from all over what they may be: records of the four shots
+# of docs/real-traces.md, of 800 samples, take 60 to 70 s on two cores.
+HARDLY_KNOWN, LONGER = 0.1, 30.0
 # SI unit → the one in which people read it, and its factor.
 _SHOWN = {"s": ("us", 1e6)}
 _TITLES = {"arrival": "peak at", "amplitude": "peak", "duration_half": "half width", "speed": "speed",
@@ -61,7 +65,7 @@ def review(record: Record, searched: Record | None = None, treatment=(), slips=(
         warnings=(*_untouched(record), *warnings(record)),
         suspects=(*suspects(record, seen), *slips),
         treatment=tuple(treatment),
-        discover_s=max(LEAST_SECONDS, SECONDS_PER_VALUE * _values(searched or record)),
+        discover_s=_seconds(searched or record),
     )
 
 
@@ -69,6 +73,15 @@ def _untouched(record):
     """A line where the record is still the one that `record new` writes."""
     if record.title == TEMPLATE_TITLE:
         yield "title: is still that of the template, whose numbers are the paper's: put your own in"
+
+
+def _seconds(record):
+    """Rough time of a search on one core, in s."""
+    seconds = max(LEAST_SECONDS, SECONDS_PER_VALUE * _values(record))
+    errors = [run.striker.speed_rel_sigma for run in record.runs]
+    errors += [record.modulus_rel_sigma(name) or 0.0 for name in record.block.materials]
+    errors.append(record.tolerances.speed_common_rel or 0.0)
+    return seconds * (LONGER if max(errors) > HARDLY_KNOWN else 1.0)
 
 
 def _values(record):
@@ -113,7 +126,8 @@ def lines(found: Review) -> list[str]:
     said += [] if found.warnings or found.suspects else ["  nothing suspicious"]
     said += [f"  for the search: {t}" for t in found.treatment]
     low, high = found.discover_s / UNCERTAIN, found.discover_s * UNCERTAIN
-    return [*said, f"  discover will take some {low:.2g} to {high:.2g} s on one core (a rough estimate)"]
+    span = " to ".join(f"{float(f'{s:.2g}'):g}" for s in (low, high))
+    return [*said, f"  discover will take some {span} s on one core (a rough estimate)"]
 
 
 def _told(feature: Feature):
