@@ -16,7 +16,7 @@ from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.judge import behind, degenerate, left
 from sonicvacuum.discover.model.experiment import Experiment, RunData
 from sonicvacuum.discover.model.hypothesis import Hypothesis
-from sonicvacuum.discover.model.problem import noise
+from sonicvacuum.discover.model.noise import noise
 from sonicvacuum.discover.search.directions import Direction
 from sonicvacuum.discover.search.screen import Screen
 from sonicvacuum.effects import IDS

@@ -11,7 +11,8 @@ from sonicvacuum.discover import session
 from sonicvacuum.discover.fit.wide import nominal
 from sonicvacuum.discover.model.experiment import whitened_gaps
 from sonicvacuum.discover.model.forward import Forward
-from sonicvacuum.discover.model.problem import experiment, flicker, noise
+from sonicvacuum.discover.model.noise import flicker, noise
+from sonicvacuum.discover.model.problem import experiment
 from sonicvacuum.figures.discovery import label_of
 from sonicvacuum.records import Record, Signals, read, write
 from sonicvacuum.records.reader import parse

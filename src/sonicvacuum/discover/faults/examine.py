@@ -11,7 +11,7 @@ from sonicvacuum.discover.faults import changes, expected, policy, traces
 from sonicvacuum.discover.faults.found import Bench, Finding
 from sonicvacuum.discover.faults.table import FAULTS
 from sonicvacuum.discover.model.masks import cut, spikes
-from sonicvacuum.discover.model.problem import flicker
+from sonicvacuum.discover.model.noise import flicker
 from sonicvacuum.gauges import position
 from sonicvacuum.records import Record, Signals
 

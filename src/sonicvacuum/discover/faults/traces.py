@@ -8,7 +8,7 @@ import math
 import numpy as np
 
 from sonicvacuum.discover.faults import coloured
-from sonicvacuum.discover.model.problem import QUIET_PEAK, QUIET_SHARE, QUIET_SIGMAS, flicker
+from sonicvacuum.discover.model.noise import QUIET_PEAK, QUIET_SHARE, QUIET_SIGMAS, flicker
 
 # Samples of a quiet stretch that can be judged.
 FEWEST = 40

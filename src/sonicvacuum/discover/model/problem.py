@@ -1,27 +1,16 @@
-"""From a record to the experiment that is inferred from: chains to simulate, noise checked against the quiet
-stretch.
-
-The noise that a record states is compared with what its traces show before the pulse arrives. Where that is
-larger, or correlated from sample to sample, it is taken instead. Spikes and samples that were cut off are
-left out (`masks`).
+"""From a record to the experiment that is inferred from: chains to simulate, readings that count, and how
+loud their noise is (`noise`).
 """
 
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import lru_cache
 
 import numpy as np
 
 from sonicvacuum.discover.model.beginnings import begun
-from sonicvacuum.discover.model.experiment import (
-    Batch,
-    Experiment,
-    RunData,
-    Scalar,
-    lag_one,
-)
-from sonicvacuum.discover.model.masks import cut, spikes
+from sonicvacuum.discover.model.experiment import Batch, Experiment, RunData, Scalar
+from sonicvacuum.discover.model.noise import MODEL_FLOOR, believed, doubtful, noise
 from sonicvacuum.discover.model.nuisances import MODULUS_REL_SIGMA, shared
 from sonicvacuum.discover.model.present import acting, stated
 from sonicvacuum.discover.model.slow import slow
@@ -31,20 +20,9 @@ from sonicvacuum.files import InputError
 from sonicvacuum.records.assemble import assemble, chain_of, duration_of, interval_of
 from sonicvacuum.records.record import Record
 
-# Smooth error of the simulation and of the interpolation, relative to the largest reading of a gauge.
-MODEL_FLOOR = 1e-4
 # Traces are read between samples by polynomials of the fifth degree, so that these may lie further apart than
 # where pulses are measured on them.
 COARSER = 2.0
-# The quiet stretch ends well before the first sample that exceeds so many standard errors, and this share of
-# the peak.
-QUIET_SIGMAS, QUIET_PEAK, QUIET_SHARE = 6.0, 0.03, 0.7
-_FEWEST, _LEAST = 40, 12
-# Deviations from the stated white noise count from so many standard errors on.
-_SURE = 4.0
-# So many third differences of white noise are worth one independent sample: 1 + 2 (15² + 6² + 1)/20², from
-# their correlations −15/20, 6/20, −1/20. They and the quiet stretch agree within so many standard errors.
-_RIPPLE, _AGREE = 1.0 + 2.0 * (15.0**2 + 6.0**2 + 1.0) / 20.0**2, 3.0
 
 
 def experiment(record: Record, catalogue: Catalogue = CATALOGUE) -> Experiment:
@@ -172,27 +150,6 @@ def _run(record, run):
     return RunData(run.id, time, readings, scalars, run.striker.speed_rel_sigma, there)
 
 
-def believed(trace: np.ndarray, sigma: float) -> np.ndarray:
-    """(T,) whether a sample counts: it is neither a spike nor cut off."""
-    return _believed(np.asarray(trace, dtype=float).tobytes(), float(sigma))
-
-
-@lru_cache(maxsize=512)
-def _believed(samples: bytes, sigma):
-    """The same, remembered: each hypothesis of a slip asks again of traces that it leaves as they are."""
-    found = ~np.logical_or(*_doubtful(samples, sigma))
-    found.flags.writeable = False
-    return found
-
-
-@lru_cache(maxsize=512)
-def _doubtful(samples: bytes, sigma):
-    """Which samples of a trace are spikes, and which are cut off."""
-    trace = np.frombuffer(samples)
-    noise_ = max(sigma, flicker(trace))
-    return spikes(trace, noise_), cut(trace, noise_)
-
-
 def _notes(record, runs):
     """What was left out, gauge by gauge."""
     notes = []
@@ -201,7 +158,7 @@ def _notes(record, runs):
         for run in record.runs:
             if run.signals and gauge.id in run.signals.readings:
                 trace = np.asarray(run.signals.readings[gauge.id], dtype=float)
-                found = _doubtful(trace.tobytes(), float(gauge.sigma))
+                found = doubtful(trace.tobytes(), float(gauge.sigma))
                 for what, at in zip(counts, found, strict=True):
                     counts[what] += int(np.count_nonzero(at))
         notes += [f"{gauge.id}: {n} {what} left out" for what, n in counts.items() if n]
@@ -235,116 +192,3 @@ def _as_long(batch: Batch, record: Record) -> Batch:
     """A batch simulated for as long as its chains ask for with all that acts in them."""
     runs = [record.runs[k] for k in batch.runs]
     return replace(batch, duration=duration_of(record, runs, batch.chain) + 4.0 * batch.interval)
-
-
-def noise(records: Sequence[Record]) -> tuple[np.ndarray, np.ndarray]:
-    """(S,) standard deviation of one sample and correlation of its neighbours, stated or seen."""
-    gauges = records[0].gauges
-    traces = [_traces(records, g) for g in gauges]
-    quiet = [_quiet_of(own, g) for own, g in zip(traces, gauges, strict=True)]
-    sigma = [_sigma(own, g, q) for own, g, q in zip(traces, gauges, quiet, strict=True)]
-    return np.array(sigma), _correlations(quiet)
-
-
-def _traces(records, gauge):
-    """Its traces, what is not believed left out."""
-    runs = [r for record in records for r in record.runs if r.signals and gauge.id in r.signals.readings]
-    traces = [r.signals.readings[gauge.id] for r in runs]
-    return [t[believed(t, gauge.sigma)] for t in traces]
-
-
-def _quiet_of(traces, gauge):
-    """The quiet stretches of a gauge that are long enough."""
-    sigma = gauge.sigma or max(map(flicker, traces), default=0.0)
-    quiet = [q for t in traces if len(q := _quiet(t, sigma)) >= _LEAST]
-    if gauge.baseline_sigma or gauge.drift_sigma:
-        # Where level and slope are open, noise is what is left of both.
-        quiet = [_off_its_line(q) for q in quiet]
-    return quiet if sum(map(len, quiet)) >= _FEWEST else []
-
-
-def _off_its_line(stretch):
-    """A stretch without its straight line."""
-    place = np.arange(len(stretch)) - 0.5 * (len(stretch) - 1)
-    return stretch - stretch.mean() - place * (place @ stretch / (place @ place))
-
-
-def _sigma(traces, gauge, quiet):
-    """What the record states, or more where the quiet stretches are surely louder."""
-    peak = max((float(np.abs(t).max()) for t in traces), default=0.0)
-    floor = max(math.hypot(gauge.sigma or _estimated(traces, quiet), MODEL_FLOOR * peak), 1e-12)
-    if not quiet:
-        return floor
-    count = sum(len(q) for q in quiet)
-    seen = math.sqrt(sum(q @ q for q in quiet) / count)
-    return seen if seen > floor * (1.0 + _SURE / math.sqrt(count)) else floor
-
-
-def _estimated(traces, quiet):
-    """Noise that nobody stated: of the quiet stretches, and of what makes the other samples flicker.
-
-    Where noise is white and signals are smooth, third differences of all samples show the same noise as the
-    few before the pulse, and by far more of them; both are averaged by their numbers. Where they disagree, or
-    neighbours are correlated, only the quiet stretches count.
-    """
-    if not quiet:
-        return max(map(flicker, traces), default=0.0)
-    count = sum(map(len, quiet))
-    level = math.sqrt(sum(float(q @ q) for q in quiet) / count)
-    steps = np.concatenate([np.diff(t, 3) for t in traces])
-    ripple, worth = math.sqrt(float(steps @ steps) / len(steps) / 20.0), len(steps) / _RIPPLE
-    error = math.hypot(1.0 / math.sqrt(2.0 * count), 1.0 / math.sqrt(2.0 * worth))
-    white = abs(_correlation(quiet)) < _SURE / math.sqrt(count)
-    if white and abs(ripple - level) < _AGREE * error * level:
-        level = math.sqrt((count * level**2 + worth * ripple**2) / (count + worth))
-    return max(level, max(map(rounding, traces)))
-
-
-def flicker(trace: np.ndarray) -> float:
-    """Noise of one sample from third differences, which a smooth pulse hardly moves; white noise assumed.
-
-    The median of their absolute values over 0.6745 √20: third differences of white noise have the variance
-    1 + 9 + 9 + 1 = 20.
-    """
-    return float(np.median(np.abs(np.diff(trace, 3)))) / (0.6745 * math.sqrt(20.0)) if len(trace) > 3 else 0.0
-
-
-def rounding(trace: np.ndarray) -> float:
-    """Standard deviation of the rounding of a trace whose values repeat: its smallest step over √12."""
-    values = np.unique(trace)
-    if len(values) < 2 or len(values) > len(trace) / 2:
-        return 0.0
-    return float(np.diff(values).min()) / math.sqrt(12.0)
-
-
-def _correlations(quiet):
-    """(S,) correlation of neighbours: one for all gauges, or each its own where they surely differ; 0 where
-    none is sure.
-    """
-    weights = np.array([sum(len(q) for q in stretches) for stretches in quiet], dtype=float)
-    if not weights.any():
-        return np.zeros(len(quiet))
-    own = np.array([_correlation(stretches) for stretches in quiet])
-    shared = float(np.average(own, weights=weights))
-    if shared <= _SURE / math.sqrt(weights.sum()):
-        # One gauge alone may still be correlated.
-        return np.where(own > _SURE / np.sqrt(np.maximum(weights, 1.0)), np.minimum(own, 0.99), 0.0)
-    error = np.sqrt((1.0 - shared**2) / np.maximum(weights, 1.0))
-    differs = (np.abs(own - shared) > _SURE * error) & (weights > 0.0)
-    return np.clip(np.where(differs, own, shared), 0.0, 0.99)
-
-
-def _correlation(stretches):
-    """Lag-one correlation, its bias −(1 + 3ρ)/n removed (Marriott & Pope, Biometrika 41, 390, 1954)."""
-    if not stretches:
-        return 0.0
-    seen = [(lag_one(q), len(q)) for q in stretches]
-    return float(np.average([r + (1.0 + 3.0 * r) / n for r, n in seen], weights=[n for _, n in seen]))
-
-
-def _quiet(trace, sigma):
-    """The samples before the pulse arrives, or none."""
-    peak = float(np.abs(trace).max())
-    loud = np.abs(trace) > max(QUIET_SIGMAS * sigma, QUIET_PEAK * peak)
-    first = int(loud.argmax()) if loud.any() else len(trace)
-    return trace[: int(QUIET_SHARE * first)]

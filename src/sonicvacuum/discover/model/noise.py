@@ -1,0 +1,218 @@
+"""Noise of a record's traces: what is stated, held against what they show.
+
+The noise that a record states is compared with what its traces show before the pulse arrives. Where that is
+larger, or correlated from sample to sample, it is taken instead. Spikes and samples that were cut off are
+left out (`masks`).
+"""
+
+import math
+from collections.abc import Sequence
+from functools import lru_cache
+
+import numpy as np
+
+from sonicvacuum.discover.model.experiment import lag_one
+from sonicvacuum.discover.model.masks import cut, spikes
+from sonicvacuum.records.record import Record
+
+# Smooth error of the simulation and of the interpolation, relative to the largest reading of a gauge.
+MODEL_FLOOR = 1e-4
+# The quiet stretch ends well before the first sample that exceeds so many standard errors, and this share of
+# the peak.
+QUIET_SIGMAS, QUIET_PEAK, QUIET_SHARE = 6.0, 0.03, 0.7
+_FEWEST, _LEAST = 40, 12
+# Deviations from the stated white noise count from so many standard errors on.
+_SURE = 4.0
+# So many third differences of white noise are worth one independent sample: 1 + 2 (15² + 6² + 1)/20², from
+# their correlations −15/20, 6/20, −1/20. They and the quiet stretch agree within so many standard errors.
+_RIPPLE, _AGREE = 1.0 + 2.0 * (15.0**2 + 6.0**2 + 1.0) / 20.0**2, 3.0
+# A recorder's rounding, over the noise, from which on third differences are those of its steps.
+_COARSE = 0.2
+# Mean square of third and of fourth differences of noise of variance 1 whose neighbours are correlated: 1,
+# −3, 3, −1 and 1, −4, 6, −4, 1 times themselves at every lag k, where the correlation is ρᵏ. Both show the
+# same ρ within 0.1 to 0.17 of its standard error, and another one for noise of another kind (of a low-pass,
+# or with white noise beside it): drawn noise, ρ up to 0.95.
+_NEIGHBOURS = np.linspace(-0.9, 0.995, 400)
+_RIPPLES = {
+    3: np.polynomial.Polynomial((20.0, -30.0, 12.0, -2.0)),
+    4: np.polynomial.Polynomial((70.0, -112.0, 56.0, -16.0, 2.0)),
+}
+_SAME = 0.17
+
+
+def believed(trace: np.ndarray, sigma: float) -> np.ndarray:
+    """(T,) whether a sample counts: it is neither a spike nor cut off."""
+    return _believed(np.asarray(trace, dtype=float).tobytes(), float(sigma))
+
+
+@lru_cache(maxsize=512)
+def _believed(samples: bytes, sigma):
+    """The same, remembered: each hypothesis of a slip asks again of traces that it leaves as they are."""
+    found = ~np.logical_or(*doubtful(samples, sigma))
+    found.flags.writeable = False
+    return found
+
+
+@lru_cache(maxsize=512)
+def doubtful(samples: bytes, sigma: float) -> tuple[np.ndarray, np.ndarray]:
+    """(T,) which samples of a trace, given as the bytes of its floats, are spikes, and which are cut off."""
+    trace = np.frombuffer(samples)
+    noise_ = max(sigma, flicker(trace))
+    return spikes(trace, noise_), cut(trace, noise_)
+
+
+def noise(records: Sequence[Record]) -> tuple[np.ndarray, np.ndarray]:
+    """(S,) standard deviation of one sample and correlation of its neighbours, stated or seen."""
+    gauges = records[0].gauges
+    traces = [_traces(records, g) for g in gauges]
+    quiet = [_quiet_of(own, g) for own, g in zip(traces, gauges, strict=True)]
+    sigma = [_sigma(own, g, q) for own, g, q in zip(traces, gauges, quiet, strict=True)]
+    seen = [_neighbours(*one) for one in zip(traces, gauges, quiet, sigma, strict=True)]
+    return np.array(sigma), _correlations(*np.reshape(seen, (-1, 2)).T)
+
+
+def _traces(records, gauge):
+    """Its traces, what is not believed left out."""
+    runs = [r for record in records for r in record.runs if r.signals and gauge.id in r.signals.readings]
+    traces = [r.signals.readings[gauge.id] for r in runs]
+    return [t[believed(t, gauge.sigma)] for t in traces]
+
+
+def _quiet_of(traces, gauge):
+    """The quiet stretches of a gauge that are long enough."""
+    sigma = gauge.sigma or max(map(flicker, traces), default=0.0)
+    quiet = [q for t in traces if len(q := _quiet(t, sigma)) >= _LEAST]
+    if gauge.baseline_sigma or gauge.drift_sigma:
+        # Where level and slope are open, noise is what is left of both.
+        quiet = [_off_its_line(q) for q in quiet]
+    return quiet if sum(map(len, quiet)) >= _FEWEST else []
+
+
+def _off_its_line(stretch):
+    """A stretch without its straight line."""
+    place = np.arange(len(stretch)) - 0.5 * (len(stretch) - 1)
+    return stretch - stretch.mean() - place * (place @ stretch / (place @ place))
+
+
+def _sigma(traces, gauge, quiet):
+    """What the record states, or more where the quiet stretches are surely louder."""
+    peak = max((float(np.abs(t).max()) for t in traces), default=0.0)
+    floor = max(math.hypot(gauge.sigma or _estimated(traces, quiet), MODEL_FLOOR * peak), 1e-12)
+    if not quiet:
+        return floor
+    count = sum(len(q) for q in quiet)
+    seen = math.sqrt(sum(q @ q for q in quiet) / count)
+    return seen if seen > floor * (1.0 + _SURE / math.sqrt(count)) else floor
+
+
+def _estimated(traces, quiet):
+    """Noise that nobody stated: of the quiet stretches, and of what makes the other samples flicker.
+
+    Where noise is white and signals are smooth, third differences of all samples show the same noise as the
+    few before the pulse, and by far more of them; both are averaged by their numbers. Where they disagree, or
+    neighbours are correlated, only the quiet stretches count.
+    """
+    if not quiet:
+        return max(map(flicker, traces), default=0.0)
+    count = sum(map(len, quiet))
+    level = math.sqrt(sum(float(q @ q) for q in quiet) / count)
+    steps = np.concatenate([np.diff(t, 3) for t in traces])
+    ripple, worth = math.sqrt(float(steps @ steps) / len(steps) / 20.0), len(steps) / _RIPPLE
+    error = math.hypot(1.0 / math.sqrt(2.0 * count), 1.0 / math.sqrt(2.0 * worth))
+    white = abs(_correlation(quiet)) < _SURE / math.sqrt(count)
+    if white and abs(ripple - level) < _AGREE * error * level:
+        level = math.sqrt((count * level**2 + worth * ripple**2) / (count + worth))
+    return max(level, max(map(rounding, traces)))
+
+
+def flicker(trace: np.ndarray) -> float:
+    """Noise of one sample from third differences, which a smooth pulse hardly moves; white noise assumed.
+
+    The median of their absolute values over 0.6745 √20: third differences of white noise have the variance
+    1 + 9 + 9 + 1 = 20.
+    """
+    return float(np.median(np.abs(np.diff(trace, 3)))) / (0.6745 * math.sqrt(20.0)) if len(trace) > 3 else 0.0
+
+
+def rounding(trace: np.ndarray) -> float:
+    """Standard deviation of the rounding of a trace whose values repeat: its smallest step over √12."""
+    values = np.unique(trace)
+    if len(values) < 2 or len(values) > len(trace) / 2:
+        return 0.0
+    return float(np.diff(values).min()) / math.sqrt(12.0)
+
+
+def _correlations(own, weights):
+    """(S,) correlation of neighbours: one for all gauges, or each its own where they surely differ; 0 where
+    none is sure. Of what each gauge shows, and the number of samples that this is worth.
+    """
+    if not weights.any():
+        return np.zeros(len(own))
+    shared = float(np.average(own, weights=weights))
+    if shared <= _SURE / math.sqrt(weights.sum()):
+        # One gauge alone may still be correlated.
+        return np.where(own > _SURE / np.sqrt(np.maximum(weights, 1.0)), np.minimum(own, 0.99), 0.0)
+    error = np.sqrt((1.0 - shared**2) / np.maximum(weights, 1.0))
+    differs = (np.abs(own - shared) > _SURE * error) & (weights > 0.0)
+    return np.clip(np.where(differs, own, shared), 0.0, 0.99)
+
+
+def _neighbours(traces, gauge, quiet, sigma) -> tuple[float, float]:
+    """Correlation of neighbours at a gauge, and the number of samples that it is worth.
+
+    The few samples at rest say little of it, and tests of what a fit leaves would take that for a misfit:
+    third differences of all samples, which smooth signals hardly move, say more where the noise is known and
+    not rounded. Where both disagree, as for noise of another kind, only those at rest count.
+    """
+    own, count = _correlation(quiet), sum(map(len, quiet))
+    stated, coarse = bool(gauge.sigma), max(map(rounding, traces), default=0.0) > _COARSE * sigma
+    if not count or coarse or (stated and sigma > 1.001 * gauge.sigma):
+        return own, count
+    ripple, variance = _ripple(traces, sigma, 0.0 if stated else 2.0 / count)
+    error = max(1.0 - own**2, 0.01) / count
+    if math.isinf(variance) or abs(ripple - own) > _AGREE * math.sqrt(variance + error):
+        return own, count
+    both = (ripple / variance + own / error) / (1.0 / variance + 1.0 / error)
+    return both, max(1.0 - both**2, 0.01) * (1.0 / variance + 1.0 / error)
+
+
+def _ripple(traces, sigma: float, of_sigma: float) -> tuple[float, float]:
+    """Correlation of neighbours that third differences of traces show, and its variance; infinite where
+    signals or spikes show in them, or noise of another kind. `of_sigma` is the relative variance of σ², of
+    white noise.
+    """
+    each = [np.diff(t / sigma, 3) for t in traces]
+    steps, finer = np.concatenate(each), np.concatenate([np.diff(one) for one in each])
+    if not len(finer):
+        return 0.0, math.inf
+    power, error = float(steps @ steps) / len(steps), 2.0 * _RIPPLE / len(steps)
+    median = (float(np.median(np.abs(steps))) / 0.6745) ** 2
+    ripple, again = _shown(power, 3), _shown(float(finer @ finer) / len(finer), 4)
+    scale = abs(power / _RIPPLES[3].deriv()(ripple))
+    # A median errs 1.65 times as much as a mean square, of which it is not independent.
+    spiky = abs(median - power) > _AGREE * 1.31 * math.sqrt(error) * power
+    if spiky or abs(again - ripple) > _AGREE * _SAME * scale * math.sqrt(error):
+        return 0.0, math.inf
+    of_sigma *= (1.0 + ripple**2) / (1.0 - ripple**2)
+    return ripple, scale**2 * (error + of_sigma)
+
+
+def _shown(power: float, order: int) -> float:
+    """Correlation of neighbours that the mean square of differences of an order shows, σ being 1."""
+    return float(np.interp(power, _RIPPLES[order](_NEIGHBOURS)[::-1], _NEIGHBOURS[::-1]))
+
+
+def _correlation(stretches):
+    """Lag-one correlation, its bias −(1 + 3ρ)/n removed (Marriott & Pope, Biometrika 41, 390, 1954)."""
+    if not stretches:
+        return 0.0
+    seen = [(lag_one(q), len(q)) for q in stretches]
+    return float(np.average([r + (1.0 + 3.0 * r) / n for r, n in seen], weights=[n for _, n in seen]))
+
+
+def _quiet(trace, sigma):
+    """The samples before the pulse arrives, or none."""
+    peak = float(np.abs(trace).max())
+    loud = np.abs(trace) > max(QUIET_SIGMAS * sigma, QUIET_PEAK * peak)
+    first = int(loud.argmax()) if loud.any() else len(trace)
+    return trace[: int(QUIET_SHARE * first)]
