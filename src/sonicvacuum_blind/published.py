@@ -71,8 +71,8 @@ def provenance(score: pd.DataFrame) -> str:
     ideal = "" if asked == len(score) else f" The ideal rule was asked about {asked} of them, evenly spread."
     return (
         f"Method: git tag `{study.TAG}`, commit {study.METHOD}. The seed, {study.SEEDS['full']}, was drawn "
-        "after that; nothing of what was made with it was read before all verdicts stood. Studies of seeds "
-        f"{' and '.join(map(str, study.BEFORE))} came before (tables of the last: commit "
+        "after that; all verdicts are of that commit, each made once. Studies of seeds "
+        f"{', '.join(map(str, study.BEFORE))} came before (tables of the last: commit "
         f"{study.KEPT_BEFORE}); what was found in them was mended. "
         f"Records: {part}{kinds}.{ideal} Verdicts took "
         f"{hours:.1f} hours, one thread each. Made with `snakemake --cores 2 publish_study`, in batches that "

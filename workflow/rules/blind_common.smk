@@ -2,11 +2,18 @@
 
 # Study → number of batches, and how many of them are made. For a part of the full study, that is to see it run:
 # `--config full_batches=1017 full_taken=2` makes four of its records in two jobs.
-BATCHES = {"small": 4, "training": 4, "laws": 4, "again": 48, "full": int(config.get("full_batches", 48))}
+BATCHES = {
+    "small": 4,
+    "training": 4,
+    "laws": 4,
+    "nulls": 32,
+    "again": 48,
+    "full": int(config.get("full_batches", 48)),
+}
 TAKEN = BATCHES | {"again": 7, "full": int(config.get("full_taken", BATCHES["full"]))}
 # Study → of how many batches ambiguous records get one more run, which takes two joint verdicts for every such record.
 # Effects take turns among the cases, so that a batch holds every second one: an even number of batches holds all alike.
-FOLLOWED = {"small": 4, "training": 4, "laws": 4, "again": 6, "full": 8}
+FOLLOWED = {"small": 4, "training": 4, "laws": 4, "nulls": 1, "again": 6, "full": 8}
 BLIND = "results/blind/{study}"
 # Asked only for the priors that a record may state, which hidden data never do: they stay when an effect changes.
 CATALOGUE = ("sonicvacuum.effects",)
