@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from functools import cache
 
 import numpy as np
-from scipy.integrate import solve_ivp
+from scipy.integrate import DOP853, solve_ivp
 from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 
@@ -193,17 +193,15 @@ def solve(p: Plain, times):
         u, v = y[:n], y[n : 2 * n]
         return start + u - np.append(u[1:], 0.0), v - np.append(v[1:], 0.0), y[2 * n :]
 
-    def motion(t, y):
+    def motion(t, y, deepest=None):
         delta, rate, memory = kinematics(y)
-        force = contact_forces(p, delta, rate, memory)
+        force = contact_forces(p, delta, rate, memory if deepest is None else np.maximum(deepest, delta))
         v = y[n : 2 * n]
         a = (np.append(0.0, force[:-1]) - force + push) / mass
         a[1:] -= p.drag * v[1:] + p.friction * smooth_sign(v[1:]) / mass[1:]
         return np.concatenate([v, a, growth(delta, rate, memory)])
 
     def growth(delta, rate, memory):
-        if p.residual:
-            return np.where((delta >= memory) & (rate > 0.0), rate, 0.0)
         if p.strength:
             slope = 1.5 * p.constants() * np.sqrt(np.maximum(delta, 0.0))
             # Out of contact the branch force is forgotten within a microsecond instead of at once.
@@ -212,13 +210,43 @@ def solve(p: Plain, times):
 
     y0 = np.zeros(3 * n)
     y0[n] = p.speed
-    y0[2 * n :] = start if p.residual else 0.0
-    scale = np.concatenate([np.full(n, 1e-15), np.full(n, 1e-10), np.full(n, 1e-15 if p.residual else 1e-9)])
-    run = solve_ivp(
-        motion, (0.0, times[-1]), y0, "DOP853", t_eval=times, rtol=1e-9, atol=scale, max_step=1e-6
-    )
+    given = {"rtol": 1e-9, "max_step": 1e-6}
+    given["atol"] = np.concatenate([np.full(n, 1e-15), np.full(n, 1e-10), np.full(n, 1e-9)])
+    if p.residual:
+        states = _turning(motion, lambda y: kinematics(y)[:2], times, y0, start, given)
+        return np.array([contact_forces(p, *kinematics(y)[:2], deepest) for y, deepest in states]) - before
+    run = solve_ivp(motion, (0.0, times[-1]), y0, "DOP853", t_eval=times, **given)
     assert run.success, run.message
     return np.array([contact_forces(p, *kinematics(y)) for y in run.y.T]) - before
+
+
+def _turning(motion, kinematics, times, y, deepest, given):
+    """(state, deepest compressions so far) at every time, for contacts that remember how far they went.
+
+    Where one turns that goes deeper than ever the integration ends, and begins anew from there: what it
+    remembers has a corner, which a step across it would smear by as much as rounding happens to say.
+    """
+    found, t = [(y, deepest)], 0.0
+    while t < times[-1]:
+        solver = DOP853(lambda t, y, deepest=deepest: motion(t, y, deepest), t, y, times[-1], **given)
+        turn = None
+        while solver.status == "running" and turn is None:
+            before = kinematics(solver.y)[1]
+            solver.step()
+            delta, after = kinematics(solver.y)
+            inside = solver.dense_output()
+            # Slower than this nothing turns but what is at rest.
+            turned = np.flatnonzero((before > 1e-9) & (after < 0.0) & (delta > 0.99 * deepest))
+            if len(turned):
+                rates = [lambda t, c=c, at=inside: kinematics(at(t))[1][c] for c in turned]
+                turn = min(brentq(rate, solver.t_old, solver.t, xtol=1e-18) for rate in rates)
+            end = solver.t if turn is None else turn
+            for now in times[len(found) :][times[len(found) :] <= end]:
+                found.append((inside(now), np.maximum(deepest, kinematics(inside(now))[0])))
+        assert solver.status != "failed"
+        t, y = end, inside(end)
+        deepest = np.maximum(deepest, kinematics(y)[0])
+    return found
 
 
 def read(p: Plain, times, forces, sensors):
