@@ -17,9 +17,9 @@ MUTATIONS = (
     ("better is always true", "heldout.py", "return len(gain) < 2 or bool(", "return True or bool("),
     (
         "noise is never correlated",
-        "problem.py",
-        "np.array(sigma), _correlations(quiet)",
-        "np.array(sigma), 0.0 * _correlations(quiet)",
+        "noise.py",
+        "np.array(sigma), _correlations(",
+        "np.array(sigma), 0.0 * _correlations(",
     ),
     ("no whitening", "experiment.py", "if not np.any(correlation):", "if True:"),
     (
