@@ -18,8 +18,8 @@ MUTATIONS = (
     (
         "noise is never correlated",
         "noise.py",
-        "np.array(sigma), _correlations(",
-        "np.array(sigma), 0.0 * _correlations(",
+        "return sigma, _correlations(",
+        "return sigma, 0.0 * _correlations(",
     ),
     ("no whitening", "experiment.py", "if not np.any(correlation):", "if True:"),
     (

@@ -64,17 +64,26 @@ def doubtful(samples: bytes, sigma: float) -> tuple[np.ndarray, np.ndarray]:
 def noise(records: Sequence[Record]) -> tuple[np.ndarray, np.ndarray]:
     """(S,) standard deviation of one sample and correlation of its neighbours, stated or seen."""
     gauges = records[0].gauges
-    traces = [_traces(records, g) for g in gauges]
-    quiet = [_quiet_of(own, g) for own, g in zip(traces, gauges, strict=True)]
-    sigma = [_sigma(own, g, q) for own, g, q in zip(traces, gauges, quiet, strict=True)]
-    seen = [_neighbours(*one) for one in zip(traces, gauges, quiet, sigma, strict=True)]
-    return np.array(sigma), _correlations(*np.reshape(seen, (-1, 2)).T)
+    seen = [_of_gauge(tuple(t.tobytes() for t in _traces(records, g)), g) for g in gauges]
+    sigma, own, weights = np.reshape(seen, (-1, 3)).T
+    return sigma, _correlations(own, weights)
+
+
+@lru_cache(maxsize=256)
+def _of_gauge(samples: tuple[bytes, ...], gauge) -> tuple[float, float, float]:
+    """Standard deviation, correlation of neighbours and what this is worth; remembered, as each hypothesis of
+    a slip asks again of gauges that it leaves as they are.
+    """
+    traces = [np.frombuffer(one) for one in samples]
+    quiet = _quiet_of(traces, gauge)
+    sigma = _sigma(traces, gauge, quiet)
+    return sigma, *_neighbours(traces, gauge, quiet, sigma)
 
 
 def _traces(records, gauge):
     """Its traces, what is not believed left out."""
     runs = [r for record in records for r in record.runs if r.signals and gauge.id in r.signals.readings]
-    traces = [r.signals.readings[gauge.id] for r in runs]
+    traces = [np.asarray(r.signals.readings[gauge.id], dtype=float) for r in runs]
     return [t[believed(t, gauge.sigma)] for t in traces]
 
 
