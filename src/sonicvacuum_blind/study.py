@@ -46,8 +46,8 @@ NULLS = (
     ("scalars", "white", 40),
     ("ball", "white", 20),
 )
-# Of empty records alone as many that one false name in 250 would be seen to be less than the one in a hundred
-# that is allowed.
+# Of empty records alone as many that one false name in 250, of all together, would be seen to be less than
+# the one in a hundred that is allowed.
 ALONE = (
     ("traces", "white", 340),
     ("varied", "white", 80),

@@ -1,8 +1,8 @@
 """Noise of a record's traces: what is stated, held against what they show.
 
 The noise that a record states is compared with what its traces show before the pulse arrives. Where that is
-larger, or correlated from sample to sample, it is taken instead. Spikes and samples that were cut off are
-left out (`masks`).
+larger, or correlated from sample to sample, it is taken instead; how it is correlated, the differences of all
+samples show as well. Spikes and samples that were cut off are left out (`masks`).
 """
 
 import math
