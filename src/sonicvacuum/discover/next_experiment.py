@@ -1,15 +1,20 @@
-"""The next run: which change of the experiment best separates the explanations that are left.
+"""The next run: which change of the experiment most likely leaves one explanation alone.
 
-For each change the best fit and its rival predict a new run; the rival may follow the best fit's prediction
-with its own parameters and with all nuisances as far as the data at hand allow. The χ² that remains is what
-the run is expected to decide (Box & Hill, Technometrics 9, 57, 1967; Buzzi-Ferraris & Forzatti, Chem. Eng.
-Sci. 38, 225, 1983).
+Each explanation that is left predicts a new run; every other may follow that prediction with its own
+parameters and with all nuisances as far as the data at hand allow. The χ² that remains is what the run is
+expected to decide between the two (Box & Hill, Technometrics 9, 57, 1967; Buzzi-Ferraris & Forzatti, Chem.
+Eng. Sci. 38, 225, 1983), with the scatter that noise gives it. Proposed is the run after which, whichever is
+true by its present probability, all others are most likely behind it; but for those that no run puts there,
+such as a general law where one of its limits is true.
 """
 
 from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy
 
+from sonicvacuum.discover.fit.refit import Fit
+from sonicvacuum.discover.judge.degenerate import ALIKE
 from sonicvacuum.discover.model.experiment import Batch, Experiment, RunData
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.rounds import Investigation
@@ -19,32 +24,77 @@ from sonicvacuum.laboratory.ranges import likely_ball
 from sonicvacuum.laboratory.specimen import GRAVITY
 from sonicvacuum.physics.chain import Chain
 
-_RIVALS = 2
+# Explanations beside the best that are held apart: the nearest where nothing is left alike, and of those that
+# are left alike so many.
+_RIVALS, _ALIKE = 2, 6
+# Less likely than this to be put behind by any run: left out of account.
+_HOPELESS = 0.1
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """One that is left: its name, natural log of its weight, and its fit to the old runs."""
+
+    name: str
+    weight: float
+    fit: Fit
 
 
 def propose(found: Investigation, alike: list[list[str]]) -> Next | None:
-    """The run that best separates the named effect from its nearest rival; None without signals or rivals."""
+    """The run that most likely leaves one explanation alone; None without signals or rivals."""
     forward = found.forward
     if not any(r.has_signals for r in forward.experiment.runs):
         return None
-    rivals = _rivals(found, alike)
-    if len(rivals) < 2:
+    left = _left(found, alike)
+    if len(left) < 2:
         return None
-    (name, best), others = rivals[0], rivals[1:]
-    known = [(fit, precision(forward, fit)) for _, fit in others]
-    scored = []
+    known = [precision(forward, one.fit) for one in left]
+    tried, apart = [], []
     for change, imagined in changes(forward.experiment):
-        if "chain.orientation" in change and any(_depends_on_orientation(fit) for _, fit in rivals):
+        if "chain.orientation" in change and any(_depends_on_orientation(one.fit) for one in left):
             continue  # records that hang differently say nothing of such an effect when taken together
         new = Forward(imagined, forward.threads)
-        truth = predicted(forward, new, best)
-        values = [separation(forward, new, truth, *rival) for rival in known]
+        tried.append(change)
+        apart.append(separations(forward, new, [one.fit for one in left], known))
         forward.simulations += new.simulations
-        scored.append((min(values), change, [name, others[int(np.argmin(values))][0]]))
-    if not scored:
+    if not tried:
         return None
-    value, change, separates = max(scored, key=lambda s: s[0])
-    return Next(change=change, separates=separates, delta_chi2=float(value))
+    behind = put_behind(np.array([one.weight for one in left]), np.array(apart))
+    value = resolved(np.array([one.weight for one in left]), behind)
+    able = np.flatnonzero(behind.max(axis=0)[0, 1:] > _HOPELESS) + 1
+    rivals = able if len(able) else np.arange(1, len(left))
+    nearest = np.array(apart)[:, 0, rivals].min(axis=1)
+    # Where any run will do, or none: the one that decides most.
+    best = int(np.lexsort((nearest, np.round(value, 3)))[-1])
+    rival = int(rivals[np.argmin(apart[best][0, rivals])])
+    separates = [left[0].name, left[rival].name]
+    return Next(change=tried[best], separates=separates, delta_chi2=float(apart[best][0, rival]))
+
+
+def put_behind(weights: np.ndarray, apart: np.ndarray) -> np.ndarray:
+    """(c, n, n) probabilities that after each of c runs the explanation of the column is behind that of the
+    row, if that is true, by more than `ALIKE`; 1 for itself.
+
+    The χ² that a run takes from a wrong explanation, `apart` on the average, scatters by 2√apart.
+
+    Args:
+        weights: (n,) natural logs of what the explanations are worth now.
+        apart: (c, n, n) χ² by which each run is expected to tell the explanation of the row, if true, from
+            that of the column.
+    """
+    ahead = 2.0 * (weights[:, None] - weights) + apart - ALIKE
+    behind = scipy.special.ndtr(ahead / (2.0 * np.sqrt(np.maximum(apart, 1e-12))))
+    behind[:, range(len(weights)), range(len(weights))] = 1.0
+    return behind
+
+
+def resolved(weights: np.ndarray, behind: np.ndarray) -> np.ndarray:
+    """(c,) probabilities that each run leaves the true explanation alone, but for those that no run can put
+    behind it; arguments as `put_behind` has them.
+    """
+    odds = np.exp(weights - np.logaddexp.reduce(weights))
+    able = behind.max(axis=0) > _HOPELESS
+    return np.where(able, behind, 1.0).min(axis=2) @ odds
 
 
 def _depends_on_orientation(fit):
@@ -52,20 +102,22 @@ def _depends_on_orientation(fit):
     return any(c.effect.depends_on_orientation for c in fit.hypothesis.components)
 
 
-def _rivals(found: Investigation, alike):
-    """(name, fit) of the best explanation and the nearest rivals."""
+def _left(found: Investigation, alike) -> list[Explanation]:
+    """The best explanation and those that the data cannot tell from it, or else the nearest."""
     if len(found.named) > 1 and "unknown" not in found.named:
         own = set(found.named)
-        ranked = [("+".join(c.effects), c.fit) for c in found.combinations]
-        ranked = sorted(ranked, key=lambda r: set(r[0].split("+")) != own)
-        return ranked[: 1 + _RIVALS]
-    ranked = [(c.effect, c.fit) for c in found.candidates if c.gain > 0.0]
+        ranked = [Explanation("+".join(c.effects), c.log_bayes, c.fit) for c in found.combinations]
+        ranked = sorted(ranked, key=lambda r: set(r.name.split("+")) != own)
+        near = sum(2.0 * (ranked[0].weight - r.weight) < ALIKE for r in ranked[1:]) if ranked else 0
+        return ranked[: 1 + min(max(_RIVALS, near), _ALIKE)]
+    ranked = [Explanation(c.effect, c.log_bayes, c.fit) for c in found.candidates if c.gain > 0.0]
     if len(found.named) == 1 and found.named[0] != "unknown":
-        ranked = sorted(ranked, key=lambda r: r[0] != found.named[0])
+        ranked = sorted(ranked, key=lambda r: r.name != found.named[0])
         members = set(alike[0]) if alike else set()
-        near = [r for r in ranked if r[0] in members] or ranked[: 1 + _RIVALS]
-        return near[: 1 + _RIVALS]
-    return [("none", found.null), *ranked[:_RIVALS]] if not found.named else ranked[: 1 + _RIVALS]
+        near = [r for r in ranked if r.name in members]
+        return near[: 1 + _ALIKE] if len(near) > 1 else ranked[: 1 + _RIVALS]
+    nothing = Explanation("none", 0.0, found.null)
+    return [nothing, *ranked[:_RIVALS]] if not found.named else ranked[: 1 + _RIVALS]
 
 
 @dataclass(frozen=True)
@@ -163,28 +215,25 @@ def _with(experiment, batch, run, chain, faster: float = 1.0):
     return replace(experiment, runs=(data,), batches=(new,), smooth=None, slow=None)
 
 
-def predicted(old: Forward, new: Forward, fit) -> np.ndarray:
-    """(M,) data of a new run over their noise, as a fit of the old runs has them."""
-    return new.sampled(fit.hypothesis, fit.u[None], _shared(old, new, fit)[None])[0][0]
-
-
-def separation(old: Forward, new: Forward, truth: np.ndarray, rival, known: np.ndarray) -> float:
-    """χ² by which a new run is expected to tell what made it from a rival.
+def separations(old: Forward, new: Forward, fits: list[Fit], known: list[np.ndarray]) -> np.ndarray:
+    """(n, n) χ² by which a new run is expected to tell what made it (row) from a rival (column).
 
     The rival's parameters and the shared nuisances (gains, modulus) move within what the old data leave
     them; speed and trigger of the new run are free within their errors.
 
     Args:
         old, new: the old runs and the new one.
-        truth: (M,) data of the new run over their noise, see `predicted`.
-        rival: fit of the rival to the old runs.
-        known: its `precision`.
+        fits: n fits to the old runs.
+        known: their `precision`.
     """
-    columns = new.columns(rival.hypothesis, rival.u[None], _shared(old, new, rival)[None])[0][0]
-    miss, slopes = truth - columns[0], columns[1:]
-    projection = slopes @ miss
-    explained = projection @ np.linalg.lstsq(slopes @ slopes.T + known, projection, rcond=1e-12)[0]
-    return float(max(miss @ miss - explained, 0.0))
+    columns = [new.columns(f.hypothesis, f.u[None], _shared(old, new, f)[None])[0][0] for f in fits]
+    apart = np.zeros((len(fits), len(fits)))
+    for k, (own, prior) in enumerate(zip(columns, known, strict=True)):
+        miss, slopes = np.stack([c[0] for c in columns]) - own[0], own[1:]
+        projection = slopes @ miss.T
+        explained = np.linalg.lstsq(slopes @ slopes.T + prior, projection, rcond=1e-12)[0]
+        apart[:, k] = (miss * miss).sum(axis=1) - (projection * explained).sum(axis=0)
+    return np.maximum(apart, 0.0)
 
 
 def _shared(old, new, fit):
