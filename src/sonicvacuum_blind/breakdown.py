@@ -129,7 +129,7 @@ def label_of_verdict(row: Row) -> str:
 def confusion(rows: Iterable[Row]) -> list[Confusion]:
     """All combinations of what is hidden (22 effects, none, unknown) with what is named (and several)."""
     hidden = [*(e.id for e in catalogue.ENTRIES), NONE, UNKNOWN]
-    chosen = [r for r in rows if r.kind not in ("pair", "set")]
+    chosen = [r for r in rows if r.kind not in ("pair", "set", "beside")]
     counts = Counter((label_of_truth(r), label_of_verdict(r)) for r in chosen)
     total = Counter(label_of_truth(r) for r in chosen)
     return [

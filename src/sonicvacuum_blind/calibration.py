@@ -12,9 +12,9 @@ BINS = 10
 RESAMPLES = 500
 # Base rates of kinds of record unlike those of the study, to which its records are weighed.
 BASE_RATES: Mapping[str, Mapping[str, float]] = {
-    "half empty": {"null": 0.5, "single": 0.4, "pair": 0.05, "set": 0.0, "foreign": 0.05},
-    "nine in ten empty": {"null": 0.9, "single": 0.08, "pair": 0.01, "set": 0.0, "foreign": 0.01},
-    "a third foreign": {"null": 0.2, "single": 0.4, "pair": 0.05, "set": 0.0, "foreign": 0.35},
+    "half empty": {"null": 0.5, "single": 0.4, "pair": 0.05, "foreign": 0.05},
+    "nine in ten empty": {"null": 0.9, "single": 0.08, "pair": 0.01, "foreign": 0.01},
+    "a third foreign": {"null": 0.2, "single": 0.4, "pair": 0.05, "foreign": 0.35},
 }
 
 

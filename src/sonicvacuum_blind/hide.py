@@ -23,7 +23,9 @@ from sonicvacuum_blind.record import as_record
 from sonicvacuum_blind.signature import Frame
 from sonicvacuum_blind.strength import Rival, leftover, nearest, rivals, scale
 
-KINDS = ("null", "single", "pair", "set", "foreign")
+KINDS = ("null", "single", "pair", "set", "foreign", "beside")
+# How many effects each hides.
+NUMBERS = {"null": (0,), "single": (1,), "pair": (2,), "set": (3, 4), "foreign": (1,), "beside": (2,)}
 NOISES = ("white", "ar1", "quantised")
 # Error of the integrator for the data themselves: 1e-7 of a peak.
 TOLERANCE = 1e-9
@@ -45,8 +47,8 @@ class Spec:
         kind: one of `KINDS`.
         design: one of `design.KINDS`.
         noise: one of `NOISES`.
-        effects: ids of the catalogue (kind single: one, pair: two, set: three or four) or of `foreign` (one);
-            none for null.
+        effects: ids of the catalogue (kind single: one, pair: two, set: three or four) or of `foreign` (one),
+            or one of each (beside); none for null.
         d_prime: wanted d′ of each effect; for foreign ones, of what no single effect of the catalogue
             explains.
         seed: of the study, and the case's own place in it.
@@ -70,14 +72,19 @@ class Spec:
         ):
             if value not in allowed:
                 raise ValueError(f"case {self.id}: {name} is {value!r}; use one of {', '.join(allowed)}")
-        known = foreign.BY_ID if self.kind == "foreign" else catalogue.BY_ID
-        wanted = {"null": (0,), "single": (1,), "pair": (2,), "set": (3, 4), "foreign": (1,)}[self.kind]
+        wanted = NUMBERS[self.kind]
         if len(self.effects) not in wanted:
             number = " or ".join(map(str, wanted))
             raise ValueError(f"case {self.id}: kind {self.kind} hides {number} effects, got {self.effects}")
         for name in self.effects:
+            known = foreign.BY_ID if name in self.outside else catalogue.BY_ID
             if name not in known:
                 raise ValueError(f"case {self.id}: effect {name!r} is not one of {', '.join(known)}")
+
+    @property
+    def outside(self) -> tuple[str, ...]:
+        """The hidden effects that are none of the catalogue's."""
+        return {"foreign": self.effects, "beside": self.effects[1:]}.get(self.kind, ())
 
 
 @dataclass(frozen=True)
@@ -211,15 +218,19 @@ def _case(spec, random):
 def _with_effects(spec, made, correlation, random):
     """A design with the wanted effects in it, and the least d′ that one of them reaches."""
     frame = Frame.of(made, correlation)
-    directions = tuple(rivals(frame)) if spec.kind == "foreign" else ()
+    directions = tuple(rivals(frame)) if spec.outside else ()
     # The strength of an effect outside the catalogue is what no single effect of the catalogue explains.
-    measure = partial(leftover, directions) if directions else np.linalg.norm
-    hidden = tuple(_hidden(frame, _entry(spec, e), spec.d_prime, measure, random) for e in spec.effects)
-    return Case(frame, hidden, directions), min((measure(h.seen) for h in hidden), default=np.inf)
+    measures = [partial(leftover, directions) if e in spec.outside else np.linalg.norm for e in spec.effects]
+    hidden = tuple(
+        _hidden(frame, _entry(spec, e), spec.d_prime, measure, random)
+        for e, measure in zip(spec.effects, measures, strict=True)
+    )
+    reached = (measure(h.seen) for h, measure in zip(hidden, measures, strict=True))
+    return Case(frame, hidden, directions), min(reached, default=np.inf)
 
 
 def _entry(spec, name):
-    return (foreign.BY_ID if spec.kind == "foreign" else catalogue.BY_ID)[name]
+    return (foreign.BY_ID if name in spec.outside else catalogue.BY_ID)[name]
 
 
 def _acts(made: Design, entry):

@@ -26,6 +26,7 @@ KINDS = {
     "pair": "with two",
     "set": "with three",
     "foreign": "with one from outside the catalogue",
+    "beside": "with one of each",
 }
 GROUPS = tuple(group for _, group, *_ in PANELS)
 # Said beside the lines on held-out gaps: χ² of N data scatters by √(2N).

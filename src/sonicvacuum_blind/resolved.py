@@ -14,6 +14,10 @@ from sonicvacuum_blind.followup import CHOICES, FILE
 from sonicvacuum_blind.score import Line, found_in, load
 from sonicvacuum_blind.shares import counted, ratio_of_sums
 
+# Effect → general laws of which it is a limit, which therefore no run can rule out: a contact that relaxes
+# at once is Kuwabara's and Kono's, with A = g tau.
+GENERAL = {"kuwabara-kono": {"relaxing-contact"}}
+
 
 @dataclass(frozen=True)
 class Followed:
@@ -125,8 +129,16 @@ def summary(rows: Iterable[Followed]) -> list[Line]:
     of = {choice: {r.id: r for r in rows if r.choice == choice} for choice in CHOICES}
     both = [id for id in of["proposed"] if id in of["random"]]
     goals = {"proposed": ">= 0.9"}
+
+    def but_for_limits(row):
+        return row.exact and set(row.left.split("+")) - {""} <= GENERAL.get(row.effects, set())
+
     lines = [
         counted("resolved by one more run", c, (r.resolved for r in of[c].values()), goals.get(c, ""))
+        for c in CHOICES
+    ]
+    lines += [
+        counted("resolved, but for limits", c, (int(but_for_limits(r)) for r in of[c].values()))
         for c in CHOICES
     ]
     if any(of["random"][id].resolved for id in both):

@@ -32,7 +32,8 @@ class Row:
         brier: squared error of all probabilities, 0 to 2.
         credible, credible_size: the truth is in the 95 % credible set of explanations, which has so many.
         place: hidden bead, contact or gauge named, NaN where there is none or its effect is not named.
-        exact: named exactly what is hidden; nothing for null, unknown for foreign.
+        exact: named exactly what is hidden; nothing for null, unknown for foreign, the effect and unknown
+            for beside.
         class_level: single named, or one that the verdict itself calls confusable with it.
         false_alarm: an effect of the catalogue was named that is not hidden.
         says_unknown: the verdict holds unknown.
@@ -157,14 +158,13 @@ def row(truth: dict, verdict: dict, path="verdict.json", folder: Path | None = N
 
 
 def _row(truth, verdict, folder, ideal):
-    effects, named = truth["effects"], verdict["named"]
+    effects, named, hidden = truth["effects"], verdict["named"], stated.right_names(truth)
     claimed = [n for n in named if n != UNKNOWN]
     probabilities = verdict["probabilities"]
     top = max(probabilities, key=lambda name: (probabilities[name], name))
-    real = [] if truth["kind"] == "foreign" else effects
-    wrong = [n for n in claimed if n not in real]
+    wrong = [n for n in claimed if n not in hidden]
     held_out = (verdict.get("gap") or {}).get("held_out") or {}
-    given, right = stated.key_of(named), stated.key_of([UNKNOWN] if truth["kind"] == "foreign" else effects)
+    given, right = stated.key_of(named), stated.key_of(hidden)
     likely = stated.credible_set(probabilities)
     held, limits = stated.limits(truth, verdict)
     cells = stated.located(ideal["cells"] if ideal else "", folder)
@@ -187,7 +187,7 @@ def _row(truth, verdict, folder, ideal):
         credible=int(right in likely),
         credible_size=len(likely),
         place=stated.place_right(truth, folder),
-        exact=int(set(named) == ({UNKNOWN} if truth["kind"] == "foreign" else set(effects))),
+        exact=int(set(named) == set(hidden)),
         class_level=int(_class_level(effects, named, verdict["confusable"])),
         false_alarm=int(bool(wrong)),
         says_unknown=int(UNKNOWN in named),

@@ -37,6 +37,12 @@ def load(path: Path) -> dict:
     return content
 
 
+def right_names(truth: dict) -> list[str]:
+    """What a verdict should name: hidden effects of the catalogue, `unknown` for one from outside."""
+    effects = list(truth["effects"])
+    return {"foreign": [UNKNOWN], "beside": [*effects[:1], UNKNOWN]}.get(truth["kind"], effects)
+
+
 def _beside(folder: Path | None, name: str) -> Path | None:
     """A file beside the verdict, None where there is none."""
     return folder / name if folder and (folder / name).exists() else None

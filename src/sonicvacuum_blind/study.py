@@ -27,6 +27,8 @@ SEEDS = {
     "again": 84_131_661,
     "training": 20063,
     "laws": 60_524_133,
+    "beside": 0,
+    "beside-training": 71_460_911,
 }
 TRAINING = 300
 # Places in the list of the small study that are left out, so that `make` takes minutes; the others keep the
@@ -34,6 +36,8 @@ TRAINING = 300
 LEFT_OUT = {"small": {5, 6, 7, 9, 19, 20, 29, 30, 31, 34, 35}}
 # Single effects in traces of several speeds: d′ → records of each effect.
 STRENGTHS = {3.0: 4, 5.0: 5, 7.5: 5, 10.0: 5, 20.0: 5, 50.0: 3, 150.0: 2, 500.0: 2}
+# What the best of the catalogue leaves of effects from outside, in d′.
+OUTSIDE = (8.0, 12.0, 20.0, 60.0)
 # Other designs than that and one ball: any set-up, one speed, no traces.
 ELSEWHERE = ("varied", "one-speed", "scalars")
 # Records with nothing hidden: design, noise, how many.
@@ -103,6 +107,7 @@ def cases(study: str) -> list[Spec]:
         raise ValueError(f"study {study!r} is not one of {', '.join(SEEDS)}")
     random = np.random.default_rng(np.random.SeedSequence(SEEDS[study]))
     lists = {"small": _small, "laws": _laws, "nulls": lambda: _empty(ALONE)}
+    lists |= dict.fromkeys(("beside", "beside-training"), lambda: _beside(random))
     rows = list(lists.get(study, lambda: _full(random))())
     if study == "training":
         rows = [rows[(2 * k + 1) * len(rows) // (2 * TRAINING)] for k in range(TRAINING)]
@@ -152,6 +157,14 @@ def _laws():
                 yield "foreign", "traces", "white", (name,), strength
 
 
+def _beside(random):
+    """An effect of the catalogue and one from outside, as strong as each other."""
+    for name in foreign.STUDIED:
+        for strength in OUTSIDE:
+            for effect in random.choice(catalogue.STUDIED, 3, replace=False):
+                yield "beside", "traces", "white", (str(effect), name), strength
+
+
 def _empty(counts):
     """Records in which nothing is hidden."""
     for kind, noise, count in counts:
@@ -175,7 +188,7 @@ def _full(random):
             yield "single", "ball", "white", (name,), strength
     yield from _empty(NULLS)
     for name in foreign.STUDIED:
-        for strength in (8.0, 12.0, 20.0, 60.0):
+        for strength in OUTSIDE:
             for _ in range(3):
                 yield "foreign", "traces", "white", (name,), strength
     for kind, strength, size, count in TOGETHER:

@@ -9,7 +9,7 @@ import numpy as np
 from sonicvacuum_blind import design
 from sonicvacuum_blind.breakdown import KINDS, coverage, ideal_share, pit
 from sonicvacuum_blind.calibration import BASE_RATES, ece, resampled
-from sonicvacuum_blind.score import Line, Row
+from sonicvacuum_blind.score import UNKNOWN, Line, Row
 from sonicvacuum_blind.shares import counted, quantile, ratio_of_sums, share, strength_bin
 from sonicvacuum_blind.stated import CREDIBLE, Parameter
 from sonicvacuum_blind.study import STRENGTHS
@@ -17,12 +17,14 @@ from sonicvacuum_blind.study import STRENGTHS
 # Of d′: from here on places are asked for, and leftovers of outside effects count.
 STRONG, LEFTOVER = 9.0, 7.5
 OF_IDEAL = ">= 0.97 of ideal"
+# Kind of record that only a study of its own holds.
+BESIDE = "beside"
 
 
 def summary(rows: Iterable[Row], parameters: Iterable[Parameter] = ()) -> list[Line]:
     """The table, a line for each goal and some without."""
     rows, parameters = list(rows), list(parameters)
-    of = {kind: [r for r in rows if r.kind == kind] for kind in KINDS}
+    of = {kind: [r for r in rows if r.kind == kind] for kind in (*KINDS, BESIDE)}
     return [
         *_exact("exact name", of["single"], OF_IDEAL),
         *_exact("exact pair", of["pair"], OF_IDEAL),
@@ -31,6 +33,7 @@ def summary(rows: Iterable[Row], parameters: Iterable[Parameter] = ()) -> list[L
         *_classes(of),
         *_nulls(of["null"]),
         *_outside(of["foreign"]),
+        *_beside(of[BESIDE]),
         *_wrong(of),
         *_probabilities(rows),
         *_intervals(rows, parameters),
@@ -97,6 +100,19 @@ def _outside(rows):
             yield _share("wrong name, unqualified", f"outside, {name}", own, "wrong")
 
 
+def _beside(rows):
+    """An effect of the catalogue and one from outside, hidden together: what is said of either."""
+    if not rows:
+        return
+    yield _share("exact name and unknown", BESIDE, rows, "exact")
+    yield _share("says unknown", BESIDE, rows, "says_unknown")
+    named = [r for r in rows if r.says_unknown and r.named != UNKNOWN]
+    told = [int(r.effects.split("+")[0] in r.named.split("+")) for r in named]
+    yield counted("effect named beside unknown is there", BESIDE, told)
+    yield counted("no other effect is named", BESIDE, [1 - r.false_alarm for r in named])
+    yield _share("wrong name, unqualified", BESIDE, rows, "wrong")
+
+
 def _wrong(of):
     for kind in ("single", "pair", "set", "foreign"):
         if kind != "foreign":
@@ -110,7 +126,7 @@ def _probabilities(rows):
     below = [r for r in rows if r.stated < 0.9]
     yield Line("calibration error (ECE)", "stated below 0.9", *ece(below), goal="<= 0.05")
     for name, rates in BASE_RATES.items():
-        chosen = [r for r in rows if rates[r.kind]]
+        chosen = [r for r in rows if r.kind in rates]
         yield Line("calibration error (ECE)", f"base rates: {name}", *ece(chosen, rates))
     scores = np.array([r.brier for r in rows])
     yield Line("Brier score", "all", len(rows), *resampled(lambda k: float(scores[k].mean()), len(rows)))

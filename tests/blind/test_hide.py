@@ -20,6 +20,7 @@ CASES = [
     Spec("e", "foreign", "one-speed", "white", ("dimer",), 10.0, 5, 4),
     Spec("f", "pair", "one-speed", "white", ("sensor-gain", "contact-exponent"), 10.0, 5, 5),
     Spec("g", "single", "scalars", "white", ("sensor-gain",), 10.0, 5, 6),
+    Spec("h", "beside", "one-speed", "white", ("sensor-gain", "dimer"), 10.0, 5, 7),
 ]
 
 
@@ -124,6 +125,16 @@ def test_effects_that_cannot_act_are_refused():
         hide(Spec("x", "single", "ball", "white", ("sensor-gain",), 10.0, 1, 0))
 
 
+def test_an_effect_and_one_from_outside_are_hidden_together(made):
+    """As strong as asked: the effect by itself, the other by what no effect of the catalogue explains."""
+    found = truth(made, "h")
+    assert [h["id"] for h in found["hidden"]] == ["sensor-gain", "dimer"]
+    assert found["hidden"][0]["d_prime"] == pytest.approx(10.0, rel=0.01)  # scaled to half a per cent
+    assert found["hidden"][1]["d_prime"] >= 0.99 * 10.0  # as for the first, and what effects explain besides
+    with pytest.raises(ValueError, match="dimer"):
+        Spec("x", "beside", "one-speed", "white", ("dimer", "sensor-gain"), 10.0, 5, 7)
+
+
 def test_studies_cover_what_is_asked(tmp_path):
     small, full = study.cases("small"), study.cases("full")
     assert len(small) >= 24
@@ -141,6 +152,11 @@ def test_studies_cover_what_is_asked(tmp_path):
     assert {s.effects[0] for s in full if s.kind == "foreign"} == set(foreign.STUDIED)
     assert {s.effects[0] for s in laws} == set(foreign.LAWS)
     assert set(foreign.STUDIED) | set(foreign.LAWS) == set(foreign.BY_ID)
+    for name in ("beside", "beside-training"):
+        together = study.cases(name)
+        assert {s.effects[1] for s in together} == set(foreign.STUDIED)
+        assert {s.effects[0] for s in together} <= set(catalogue.STUDIED)
+        assert {s.d_prime for s in together} == set(study.OUTSIDE)
     study.write_cases(full, tmp_path / "cases.csv")
     assert study.read_cases(tmp_path / "cases.csv") == full
     parts = [study.batch(small, k, 5) for k in range(5)]

@@ -36,6 +36,17 @@ def test_resolved_is_the_right_name_and_no_other():
         assert (row(TRUTH, FIRST, CHANGE, joint).resolved, row(TRUTH, FIRST, CHANGE, joint).exact) == (0, 0)
 
 
+def test_a_law_and_one_that_it_is_a_limit_of_are_told_apart_by_no_run():
+    hidden = TRUTH | {"effects": ["kuwabara-kono"]}
+    beside = {"named": ["kuwabara-kono"], "confusable": [["kuwabara-kono", "relaxing-contact"]]}
+    more = {"named": ["kuwabara-kono"], "confusable": [["kuwabara-kono", "relaxing-contact", "tsuji"]]}
+    rows = [row(hidden | {"id": id}, FIRST, CHANGE, joint) for id, joint in (("a", beside), ("b", more))]
+    rows.append(row(TRUTH | {"id": "c"}, FIRST, CHANGE, DECIDED))
+    found = {(line.measure, line.group): line.value for line in summary(rows)}
+    assert found["resolved by one more run", "proposed"] == pytest.approx(1 / 3)
+    assert found["resolved, but for limits", "proposed"] == pytest.approx(2 / 3)
+
+
 def test_nothing_is_predicted_of_a_random_run():
     found = row(TRUTH, FIRST, RANDOM, DECIDED)
     assert (found.choice, found.change) == ("random", "chain.orientation=vertical")

@@ -125,6 +125,20 @@ def test_outside_the_catalogue():
     assert (fooled.exact, fooled.confident_wrong) == (0, 1)
 
 
+def test_an_effect_beside_one_from_outside():
+    together = truth(kind="beside", effects=("tsuji", "dimer"))
+    right = row(together, verdict(["tsuji", "unknown"], {"tsuji + unknown": 0.7, "unknown": 0.3}))
+    assert (right.exact, right.stated, right.false_alarm, right.says_unknown) == (1, 0.7, 0, 1)
+    alone = row(together, verdict())
+    assert (alone.exact, alone.false_alarm, alone.wrong) == (0, 0, 0)
+    other = row(together, verdict(["gravity", "unknown"]))
+    assert (other.exact, other.false_alarm, other.wrong) == (0, 1, 0)
+    found = {line.measure: line for line in summary([right, alone, other]) if line.group == "beside"}
+    assert found["exact name and unknown"].value == pytest.approx(1 / 3)
+    assert found["says unknown"].value == pytest.approx(2 / 3)
+    assert found["effect named beside unknown is there"].value == pytest.approx(1 / 2)
+
+
 def test_pairs_need_both():
     pair = truth(kind="pair", effects=("tsuji", "gravity"))
     assert row(pair, verdict(["gravity", "tsuji"])).exact == 1
