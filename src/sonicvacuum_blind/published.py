@@ -65,7 +65,8 @@ def provenance(score: pd.DataFrame) -> str:
     """How a study was made, from the rows of its records."""
     from sonicvacuum_blind import study  # and with it the integrator
 
-    kinds = ", ".join(f"{sum(score['kind'] == kind)} {words}" for kind, words in KINDS.items())
+    counts = {kind: int(sum(score["kind"] == kind)) for kind in KINDS}
+    kinds = ", ".join(f"{count} {KINDS[kind]}" for kind, count in counts.items() if count)
     hours, all_cases = score["seconds"].astype(float).sum() / 3600.0, len(study.cases("full"))
     part = "" if len(score) == all_cases else f"{len(score)} of {all_cases}, the first batches: "
     asked = int((score["errors_before"] != "nan").sum())

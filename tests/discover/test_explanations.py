@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from sonicvacuum.discover import policy
 from sonicvacuum.discover.fit.calibration import Calibration
 from sonicvacuum.discover.judge import decision, degenerate, explanations
 
@@ -86,7 +87,7 @@ def test_what_is_named_is_likelier_than_all_that_was_refused_together():
     many = {f"effect {k}": 0.05 for k in range(19)}
     found, likelier = explanations.consistent({**many, "unknown": 0.049, "none": 0.001}, ["unknown"])
     assert likelier in many
-    assert found["unknown"] > 0.5
+    assert found["unknown"] == policy.REFUSED_UNKNOWN
     assert math.isclose(sum(found.values()), 1.0)
 
 
@@ -95,10 +96,24 @@ def test_what_failed_a_test_is_not_left_the_likeliest():
     assert likelier == "tsuji"
     assert max(found, key=found.get) == "none"
     assert math.isclose(sum(found.values()), 1.0)
+    spread = {"none": 0.1} | {f"effect {k}": 0.15 for k in range(6)}
+    assert explanations.consistent(spread, [])[0]["none"] == policy.REFUSED_NONE
     assert explanations.consistent({"none": 0.1, "tsuji": 0.9}, ["tsuji"]) == (
         {"none": 0.1, "tsuji": 0.9},
         "",
     )
+
+
+def test_names_beside_something_unknown_are_no_surer_than_such_names_came_true():
+    odds = {"tsuji + unknown": 0.99, "unknown": 0.01}
+    found, said = explanations.no_surer(odds, ["tsuji", "unknown"])
+    assert "tsuji" in said[0]
+    assert found == pytest.approx({"tsuji + unknown": policy.ONE_BESIDE, "unknown": 1.0 - policy.ONE_BESIDE})
+    less = {"gravity + tsuji + unknown": 0.4, "unknown": 0.6}
+    assert explanations.no_surer(less, ["tsuji", "gravity", "unknown"]) == (less, [])
+    alone = {"tsuji": 0.99, "unknown": 0.01}
+    assert explanations.no_surer(alone, ["tsuji"]) == (alone, [])
+    assert explanations.no_surer({"unknown": 1.0}, ["unknown"]) == ({"unknown": 1.0}, [])
 
 
 def test_beside_something_unknown_what_is_confusable_goes_by_probabilities():

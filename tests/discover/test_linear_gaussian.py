@@ -305,9 +305,13 @@ def test_separation_is_the_expected_misfit_in_closed_form(setup, seed):
     layout_columns = 1 + 3 + gauges  # parameter; modulus, speed, trigger, gains
     old = drawn(runs=1, nuisances=2 + gauges + 1, seed=seed)
     rival = old.fit(of_drag(setup))
+    true = drawn(runs=1, free=0, nuisances=2 + gauges + 1, seed=seed).fit(Hypothesis())
     slopes, miss = rng.normal(size=(layout_columns, samples)), 3.0 * rng.normal(size=samples)
-    new = Imagined({"viscous-drag": np.vstack([np.zeros(samples), slopes])}, gauges)
-    found = next_experiment.separation(new, new, miss, rival, next_experiment.precision(new, rival))
+    other = np.vstack([miss, rng.normal(size=(layout_columns - 1, samples))])
+    new = Imagined({"viscous-drag": np.vstack([np.zeros(samples), slopes]), "": other}, gauges)
+    fits = [true, rival]
+    apart = next_experiment.separations(new, new, fits, [next_experiment.precision(new, f) for f in fits])
+    found = apart[0, 1]
     known = np.linalg.inv(rival.normal.total()[1][0])
     # Columns: parameter, modulus, gains as the old data leave them; speed and trigger of the new run afresh.
     # Unknowns of the old fit: parameter, speed, trigger, gains, modulus.
@@ -317,6 +321,8 @@ def test_separation_is_the_expected_misfit_in_closed_form(setup, seed):
     exact = miss @ np.linalg.solve(np.eye(samples) + slopes.T @ spread @ slopes, miss)
     assert found == pytest.approx(exact, rel=1e-9)  # Woodbury's identity
     assert 0.0 < found < miss @ miss
+    assert apart[0, 0] == apart[1, 1] == 0.0
+    assert 0.0 < apart[1, 0] < miss @ miss
 
 
 # --- noise

@@ -33,8 +33,8 @@ MUTATIONS = (
     (
         "separation is constant",
         "next_experiment.py",
-        "return float(max(miss @ miss",
-        "return 1.0 or float(max(miss @ miss",
+        "return np.maximum(apart, 0.0)",
+        "return 0.0 * apart + 1.0",
     ),
     ("temper is 1 in the formula", "calibration.py", "self.temper * value", "1.0 * value"),
     ("temper is 1 in the package", "calibration.json", None, None),

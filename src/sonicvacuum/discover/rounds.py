@@ -10,7 +10,7 @@ from sonicvacuum.discover import policy
 from sonicvacuum.discover.fit import bounds, discrepancy, enough, evidence, places, smooth, wide
 from sonicvacuum.discover.fit.evidence import Candidate, Combination
 from sonicvacuum.discover.fit.refit import Fit, fit, polish
-from sonicvacuum.discover.judge import explanations
+from sonicvacuum.discover.judge import explanations, gross
 from sonicvacuum.discover.judge.decided import Decision, View
 from sonicvacuum.discover.judge.decision import Case
 from sonicvacuum.discover.judge.rivals import Rival, of_odds
@@ -117,6 +117,9 @@ def investigate(experiment: Experiment, threads: int = 1, null: Fit | None = Non
     found = decision.singles or found
     alike = explanations.aliases(forward, null, found) if passes else []
     odds, more = _odds(found, decision, alike, prior, tuple(experiment.present))
+    if not gross.gross(forward, decision.final, known):
+        odds, held = explanations.no_surer(odds, decision.named)
+        more += held
     reasons = [*decision.reasons, *(few if passes else ()), *more, *experiment.notes]
     rivals = decision.rivals
     if rivals is None:

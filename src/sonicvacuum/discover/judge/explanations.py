@@ -114,7 +114,7 @@ def probabilities(
 def consistent(found: Mapping[str, float], named: Iterable[str]) -> tuple[dict[str, float], str]:
     """Probabilities in which what is named is the likeliest, and what was likelier ("" where nothing was).
 
-    What failed a test is no longer worth its evidence: all else together is held to a share of what is named.
+    What failed a test is no longer worth its evidence: all else together is held to what it is worth then.
     """
     own = key(named)
     best = max(found, key=found.get)
@@ -122,7 +122,9 @@ def consistent(found: Mapping[str, float], named: Iterable[str]) -> tuple[dict[s
     if best == own or mine >= found[best]:
         return dict(found), ""
     rest = sum(value for name, value in found.items() if name != own)
-    share = policy.REFUSED / (1.0 + policy.REFUSED)
+    usual = {NONE: policy.REFUSED_NONE, UNKNOWN: policy.REFUSED_UNKNOWN}.get(own, policy.REFUSED)
+    # As much as the likeliest of the others, if that is more.
+    share = 1.0 - max(usual, 1.001 * found[best] / (found[best] + rest))
     held = {name: share * value / rest for name, value in found.items() if name != own}
     return {own: 1.0 - share} | held, best
 
@@ -132,6 +134,23 @@ def doubted(found: Mapping[str, float], named: Iterable[str], most: float) -> di
     own = key(named)
     excess = max(0.0, found.get(own, 0.0) - most)
     return {**found, own: found.get(own, 0.0) - excess, UNKNOWN: found.get(UNKNOWN, 0.0) + excess}
+
+
+def no_surer(found: Mapping[str, float], named: Iterable[str]) -> tuple[dict[str, float], list[str]]:
+    """Probabilities in which effects named beside something unknown are no surer than such names came true,
+    and what is said of it.
+
+    What is unknown is no noise of any kernel: evidence cannot say that it is not, by itself, what seems to be
+    an effect and something besides.
+    """
+    known = [name for name in named if name != UNKNOWN]
+    if not known or UNKNOWN not in named:
+        return dict(found), []
+    most = policy.ONE_BESIDE if len(known) == 1 else policy.SET_BESIDE
+    if found.get(key(named), 0.0) <= most:
+        return dict(found), []
+    reason = f"{' + '.join(known)} may be part of what is unknown: held no surer than such names came true"
+    return doubted(found, named, most), [reason]
 
 
 def clear(weights: Mapping[str, float], named: Iterable[str]) -> bool:
