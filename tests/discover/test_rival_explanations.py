@@ -7,10 +7,15 @@ import pytest
 from scipy.special import ndtri
 
 from sonicvacuum.discover import draws, posterior
-from sonicvacuum.discover.fit.evidence import Combination
+from sonicvacuum.discover.fit.evidence import Candidate, Combination
+from sonicvacuum.discover.fit.normal import linearise
+from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.judge import rivals
 from sonicvacuum.discover.judge.rivals import Rival
+from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, variants
+from sonicvacuum.discover.search import singles
 from sonicvacuum.discover.verdict import parameters
+from sonicvacuum.effects import effect
 
 
 @pytest.fixture(scope="module")
@@ -45,6 +50,23 @@ def test_rivals_without_an_effect_say_nothing_of_its_parameter(verdict, fit):
     moved = replace(beside(fit, 1.0, 0.0), hypothesis=replace(fit.hypothesis, components=(elsewhere,)))
     ((share, off),) = rivals.shifts(fit, [Rival(0.5, fit), Rival(0.5, moved)])
     assert (share.tolist(), off.tolist()) == ([1.0], [0.0])
+
+
+def test_one_strength_may_do_what_another_does(verdict):
+    """σ² + p u² where the other does it all with probability p: the striker has its mass then."""
+    forward, null = verdict.found.forward, verdict.found.null
+    setup = singles.setup_of(forward)
+    speed, mass, _ = variants(effect("striker-error"), setup)
+    fits = [
+        Fit(h, linearise(forward, h, np.array([[u]]), null.nu[None]))
+        for h, u in ((Hypothesis((Component(effect("striker-error"), free),)), 0.1) for free in (mass, speed))
+    ]
+    one = Candidate("striker-error", fits[0], 9.0, 3.0, instead=((0.0, fits[1]),))
+    assert [share for share, _ in one.ways] == [0.5, 0.5]
+    found = rivals.of_odds({"striker-error": 0.8, "none": 0.2}, null, [one], [])
+    assert sorted(r.probability for r in found) == pytest.approx([0.2, 0.4, 0.4])
+    ((share, off),) = rivals.shifts(fits[0], found)
+    assert (share.tolist(), off.tolist()) == ([0.5, 0.5], [0.0, -0.1])
 
 
 def test_draws_are_of_the_mixture(fit):

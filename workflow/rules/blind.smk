@@ -6,7 +6,7 @@ folders that discover is given. Simpler rules see the same cases; two of them ne
 
 
 wildcard_constraints:
-    study="small|training|laws|full|nulls|again",
+    study="|".join(BATCHES),
     batch="[0-9]+",
     picture="|".join(PICTURES),
     choice="|".join(CHOICES),

@@ -141,7 +141,7 @@ def _odds(found, decision: Decision, alike, prior, present) -> tuple[dict[str, f
         reasons.append(
             f"{', '.join(stuck)} ended at a bound, even beyond the catalogue's range, and might fit better"
         )
-    reasons += _said(prior, present) + _losses(found, odds, present)
+    reasons += _said(prior, present) + _losses(found, odds, present) + _instead(found, decision.named)
     sure = odds.get(explanations.key(decision.named), 0.0) > 0.5
     other = _with_less(found, decision, prior) if sure or present else ""
     if other:
@@ -165,6 +165,23 @@ def _said(prior, present) -> list[str]:
     told = [f"{', '.join(present)} present, part of every explanation"] * bool(present)
     told += changed + [f"{', '.join(excluded)} excluded"] * bool(excluded)
     return [f"before the data, as the record states: {'; '.join(told)}"] if told else []
+
+
+def _instead(found: list[Candidate], named) -> list[str]:
+    """Other strengths of what is named that explain the data as well, in words."""
+    own = [c for c in found if c.effect in named]
+    return [
+        f"{c.effect}: {_values(fit_)} instead of {_values(c.fit)}, with probability {share:.2f}"
+        for c in own
+        for share, fit_ in c.ways[1:]
+        if share > policy.TOLD and len(named) == 1
+    ]
+
+
+def _values(fit_: Fit) -> str:
+    """The parameters of an effect that is fitted alone."""
+    (values,) = fit_.hypothesis.values(fit_.u).values()
+    return " and ".join(f"{name} {value:.3g}" for name, value in values.items())
 
 
 def _losses(found, odds, present) -> list[str]:
@@ -266,4 +283,6 @@ def _along(forward, null, found):
 def _moved(c, null, better, where, flags):
     """A candidate whose fit has been improved."""
     more = null.objective - better.objective - c.gain
-    return Candidate(c.effect, better, c.gain + more, c.log_bayes + 0.5 * more, where, flags)
+    instead = tuple((log - 0.5 * more, way) for log, way in c.instead)
+    gain, log_bayes = c.gain + more, c.log_bayes + 0.5 * more
+    return Candidate(c.effect, better, gain, log_bayes, where, flags, instead)

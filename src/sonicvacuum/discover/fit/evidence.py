@@ -38,6 +38,7 @@ class Candidate:
         log_bayes: natural log of the Bayes factor against it.
         places: (place, weight) where it may sit.
         flags: what to doubt: "bound", "beyond" (the range of the catalogue), "unsettled".
+        instead: (log of its weight over that of `fit`, fit) with others of the effect's strengths free.
     """
 
     effect: str
@@ -46,6 +47,14 @@ class Candidate:
     log_bayes: float
     places: tuple[tuple[int, float], ...] = ()
     flags: tuple[str, ...] = ()
+    instead: tuple[tuple[float, Fit], ...] = ()
+
+    @property
+    def ways(self) -> list[tuple[float, Fit]]:
+        """(share, fit) of its fits, the best first: one of an effect's strengths may do what another does."""
+        logs = np.array([0.0, *(log for log, _ in self.instead)])
+        shares = np.exp(logs - np.logaddexp.reduce(logs))
+        return list(zip(shares.tolist(), [self.fit, *(one for _, one in self.instead)], strict=True))
 
 
 @dataclass(frozen=True)

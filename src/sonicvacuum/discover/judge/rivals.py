@@ -3,7 +3,8 @@
 Whatever is not the effect itself, a wall's modulus, a gain, is there under every explanation; a parameter of
 an effect is there under all that have the effect. What the data say of either is the mixture of what they say
 under each, by the probabilities (Hoeting, Madigan, Raftery & Volinsky, Statist. Sci. 14, 382, 1999). Each is
-taken as wide as under the explanation that is told, and lies where its own fit does.
+taken as wide as under the explanation that is told, and lies where its own fit does; at nothing where the
+effect has several strengths, and another does it all.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -30,7 +31,7 @@ class Rival:
 def of_weights(weights: Mapping[str, float], found: Iterable[Combination]) -> list[Rival]:
     """Rivals of explanations with log weights."""
     total = np.logaddexp.reduce(list(weights.values()))
-    fits = {explanations.key(c.effects): c.fit for c in found}
+    fits = {explanations.key(c.effects): [(1.0, c.fit)] for c in found}
     return _probable({name: float(np.exp(w - total)) for name, w in weights.items()}, fits)
 
 
@@ -38,12 +39,13 @@ def of_odds(
     odds: Mapping[str, float], null: Fit, singles: Iterable[Candidate], sets: Iterable[Combination]
 ) -> list[Rival]:
     """Rivals of explanations with probabilities; those with something unknown are left aside."""
-    fits = {explanations.NONE: null, **{c.effect: c.fit for c in singles}}
-    return _probable(odds, fits | {explanations.key(c.effects): c.fit for c in sets})
+    fits = {explanations.NONE: [(1.0, null)], **{c.effect: c.ways for c in singles}}
+    return _probable(odds, fits | {explanations.key(c.effects): [(1.0, c.fit)] for c in sets})
 
 
 def _probable(odds, fits):
-    return [Rival(p, fits[name]) for name, p in odds.items() if p > LEAST and name in fits]
+    every = [(p * share, one) for name, p in odds.items() if name in fits for share, one in fits[name]]
+    return [Rival(p, one) for p, one in every if p > LEAST]
 
 
 def nuisances(fit: Fit, found: Sequence[Rival]) -> np.ndarray:
@@ -57,17 +59,28 @@ def shifts(fit: Fit, found: Sequence[Rival]) -> list[tuple[np.ndarray, np.ndarra
     """For each coordinate of a fit (n,) probabilities of the rivals that have it, which sum to 1, and (n,) by
     how much theirs lies off it; ([1], [0]) where none has.
     """
-    others = [(one.probability, _coordinates(one.fit)) for one in found]
     result = []
-    for name, value in _coordinates(fit).items():
-        there = [(p, own[name] - value) for p, own in others if name in own]
+    for name, (coordinate, value) in _coordinates(fit).items():
+        others = [(one.probability, _coordinate(one.fit, name, coordinate)) for one in found]
+        there = [(p, other - value) for p, other in others if other is not None]
         share, off = np.array(there or [(1.0, 0.0)]).T
         result.append((share / share.sum(), off))
     return result
 
 
 def _coordinates(fit):
-    """(effect, its place, parameter) → coordinate."""
+    """(effect, its place, parameter) → coordinate and its value."""
     components = fit.hypothesis.components
     names = [(c.effect.id, c.place, free.parameter.name) for c in components for free in c.free]
-    return dict(zip(names, fit.u, strict=True))
+    return dict(zip(names, zip(fit.hypothesis.coordinates, fit.u, strict=True), strict=True))
+
+
+def _coordinate(fit, name, coordinate):
+    """A coordinate of another fit, 0 where its parameter is off there; None where the effect is not there, or
+    off is not a number.
+    """
+    free = _coordinates(fit)
+    if name in free:
+        return free[name][1]
+    there = any((c.effect.id, c.place) == name[:2] for c in fit.hypothesis.components)
+    return 0.0 if there and not coordinate.endless else None

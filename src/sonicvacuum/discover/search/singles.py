@@ -36,6 +36,8 @@ FAR = 0.1
 # Far from the data, where all effects leave more than this share of the misfit, starts may have been missed:
 # pulses that miss each other lead nowhere. Trials then at each place, and starts of them that are followed.
 MISSED, TRIALS = 0.05, 12
+# Other strengths of an effect that weigh less than this below the best (natural log) do not explain the data.
+INSTEAD = 7.0
 # Steps of the search; of the first one where all effects are followed and the best are polished later.
 ITERATIONS, FIRST = 14, 5
 COARSE = 6
@@ -145,8 +147,7 @@ class Effort:
 
 def candidate(forward, null: Fit, scores: Screen, effect: Effect, effort: Effort):
     """The best fit of one effect over its places, shapes and sets of strengths; None where nothing fits."""
-    best = None
-    logs = []
+    found: list[tuple[float, Fit, float]] = []
     options = variants(effect, setup_of(forward))
     for free in options:
         u, places, nu = starts(forward, null, scores, effect, free, effort.grid)
@@ -164,15 +165,14 @@ def candidate(forward, null: Fit, scores: Screen, effect: Effect, effort: Effort
         # Far away the screen is not asked about shapes, unless one is at a bound, where widths mean nothing.
         trusted = not effort.grid or effect.places or one.at_bound().any()
         alike = by_direction(scores, effect, gain) if trusted else None
-        logs.append(log_bayes(one, gain, alike))
-        if best is None or logs[-1] > best[1]:
-            best = (one, logs[-1], gain)
-    if best is None:
+        found.append((log_bayes(one, gain, alike), one, gain))
+    if not found:
         return None
-    one, _, gain = best
-    total = float(np.logaddexp.reduce(logs) - np.log(len(options)))
+    (log, one, gain), *others = sorted(found, key=lambda f: -f[0])
+    total = float(np.logaddexp.reduce([f[0] for f in found]) - np.log(len(options)))
     flags = ("bound",) * bool(one.at_bound().any()) + ("unsettled",) * (not one.settled)
-    return Candidate(effect.id, one, gain, total, place_weights(scores, effect, one), flags)
+    instead = tuple((other - log, way) for other, way, _ in others if other > log - INSTEAD)
+    return Candidate(effect.id, one, gain, total, place_weights(scores, effect, one), flags, instead)
 
 
 def by_direction(scores: Screen, effect: Effect, gain: float):
