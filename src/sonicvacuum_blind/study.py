@@ -19,7 +19,9 @@ from sonicvacuum_blind.hide import Spec
 TAG, METHOD = "study-5", "9592772"
 BEFORE, KEPT_BEFORE = (20_062, 88_822_325, 21_976_860), "9592772"
 # The list once more, "again", of which commit 92f947a searched a part: drawn after that commit.
-# Empty records alone, "nulls": drawn after commit a00f2f7, which searched them (docs/study.md).
+# Empty records alone, "nulls": drawn after commit a00f2f7, which searched them (docs/study.md); effects
+# beside something from outside the catalogue, "beside": after d211601, which knew such records from
+# "beside-training" and searched them.
 SEEDS = {
     "small": 20061,
     "full": 16_372_354,
@@ -27,7 +29,7 @@ SEEDS = {
     "again": 84_131_661,
     "training": 20063,
     "laws": 60_524_133,
-    "beside": 0,
+    "beside": 65_059_155,
     "beside-training": 71_460_911,
 }
 TRAINING = 300

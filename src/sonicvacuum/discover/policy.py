@@ -100,9 +100,9 @@ REFUSED_NONE, REFUSED_UNKNOWN, REFUSED = 0.36, 0.86, 2.0 / 3.0
 
 # One effect named beside something unknown, and a set, is at most so probable. Of 112 single ones 82 were
 # hidden, in records of three kinds: none of 21 where only something from outside the catalogue was hidden,
-# 24 of 31 where an effect was hidden with it (`blind hide --study beside-training`), 58 of 60 where one was
-# hidden beside a smooth systematic error (docs/systematics.md). Of 18 sets one was; such a set, kept as the
-# nearest that the catalogue has, is only just the likeliest.
+# 24 of 31 where an effect was hidden with it (69 records of `blind hide --study beside-training`), 58 of 60
+# where one was hidden beside a smooth systematic error (docs/systematics.md). Of 18 sets one was; such a set,
+# kept as the nearest that the catalogue has, is only just the likeliest.
 ONE_BESIDE, SET_BESIDE = 0.73, 0.51
 
 # A free-form law is kept where it is so much likelier than none, or than names beside something unknown
