@@ -12,6 +12,7 @@ import pytest
 from made_verdicts import KINDS, WITHOUT_TRACES, verdict, write
 
 from sonicvacuum.discover import draws
+from sonicvacuum.discover.judge.strained import ONLY_WITH
 from sonicvacuum.discover.verdict import write_json
 from sonicvacuum.effects import CATALOGUE, Catalogue, Effect, Source
 from sonicvacuum.figures import disagreement, discovery, posterior, raster
@@ -55,6 +56,18 @@ def folders(tmp_path_factory):
 
 def told(folder):
     return " ".join(" ".join(Page((folder / "index.html").read_text()).words).split())
+
+
+def test_what_the_nominal_model_strains_stands_where_it_disagrees_nowhere():
+    said = f"{ONLY_WITH} the gain of gauge wall 1.93 times the stated one, 35 of its stated errors away"
+    v = verdict(named=["kuwabara-kono"], where=[])
+    cells = [{"sensor": "g1", "feature": "amplitude", "q_before": "0.9"}]
+    plain = words.where(v, cells)
+    v.reasons.append(said)
+    assert "spread over them" in plain
+    strained = words.where(v, cells)
+    assert strained.endswith("The" + said[3:] + ": that is what speaks against it.")
+    assert "spread over them" not in strained
 
 
 SENTENCES = {

@@ -15,7 +15,7 @@ from sonicvacuum.discover.draws import Draws
 from sonicvacuum.discover.faults import competition
 from sonicvacuum.discover.fit import goodness, heldout
 from sonicvacuum.discover.fit.refit import Fit
-from sonicvacuum.discover.judge import behind, degenerate, explanations, locate
+from sonicvacuum.discover.judge import behind, degenerate, explanations, locate, strained
 from sonicvacuum.discover.judge.law import surface
 from sonicvacuum.discover.model import window
 from sonicvacuum.discover.model.forward import Forward
@@ -137,6 +137,7 @@ def discover(
         reasons=[
             *found.reasons,
             *_exact(found),
+            *(strained.told(forward, found.null, found.final) if named else []),
             *(law.reasons(told) if free else ()),
             *verdict.corrections(outcome.findings),
         ],

@@ -9,6 +9,7 @@ from collections import Counter
 from sonicvacuum.discover.draws import AVERAGED, LINEAR, SAMPLED, pareto_k
 from sonicvacuum.discover.judge.explanations import key
 from sonicvacuum.discover.judge.locate import DISCOVERY_RATE
+from sonicvacuum.discover.judge.strained import ONLY_WITH
 from sonicvacuum.discover.verdict import Gap, Next, Verdict
 from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.report.tables import number
@@ -184,11 +185,12 @@ def where(verdict: Verdict, cells: list[dict]) -> str:
     found = effects_of(verdict)
     if not cells:
         return "There was nothing to compare by feature."
+    strained = _strained(verdict)
     if not (failing and verdict.where):
+        spread = " What is missing is spread over them, and shows where all are fitted at once."
         return (
             f"Nowhere: of {plural(len(cells), 'comparison')} ({kind}), none stands out beyond what so many "
-            "comparisons give by chance."
-            + (" What is missing is spread over them, and shows where all are fitted at once." * bool(found))
+            "comparisons give by chance." + (strained or spread * bool(found))
         )
     first = verdict.where[0]
     groups = joined([f"{name.replace('_', ' ')} ({count})" for name, count in Counter(failing).most_common()])
@@ -196,8 +198,14 @@ def where(verdict: Verdict, cells: list[dict]) -> str:
     return (
         f"In {len(failing)} of {plural(len(cells), 'comparison')} ({kind}) the nominal model fails: "
         f"{groups}. The largest is in {place}: the data show {_side(first)} than predicted, by "
-        f"{abs(first.z):.3g} standard errors."
+        f"{abs(first.z):.3g} standard errors.{strained}"
     )
+
+
+def _strained(verdict: Verdict) -> str:
+    """What the nominal model asks of the record to come so near, one sentence; empty where that is little."""
+    said = next((r for r in verdict.reasons if r.startswith(ONLY_WITH)), "")
+    return said and f" T{said[1:]}: that is what speaks against it."
 
 
 def _side(cell):

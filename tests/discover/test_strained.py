@@ -1,0 +1,37 @@
+"""What the nominal model asks of a record: said where it follows the data by way of stated numbers alone."""
+
+import numpy as np
+import pytest
+from made_records import made
+
+from sonicvacuum.discover import session
+from sonicvacuum.discover.fit.wide import nominal
+from sonicvacuum.discover.judge import strained
+from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.model.problem import experiment
+
+
+def test_a_gain_that_follows_the_data_far_beyond_its_error_is_said():
+    """A gauge that reads 1.5 times as much leaves no misfit; its error, 2 %, is what speaks against that."""
+    found = session.discover(made([("sensor-gain", {"gain_ratio": 1.5, "sensor": 0})])[0])
+    assert found.verdict.named == ["sensor-gain"]
+    (said,) = (r for r in found.verdict.reasons if r.startswith(strained.ONLY_WITH))
+    gauge = found.found.forward.experiment.gauges[0]
+    assert f"the gain of gauge {gauge.id} 1." in said
+    away = float(said.rsplit(",", 1)[1].split()[0])
+    # Other gains, speeds and the modulus take over a part of ln 1.5, in units of the gain's error.
+    full = np.log(1.5) / found.found.forward.experiment.gain_rel_sigma[0]
+    assert 0.5 * full < away < 1.1 * full
+
+
+def test_nothing_is_said_of_a_record_that_needs_nothing():
+    forward = Forward(experiment(made()[0]))
+    null = nominal(forward)
+    assert strained.told(forward, null, null) == []
+
+
+@pytest.mark.parametrize("effects", [[("viscous-drag", {"rate_per_s": 100.0})]])
+def test_nor_where_the_misfit_itself_is_what_shows(effects):
+    v = session.discover(made(effects)[0]).verdict
+    assert v.named == ["viscous-drag"]
+    assert not any(r.startswith(strained.ONLY_WITH) for r in v.reasons)
