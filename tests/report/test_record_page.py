@@ -19,7 +19,7 @@ from sonicvacuum.figures import disagreement, discovery, posterior, raster
 from sonicvacuum.figures.drawing import Curve
 from sonicvacuum.files import InputError
 from sonicvacuum.physics import compiled
-from sonicvacuum.report import plots, record, words
+from sonicvacuum.report import misfit, plots, record, words
 from sonicvacuum.report.record import write_page
 from sonicvacuum.tables import read_csv
 
@@ -62,10 +62,10 @@ def test_what_the_nominal_model_strains_stands_where_it_disagrees_nowhere():
     said = f"{ONLY_WITH} the gain of gauge wall 1.93 times the stated one, 35 of its stated errors away"
     v = verdict(named=["kuwabara-kono"], where=[])
     cells = [{"sensor": "g1", "feature": "amplitude", "q_before": "0.9"}]
-    plain = words.where(v, cells)
+    plain = misfit.where(v, cells)
     v.reasons.append(said)
     assert "spread over them" in plain
-    strained = words.where(v, cells)
+    strained = misfit.where(v, cells)
     assert strained.endswith("The" + said[3:] + ": that is what speaks against it.")
     assert "spread over them" not in strained
 
@@ -248,7 +248,7 @@ def test_all_significant_comparisons_are_counted_and_not_only_those_kept():
     """The verdict keeps 40 at most; the page counts what where.csv holds."""
     cell = {"sensor": "g1", "feature": "amplitude", "z_before": "-9"}
     cells = [{**cell, "run": f"r{k}", "q_before": "1e-9" if k < 45 else "0.5"} for k in range(60)]
-    told = words.where(verdict(where=KINDS["single"].where * 40), cells)
+    told = misfit.where(verdict(where=KINDS["single"].where * 40), cells)
     assert "In 45 of 60 comparisons" in told
     assert "amplitude (45)" in told
 

@@ -5,7 +5,7 @@ from made_verdicts import KINDS, gaps, model, verdict
 from msgspec.structs import replace
 
 from sonicvacuum.effects import CATALOGUE
-from sonicvacuum.report import bench, rows, words
+from sonicvacuum.report import bench, misfit, rows, words
 
 
 @pytest.mark.parametrize(
@@ -23,8 +23,8 @@ def test_probabilities_in_words(probability, text):
 
 
 def test_a_gap_that_is_not_closed_is_not_called_closed():
-    assert "the gap is not closed" in words.gap(verdict(gap=gaps(2.0, 2.5)))
-    assert "of the gap closed" not in words.gap(verdict(gap=gaps(0.9, 0.8)))
+    assert "the gap is not closed" in misfit.gap(verdict(gap=gaps(2.0, 2.5)))
+    assert "of the gap closed" not in misfit.gap(verdict(gap=gaps(0.9, 0.8)))
 
 
 def test_a_modulus_that_had_to_move_far_is_told_first():

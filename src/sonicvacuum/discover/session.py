@@ -136,8 +136,7 @@ def discover(
         next_experiment=proposal,
         reasons=[
             *found.reasons,
-            *_exact(found),
-            *(strained.told(forward, found.null, found.final) if named else []),
+            *_taken_as_stated(found),
             *(law.reasons(told) if free else ()),
             *verdict.corrections(outcome.findings),
         ],
@@ -167,11 +166,14 @@ def _with_hidden(found: Investigation, scores: Screen) -> Investigation:
     return replace(found, probabilities=behind.told(found.probabilities, found.named, beside))
 
 
-def _exact(found: Investigation) -> list[str]:
-    """What was taken as exact, where something is named: a tolerance might explain it instead."""
+def _taken_as_stated(found: Investigation) -> list[str]:
+    """What was taken as exact, where something is named: a tolerance might explain it instead. And what the
+    nominal model would have of the record otherwise than stated.
+    """
     e = found.forward.experiment
     said = exact(e.record, e.shared) if found.named and e.record is not None else ""
-    return [said] if said else []
+    moved = strained.told(found.forward, found.null, found.final) if verdict.named_effects(found) else []
+    return [said] * bool(said) + moved
 
 
 def _doubts(found: Investigation, record: Record) -> list[str]:

@@ -12,7 +12,7 @@ from sonicvacuum.discover.compare import check_source
 from sonicvacuum.discover.verdict import Model, Verdict
 from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.files import InputError, read_text, reading, replacing
-from sonicvacuum.report import bench, inline, origin, plots, rows, words
+from sonicvacuum.report import bench, inline, misfit, origin, plots, rows, words
 from sonicvacuum.report.sketch import sketch
 from sonicvacuum.tables import read_csv
 
@@ -103,7 +103,7 @@ def _told(folder, verdict, model, tables, catalogue, gauges):
         "headline": words.headline(verdict, catalogue) + bench.moved_modulus(verdict, model),
         "slips": bench.slips(verdict),
         "corrected": bench.corrected(verdict),
-        "where": words.where(verdict, tables["where"]),
+        "where": misfit.where(verdict, tables["where"]),
         "grid": rows.grid(tables["where"]),
         "quantities": quantities_of,
         "moved": any(r["nominal"] != r["extended"] for r in quantities_of),
@@ -117,7 +117,7 @@ def _told(folder, verdict, model, tables, catalogue, gauges):
         "alternatives": words.alternatives(verdict, catalogue),
         "pairs": [r for r in tables["candidates"] if "+" in r["effects"]][:_PAIRS],
         "singles": [r for r in tables["candidates"] if "+" not in r["effects"]],
-        "gap": " ".join(filter(None, (words.gap(verdict), words.goodness(verdict)))),
+        "gap": " ".join(filter(None, (misfit.gap(verdict), misfit.goodness(verdict)))),
         "rounds": rows.rounds(tables["gap"], catalogue),
         "runs": [r for r in tables["gap"] if not r["run"].startswith("round ")],
         "added": bool(words.effects_of(verdict)),

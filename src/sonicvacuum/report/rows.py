@@ -4,8 +4,9 @@ import math
 import re
 
 from sonicvacuum.discover import policy
+from sonicvacuum.report.misfit import SIDES
 from sonicvacuum.report.tables import number, unit_of
-from sonicvacuum.report.words import SIDES, plain, share
+from sonicvacuum.report.words import plain, share
 
 # Scores from this on are written into their cell; those beyond the second have the full colour.
 TOLD, FULL = 3.0, 10.0

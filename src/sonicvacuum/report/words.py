@@ -4,13 +4,10 @@ Every sentence is made from `verdict.json`, `model.json` and the tables beside t
 """
 
 import math
-from collections import Counter
 
 from sonicvacuum.discover.draws import AVERAGED, LINEAR, SAMPLED, pareto_k
 from sonicvacuum.discover.judge.explanations import key
-from sonicvacuum.discover.judge.locate import DISCOVERY_RATE
-from sonicvacuum.discover.judge.strained import ONLY_WITH
-from sonicvacuum.discover.verdict import Gap, Next, Verdict
+from sonicvacuum.discover.verdict import Next, Verdict
 from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.report.tables import number
 
@@ -22,18 +19,6 @@ SURE = (
     (0.5, "more probable than not"),
     (0.0, "less probable than all its rivals together"),
 )
-# Feature → what a measured one is that lies above, and below, the prediction.
-SIDES = {
-    "precursor": ("more force before the pulse", "less force before the pulse"),
-    "amplitude": ("a higher peak", "a lower peak"),
-    "delay": ("a later pulse", "an earlier pulse"),
-    "width": ("a wider pulse", "a narrower pulse"),
-    "asymmetry": ("a pulse leaning backwards", "a pulse leaning forwards"),
-    "tail": ("more force behind the pulse", "less force behind the pulse"),
-    "decay": ("stronger later pulses", "weaker later pulses"),
-    "reflection": ("a stronger reflection", "a weaker reflection"),
-    "baseline": ("a higher baseline", "a lower baseline"),
-}
 
 
 def in_words(probability: float) -> str:
@@ -174,47 +159,6 @@ def _names(ids, catalogue, last="or"):
     return joined([plain(name, catalogue) for name in ids], last)
 
 
-def where(verdict: Verdict, cells: list[dict]) -> str:
-    """Where the nominal model and the data disagree.
-
-    The verdict keeps the largest disagreements; `cells`, the rows of where.csv, are all comparisons made.
-    """
-    traces = any(c["sensor"] for c in cells)
-    failing = [c["feature"] for c in cells if float(c["q_before"] or 1.0) < DISCOVERY_RATE]
-    kind = "run, gauge and feature of the trace" if traces else "run and measured quantity"
-    found = effects_of(verdict)
-    if not cells:
-        return "There was nothing to compare by feature."
-    strained = _strained(verdict)
-    if not (failing and verdict.where):
-        spread = " What is missing is spread over them, and shows where all are fitted at once."
-        return (
-            f"Nowhere: of {plural(len(cells), 'comparison')} ({kind}), none stands out beyond what so many "
-            "comparisons give by chance." + (strained or spread * bool(found))
-        )
-    first = verdict.where[0]
-    groups = joined([f"{name.replace('_', ' ')} ({count})" for name, count in Counter(failing).most_common()])
-    place = f"run {first.run}" + (f", gauge {first.sensor}" if first.sensor else "")
-    return (
-        f"In {len(failing)} of {plural(len(cells), 'comparison')} ({kind}) the nominal model fails: "
-        f"{groups}. The largest is in {place}: the data show {_side(first)} than predicted, by "
-        f"{abs(first.z):.3g} standard errors.{strained}"
-    )
-
-
-def _strained(verdict: Verdict) -> str:
-    """What the nominal model asks of the record to come so near, one sentence; empty where that is little."""
-    said = next((r for r in verdict.reasons if r.startswith(ONLY_WITH)), "")
-    return said and f" T{said[1:]}: that is what speaks against it."
-
-
-def _side(cell):
-    above = cell.z > 0.0
-    if cell.feature in SIDES:
-        return SIDES[cell.feature][0 if above else 1]
-    return f"a {'larger' if above else 'smaller'} {cell.feature.replace('_', ' ')}"
-
-
 def law(verdict: Verdict, catalogue: Catalogue = CATALOGUE) -> str:
     """The free-form contact law, where one was needed; else empty."""
     found = verdict.law
@@ -257,60 +201,6 @@ def alternatives(verdict: Verdict, catalogue: Catalogue = CATALOGUE) -> str:
         ]
         parts += [f"The nearest sets: {'; '.join(sets)}."] if sets else []
     return " ".join(parts)
-
-
-def gap(verdict: Verdict) -> str:
-    """How the misfit shrinks."""
-    fitted, held_out = verdict.gap.fitted, verdict.gap.held_out
-    if not effects_of(verdict) and not verdict.law:
-        text = (
-            f"The nominal model leaves a mean squared misfit of {fitted.before:.3g} times the noise; 1 is "
-            "expected."
-        )
-        if not verdict.named:
-            return f"{text} As nothing was added, nothing changes."
-        if fitted.after == fitted.before:
-            return f"{text} Nothing was added that would lower it."
-        return f"{text} The nearest model that was found, which is not named, leaves {fitted.after:.3g}."
-    text = (
-        f"The nominal model leaves a mean squared misfit of {fitted.before:.4g} times the noise, the "
-        f"extended model {fitted.after:.4g}{_closed(fitted)}; 1 is expected."
-    )
-    if held_out is None:
-        return f"{text} There is one run only, so that none could be held out."
-    if held_out.after == held_out.before:
-        return f"{text} Runs left out of the fit are predicted no better: the others alone do not show it."
-    return (
-        f"{text} On runs left out of the fit it falls from {held_out.before:.4g} to {held_out.after:.4g}"
-        f"{_closed(held_out)}."
-    )
-
-
-def _closed(one: Gap):
-    if one.closed is None or one.before <= one.floor:
-        return ""
-    closed = 100.0 * min(one.closed, 1.0)
-    return f" ({closed:.3g} % of the gap closed)" if closed > 0.0 else " (the gap is not closed)"
-
-
-def goodness(verdict: Verdict) -> str:
-    """Whether what the model leaves looks like noise; empty for verdicts that did not ask."""
-    fit = verdict.fit
-    if fit is None or not fit.extended:
-        return ""
-    worst = max(fit.extended, key=lambda c: c.chi2)
-    text = (
-        f"The largest mean squared misfit of a trace is {worst.chi2:.3g} times the noise (run {worst.run}, "
-        f"gauge {worst.sensor}), which noise alone would give with probability {number(str(worst.p), 2)}."
-    )
-    if fit.smooth_rel:
-        text += (
-            f" A smooth misfit of {100.0 * fit.smooth_rel:.2g} % of the peak counts as noise in errors and "
-            "upper limits."
-        )
-    if fit.wider > 1.0:
-        text += f" For what is left, errors behind the upper limits are {fit.wider:.3g} times as large."
-    return text
 
 
 def settled(verdict: Verdict) -> bool:
