@@ -87,8 +87,9 @@ SENTENCES = {
         "1.881 to 2.079",
         "falls from 80.7 to 1.05 (99.9 % of the gap closed)",
         "No rival comes near",
-        "with the striker at 1.25 m/s would tell viscoelastic Hertz contact from damping with constant "
-        "restitution best: they would differ by about 5 standard errors",
+        "with the striker at 1.25 m/s would most likely leave one explanation alone: viscoelastic Hertz "
+        "contact and damping with constant restitution, its nearest rival there, would differ by about 5 "
+        "standard errors",
         "These data cannot test: gravity along the chain",
     ),
     "class": (

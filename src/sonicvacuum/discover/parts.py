@@ -91,7 +91,9 @@ class Known(Part, kw_only=True):
 
 
 class Next(Part, kw_only=True):
-    """The change of the experiment that best separates rivals; `delta_chi2` as predicted."""
+    """The change of the experiment that most likely leaves one explanation alone; the best one and its
+    nearest rival there, and the `delta_chi2` predicted between them.
+    """
 
     change: dict[str, float | int | str]
     separates: list[str]

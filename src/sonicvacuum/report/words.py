@@ -218,7 +218,8 @@ def experiment(proposal: Next | None, cells: list[dict], catalogue: Catalogue = 
     steps = joined([_change(key, value) for key, value in proposal.change.items()])
     one, other = (plain(name, catalogue) for name in proposal.separates[:2])
     text = (
-        f"One more run {steps} would tell {one} from {other} best: they would differ by about "
+        f"One more run {steps} would most likely leave one explanation alone: {one} and {other}, its nearest "
+        f"rival there, would differ by about "
         f"{number(f'{math.sqrt(max(proposal.delta_chi2, 0.0)):.2g}', 2)} standard errors."
     )
     return text + (" That would hardly decide." if proposal.delta_chi2 < 9.0 else "")
