@@ -38,7 +38,8 @@ def where(verdict: Verdict, cells: list[dict]) -> str:
         spread = " What is missing is spread over them, and shows where all are fitted at once."
         return (
             f"Nowhere: of {plural(len(cells), 'comparison')} ({kind}), none stands out beyond what so many "
-            "comparisons give by chance." + (strained or spread * bool(found))
+            "comparisons give by chance."
+            + (f"{strained}: that is what speaks against it." if strained else spread * bool(found))
         )
     first = verdict.where[0]
     groups = joined([f"{name.replace('_', ' ')} ({count})" for name, count in Counter(failing).most_common()])
@@ -46,14 +47,14 @@ def where(verdict: Verdict, cells: list[dict]) -> str:
     return (
         f"In {len(failing)} of {plural(len(cells), 'comparison')} ({kind}) the nominal model fails: "
         f"{groups}. The largest is in {place}: the data show {_side(first)} than predicted, by "
-        f"{abs(first.z):.3g} standard errors.{strained}"
+        f"{abs(first.z):.3g} standard errors.{strained and f'{strained}.'}"
     )
 
 
 def _strained(verdict: Verdict) -> str:
-    """What the nominal model asks of the record to come so near, one sentence; empty where that is little."""
+    """What the nominal model asks of the record to come so near, without a stop; "" where that is little."""
     said = next((r for r in verdict.reasons if r.startswith(ONLY_WITH)), "")
-    return said and f" T{said[1:]}: that is what speaks against it."
+    return said and f" T{said[1:]}"
 
 
 def _side(cell):

@@ -6,11 +6,13 @@ the stated error alone. Then the misfit, and what an effect takes away of it, sa
 
 import numpy as np
 
+from sonicvacuum.discover import policy
+from sonicvacuum.discover.fit.enough import data
 from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.model.forward import Forward
 
 # How the line begins that says so.
-ONLY_WITH = "the nominal model follows the data only with"
+ONLY_WITH = "the nominal model comes so near the data only with"
 # Stated errors from which it is said, and share of them that has to be gone with what is named.
 FAR, GONE = 5.0, 0.5
 _WHAT = {
@@ -26,16 +28,18 @@ _WHAT = {
 
 
 def told(forward: Forward, null: Fit, final: Fit) -> list[str]:
-    """What the nominal model strains most, one line; [] where that is little, or is strained beside the named
-    effects as well.
+    """What the nominal model strains most, one line; [] where that is little, where it is strained beside the
+    named effects as well, and where that brings the model nowhere near.
 
     A nominal fit far from the data is held to what the record states, and its last step is taken here.
     """
     gradient, hessian = null.normal.total()
-    nu = null.nu + np.linalg.lstsq(hessian[0], gradient[0], rcond=1e-12)[0]
+    step = np.linalg.lstsq(hessian[0], gradient[0], rcond=1e-12)[0]
+    nu = null.nu + step
+    left = null.objective - float(gradient[0] @ step) - float(nu @ nu)
     k = int(np.argmax(np.abs(nu)))
     far = abs(float(nu[k]))
-    if far < FAR or abs(float(final.nu[k])) > GONE * far:
+    if far < FAR or abs(float(final.nu[k])) > GONE * far or left > policy.GROSS * data(forward):
         return []
     what, shift = _name(forward, k), float(nu[k] * forward.nuisance_sigma[k])
     timed = what.startswith(("the time zero", "the delay"))
