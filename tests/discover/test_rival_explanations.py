@@ -1,12 +1,13 @@
 """What rival explanations make of what they share, against mixtures that are known in closed form."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scipy.special import ndtri
 
-from sonicvacuum.discover import draws, posterior
+from sonicvacuum.discover import draws, posterior, rounds
 from sonicvacuum.discover.fit.evidence import Candidate, Combination
 from sonicvacuum.discover.fit.normal import linearise
 from sonicvacuum.discover.fit.refit import Fit
@@ -67,6 +68,12 @@ def test_one_strength_may_do_what_another_does(verdict):
     assert sorted(r.probability for r in found) == pytest.approx([0.2, 0.4, 0.4])
     ((share, off),) = rivals.shifts(fits[0], found)
     assert (share.tolist(), off.tolist()) == ([0.5, 0.5], [0.0, -0.1])
+    # Another nominal fit is worth as much to both; a better fit of the one makes the other less likely.
+    lower = SimpleNamespace(objective=null.objective - 5.0)
+    assert rounds._moved(one, lower, fits[0], (), ()).ways == one.ways
+    better = SimpleNamespace(objective=fits[0].objective - 2.0 * np.log(3.0))
+    shares = [share for share, _ in rounds._moved(one, null, better, (), ()).ways]
+    assert shares == pytest.approx([0.75, 0.25])
 
 
 def test_draws_are_of_the_mixture(fit):

@@ -169,12 +169,13 @@ def _said(prior, present) -> list[str]:
 
 def _instead(found: list[Candidate], named) -> list[str]:
     """Other strengths of what is named that explain the data as well, in words."""
-    own = [c for c in found if c.effect in named]
+    if len(named) != 1:
+        return []
     return [
         f"{c.effect}: {_values(fit_)} instead of {_values(c.fit)}, with probability {share:.2f}"
-        for c in own
+        for c in found
         for share, fit_ in c.ways[1:]
-        if share > policy.TOLD and len(named) == 1
+        if c.effect in named and share > policy.TOLD
     ]
 
 
@@ -281,8 +282,8 @@ def _along(forward, null, found):
 
 
 def _moved(c, null, better, where, flags):
-    """A candidate whose fit has been improved."""
-    more = null.objective - better.objective - c.gain
-    instead = tuple((log - 0.5 * more, way) for log, way in c.instead)
+    """A candidate whose fit has been improved, or that is held against another nominal fit."""
+    more, lower = null.objective - better.objective - c.gain, c.fit.objective - better.objective
+    instead = tuple((log - 0.5 * lower, way) for log, way in c.instead)
     gain, log_bayes = c.gain + more, c.log_bayes + 0.5 * more
     return Candidate(c.effect, better, gain, log_bayes, where, flags, instead)
