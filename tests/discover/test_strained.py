@@ -1,5 +1,7 @@
 """What the nominal model asks of a record: said where it follows the data by way of stated numbers alone."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from made_records import made
@@ -8,6 +10,7 @@ from sonicvacuum.discover import session
 from sonicvacuum.discover.fit.wide import nominal
 from sonicvacuum.discover.judge import strained
 from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.model.nuisances import Layout, Shared
 from sonicvacuum.discover.model.problem import experiment
 
 
@@ -35,3 +38,24 @@ def test_nor_where_the_misfit_itself_is_what_shows(effects):
     v = session.discover(made(effects)[0]).verdict
     assert v.named == ["viscous-drag"]
     assert not any(r.startswith(strained.ONLY_WITH) for r in v.reasons)
+
+
+@pytest.mark.parametrize(
+    ("kind", "of", "sigma", "said"),
+    [
+        ("modulus", "steel", 0.05, "the modulus of steel 1.65 times the stated one"),
+        ("bead-mass", "", 0.05, "the mass of the beads 1.65 times the stated one"),
+        ("delay", "g1", 1e-6, "the delay of g1 shifted by 10 µs"),
+        ("clock", "", 1e-4, "the recorder's clock off by 0.1 %"),
+        ("shared", "rise time", 1.0, "the error common to several quantities, rise time"),
+    ],
+)
+def test_every_kind_has_its_words_and_units(kind, of, sigma, said):
+    """Ten stated errors of each: a factor e^0.5, a time, a share, or nothing that has a size of its own."""
+    layout = Layout(runs=1, gauges=1, others=(Shared(kind, sigma, of),))
+    forward = SimpleNamespace(
+        experiment=SimpleNamespace(runs=(SimpleNamespace(id="r1"),), gauges=()),
+        layout=layout,
+        nuisance_sigma=np.full(layout.size, sigma),
+    )
+    assert strained._moved(forward, layout.size - 1, 10.0) == said

@@ -59,8 +59,9 @@ def propose(found: Investigation, alike: list[list[str]]) -> Next | None:
         forward.simulations += new.simulations
     if not tried:
         return None
-    behind = put_behind(np.array([one.weight for one in left]), np.array(apart))
-    value = resolved(np.array([one.weight for one in left]), behind)
+    weights = np.array([one.weight for one in left])
+    behind = put_behind(weights, np.array(apart))
+    value = resolved(weights, behind)
     able = np.flatnonzero(behind.max(axis=0)[0, 1:] > _HOPELESS) + 1
     rivals = able if len(able) else np.arange(1, len(left))
     nearest = np.array(apart)[:, 0, rivals].min(axis=1)

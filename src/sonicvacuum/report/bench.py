@@ -9,7 +9,7 @@ import re
 from collections.abc import Iterator
 
 from sonicvacuum.discover.faults.table import FAULTS
-from sonicvacuum.discover.model.nuisances import MODULUS_REL_SIGMA
+from sonicvacuum.discover.model.nuisances import MODULUS_REL_SIGMA, WORDS
 from sonicvacuum.discover.verdict import PUT_RIGHT, Fault, Model, Verdict
 from sonicvacuum.records import Record
 from sonicvacuum.report.tables import number
@@ -17,16 +17,8 @@ from sonicvacuum.report.words import in_words, joined
 
 # A modulus that moved by more than this, in its logarithm, is told first.
 FAR = 0.2
-# Kinds of what all runs share that add to a reading; all others are factors. How those are called.
+# Kinds of what all runs share that add to a reading; all others are factors.
 _SHIFTS = ("delay", "clock", "shared")
-_WHAT = {
-    "bead-mass": "mass of the beads",
-    "bead-diameter": "diameter of the beads",
-    "coating": "thickness of the coating",
-    "striker-mass": "mass of the striker",
-    "speed-common": "speed of the striker, common to all runs",
-    "gain-common": "calibration common to all gauges",
-}
 # What has moved by more of its stated standard errors than this has left them.
 STRAINED = 2.5
 # Data that leave less than this of a stated error have measured it.
@@ -92,7 +84,7 @@ def measured(verdict: Verdict) -> str:
         told = known.prior is None or known.sigma < TOLD * known.prior
         if kind in _SHIFTS or not 0.0 < known.sigma < math.inf or not told:
             continue
-        what = _WHAT.get(kind, "calibration" if kind == "gain" else kind)
+        what = WORDS.get(kind, "calibration" if kind == "gain" else kind)
         stated = "" if known.prior is None else f" (stated to {_short(100.0 * known.prior)} %)"
         value = f"{known.value:.3g} ± {_short(known.value * known.sigma)}"
         parts.append(f"{what}{f' of {of}' if of else ''} {value}{stated}")
@@ -153,7 +145,7 @@ def _told_of(kind, of, known):
         return f"Check the delay of gauge {of}: the data ask for {known.value:.3g} µs"
     if kind == "clock":
         return f"Check the recorder's clock: the data ask for one that is off by {100.0 * known.value:.2g} %"
-    what = _WHAT.get(kind, kind.replace("-", " "))
+    what = WORDS.get(kind, kind.replace("-", " "))
     return _asked(f"the {what} of {of}" if of else f"the {what}", known.value, known.sigma)
 
 

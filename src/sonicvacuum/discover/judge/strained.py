@@ -10,21 +10,12 @@ from sonicvacuum.discover import policy
 from sonicvacuum.discover.fit.enough import data
 from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.model.nuisances import WORDS
 
 # How the line begins that says so.
 ONLY_WITH = "the nominal model comes so near the data only with"
 # Stated errors from which it is said, and share of them that has to be gone with what is named.
 FAR, GONE = 5.0, 0.5
-_WHAT = {
-    "modulus": "the modulus of {}",
-    "bead-mass": "the mass of the beads",
-    "bead-diameter": "the diameter of the beads",
-    "coating": "the thickness of the coating",
-    "striker-mass": "the mass of the striker",
-    "speed-common": "the speed of the striker in all runs",
-    "gain-common": "the gain of all gauges",
-    "clock": "the rate of the recorder's clock",
-}
 
 
 def told(forward: Forward, null: Fit, final: Fit) -> list[str]:
@@ -41,21 +32,26 @@ def told(forward: Forward, null: Fit, final: Fit) -> list[str]:
     far = abs(float(nu[k]))
     if far < FAR or abs(float(final.nu[k])) > GONE * far or left > policy.GROSS * data(forward):
         return []
-    what, shift = _name(forward, k), float(nu[k] * forward.nuisance_sigma[k])
-    timed = what.startswith(("the time zero", "the delay"))
-    size = f"shifted by {1e6 * shift:.3g} µs" if timed else f"{np.exp(shift):.3g} times the stated one"
-    return [f"{ONLY_WITH} {what} {size}, {far:.2g} of its stated errors away"]
+    return [f"{ONLY_WITH} {_moved(forward, k, float(nu[k]))}, {far:.2g} of its stated errors away"]
 
 
-def _name(forward, k):
-    """A nuisance in words."""
-    e, layout = forward.experiment, forward.layout
-    names = {layout.modulus: "the modulus of the beads"}
+def _moved(forward, k, nu):
+    """A nuisance and where it has moved to, in words."""
+    e, layout, shift = forward.experiment, forward.layout, nu * float(forward.nuisance_sigma[k])
+    ratio, time = f"{np.exp(shift):.3g} times the stated one", f"shifted by {1e6 * shift:.3g} µs"
     for run, one in enumerate(e.runs):
-        names[layout.speed(run)] = f"the speed of the striker in run {one.id}"
-        names[layout.trigger(run)] = f"the time zero of run {one.id}"
-    names |= {int(at): f"the gain of gauge {g.id}" for at, g in zip(layout.gains, e.gauges, strict=True)}
-    for at, one in enumerate(layout.others, start=layout.modulus + 1):
-        other = f"the {one.kind} of {one.of}" if one.of else f"the {one.kind}"
-        names[at] = _WHAT.get(one.kind, other).format(one.of)
-    return names[k]
+        if k == layout.speed(run):
+            return f"the speed of the striker in run {one.id} {ratio}"
+        if k == layout.trigger(run):
+            return f"the time zero of run {one.id} {time}"
+    if k in layout.gains:
+        return f"the gain of gauge {e.gauges[int(np.flatnonzero(layout.gains == k)[0])].id} {ratio}"
+    if k == layout.modulus:
+        return f"the modulus of the beads {ratio}"
+    one = layout.others[k - layout.modulus - 1]
+    if one.kind == "shared":
+        return f"the error common to several quantities, {one.of}"
+    if one.kind == "clock":
+        return f"the recorder's clock off by {100.0 * shift:.2g} %"
+    what = WORDS.get(one.kind, one.kind) + f" of {one.of}" * bool(one.of)
+    return f"the {what} {time if one.kind == 'delay' else ratio}"

@@ -38,6 +38,17 @@ DEFAULTS = Tolerances(
 NEGLIGIBLE = 3e-3
 
 
+# Kind of `Shared` → what it is, in words, where its name does not say.
+WORDS = {
+    "bead-mass": "mass of the beads",
+    "bead-diameter": "diameter of the beads",
+    "coating": "thickness of the coating",
+    "striker-mass": "mass of the striker",
+    "speed-common": "speed of the striker, common to all runs",
+    "gain-common": "calibration common to all gauges",
+}
+
+
 @dataclass(frozen=True)
 class Shared:
     """One nuisance that all runs share.
