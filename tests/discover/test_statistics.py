@@ -70,6 +70,16 @@ def test_a_run_that_alone_shows_an_effect_is_not_predicted_by_the_others(setup):
     assert found.chi2 == pytest.approx([150.0, 40.0], abs=1e-9)  # the nominal model's, the fit's own
 
 
+def test_what_the_nominal_model_leaves_of_a_run_left_out_is_what_its_fit_left():
+    """Also far from the data, where the fit is held to the record and the linear model promises more."""
+    chi2 = np.array([[500.0], [400.0]])
+    gradient, hessian = np.full((2, 1, 1), 30.0), np.ones((2, 1, 1, 1))
+    free = Normal(np.zeros((1, 0)), np.zeros((1, 1)), chi2, gradient, hessian)
+    found = heldout.held_out(Fit(Hypothesis(), free), np.array([50, 40]))
+    assert found.chi2.tolist() == [500.0, 400.0]
+    assert found.mean == 10.0
+
+
 def test_a_strength_over_its_error_counts_from_off_and_need_not_be_shown_where_it_is_stated(setup):
     """A logarithm is one unit from off wherever it stands, a deviation as far as it goes."""
     drag, gain = effect("viscous-drag"), effect("sensor-gain")

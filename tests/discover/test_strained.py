@@ -7,9 +7,12 @@ import pytest
 from made_records import made
 
 from sonicvacuum.discover import session
+from sonicvacuum.discover.fit.normal import Normal
+from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.fit.wide import nominal
 from sonicvacuum.discover.judge import strained
 from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.model.hypothesis import Hypothesis
 from sonicvacuum.discover.model.nuisances import Layout, Shared
 from sonicvacuum.discover.model.problem import experiment
 
@@ -25,6 +28,26 @@ def test_a_gain_that_follows_the_data_far_beyond_its_error_is_said():
     # Other gains, speeds and the modulus take over a part of ln 1.5, in units of the gain's error.
     full = np.log(1.5) / found.found.forward.experiment.gain_rel_sigma[0]
     assert 0.5 * full < away < 1.1 * full
+
+
+@pytest.mark.parametrize(("left", "said"), [(1.0, True), (9.0, False)])
+def test_it_is_said_only_where_a_simulation_there_comes_near(monkeypatch, left, said):
+    """One number in units of its error, prediction 100 times it, the datum 1000: linear, ten errors away. The
+    simulation at ten leaves what it leaves: χ² per datum 1, or 9.
+    """
+    monkeypatch.setattr(strained, "data", lambda forward: 1)
+    monkeypatch.setattr(strained, "_moved", lambda forward, k, nu: f"number {k} at {nu:.3g}")
+    forward = SimpleNamespace(
+        data=lambda run: np.array([1000.0]),
+        sampled=lambda hypothesis, u, nu: [100.0 * nu - np.sqrt(left)],
+    )
+    gradient, hessian = np.full((1, 1, 1), 1e5), np.full((1, 1, 1, 1), 1e4)
+    normal = Normal(np.zeros((1, 0)), np.zeros((1, 1)), np.array([[1e6]]), gradient, hessian)
+    null = Fit(Hypothesis(), normal)
+    rested = SimpleNamespace(nu=np.zeros(1))
+    assert strained.told(forward, null, rested) == (
+        [f"{strained.ONLY_WITH} number 0 at 10, 10 of its stated errors away"] if said else []
+    )
 
 
 def test_nothing_is_said_of_a_record_that_needs_nothing():

@@ -33,7 +33,12 @@ class HeldOut:
 def held_out(fit: Fit, sizes: np.ndarray, nominal: HeldOut | None = None) -> HeldOut:
     """Every run of a fit left out once; `sizes` (R,) are numbers of data, `nominal` what the nominal model
     leaves, for runs without which no effect is seen.
+
+    All that a model without effects has may follow on the run left out, so that it leaves what its fit left.
+    (Algebra says so only of a fit that has settled: one far from the data is held to what the record states.)
     """
+    if not fit.normal.free:
+        return HeldOut(fit.normal.chi2[:, 0], np.asarray(sizes))
     chi2 = np.array([_without(fit.normal, run) for run in range(len(sizes))])
     if nominal is not None:
         chi2 = np.where([_seen_without(fit, run) for run in range(len(sizes))], chi2, nominal.chi2)

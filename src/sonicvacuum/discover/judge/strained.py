@@ -22,15 +22,18 @@ def told(forward: Forward, null: Fit, final: Fit) -> list[str]:
     """What the nominal model strains most, one line; [] where that is little, where it is strained beside the
     named effects as well, and where that brings the model nowhere near.
 
-    A nominal fit far from the data is held to what the record states, and its last step is taken here.
+    A nominal fit far from the data is held to what the record states; its last step is taken here, and
+    simulated.
     """
     gradient, hessian = null.normal.total()
-    step = np.linalg.lstsq(hessian[0], gradient[0], rcond=1e-12)[0]
-    nu = null.nu + step
-    left = null.objective - float(gradient[0] @ step) - float(nu @ nu)
+    nu = null.nu + np.linalg.lstsq(hessian[0], gradient[0], rcond=1e-12)[0]
     k = int(np.argmax(np.abs(nu)))
     far = abs(float(nu[k]))
-    if far < FAR or abs(float(final.nu[k])) > GONE * far or left > policy.GROSS * data(forward):
+    if far < FAR or abs(float(final.nu[k])) > GONE * far:
+        return []
+    there = forward.sampled(null.hypothesis, null.u[None], nu[None])
+    left = sum(float(np.square(forward.data(run) - value[0]).sum()) for run, value in enumerate(there))
+    if not left <= policy.GROSS * data(forward):
         return []
     return [f"{ONLY_WITH} {_moved(forward, k, float(nu[k]))}, {far:.2g} of its stated errors away"]
 
