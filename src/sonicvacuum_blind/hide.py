@@ -206,6 +206,8 @@ def _case(spec, random):
         except NoSolution:
             # So much of the effect cannot be had here: an error that is stated as uncertain takes its place.
             continue
+        if not _measurable(spec, case):
+            continue
         if least > reached:
             best, reached = case, least
         if least >= ENOUGH * spec.d_prime:
@@ -213,6 +215,15 @@ def _case(spec, random):
     if best is None:
         raise ValueError(f"case {spec.id}: {', '.join(spec.effects)} cannot act in designs {spec.design}")
     return best, correlation
+
+
+def _measurable(spec, case):
+    """Whether the laboratory would write its numbers down: not a speed of pulses found in the wrong order."""
+    made = case.frame.design
+    if not made.scalars:
+        return True
+    errors = drawn_errors(made, stream(spec, "errors"))
+    return bool(np.all(predict(made, case.change, errors, TOLERANCE).scalars > 0.0))
 
 
 def _with_effects(spec, made, correlation, random):

@@ -43,6 +43,14 @@ def test_records_are_valid(made, spec):
     assert len(record.runs) == truth(made, spec.id)["runs"]
 
 
+def test_a_speed_of_pulses_found_in_the_wrong_order_is_not_written_down(tmp_path):
+    """In the first design drawn for this case the laboratory would read -33 m/s; another is drawn then."""
+    spec = Spec("x", "single", "scalars", "white", ("dynamic-modulus",), 10.0, 4_176_103, 324)
+    write(spec, tmp_path / "records", tmp_path / "truth")
+    speeds = [o.value for r in records.read(tmp_path / "records" / "x").runs for o in r.observables]
+    assert min(speeds) > 0.0
+
+
 def test_same_spec_same_bytes(made, tmp_path):
     for spec in (CASES[1], CASES[3]):
         write(spec, tmp_path / "records", tmp_path / "truth")
