@@ -39,7 +39,7 @@ def test_it_is_said_only_where_a_simulation_there_comes_near(monkeypatch, left, 
     monkeypatch.setattr(strained, "_moved", lambda forward, k, nu: f"number {k} at {nu:.3g}")
     forward = SimpleNamespace(
         data=lambda run: np.array([1000.0]),
-        sampled=lambda hypothesis, u, nu: [100.0 * nu - np.sqrt(left)],
+        sampled=lambda hypothesis, u, nu, places: [100.0 * nu - np.sqrt(left)],
     )
     gradient, hessian = np.full((1, 1, 1), 1e5), np.full((1, 1, 1, 1), 1e4)
     normal = Normal(np.zeros((1, 0)), np.zeros((1, 1)), np.array([[1e6]]), gradient, hessian)

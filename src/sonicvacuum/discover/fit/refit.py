@@ -164,12 +164,17 @@ def _finished(forward, hypothesis, now):
     return broad.broadened(forward, hypothesis, last, columns) if broad.asks(hypothesis) else last
 
 
+def simulated(forward: Forward, hypothesis: Hypothesis, u, nu, places=None) -> np.ndarray:
+    """(L,) χ² that simulations at (L, p) coordinates and (L, q) nuisances leave, without any penalty."""
+    found = forward.sampled(hypothesis, u, nu, places)
+    return sum(np.square(forward.data(run) - value).sum(axis=1) for run, value in enumerate(found))
+
+
 def _promising(forward, hypothesis, u, nu, places, keep):
     """Starts of the lowest χ²."""
     if len(u) <= keep:
         return np.arange(len(u))
-    found = forward.sampled(hypothesis, u, nu, places)
-    chi2 = sum(np.square(forward.data(run) - value).sum(axis=1) for run, value in enumerate(found))
+    chi2 = simulated(forward, hypothesis, u, nu, places)
     chi2 = np.where(np.isfinite(chi2), chi2, np.inf) + np.square(nu).sum(axis=1)
     return np.sort(np.argsort(chi2, kind="stable")[:keep])
 

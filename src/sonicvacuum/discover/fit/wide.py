@@ -15,7 +15,7 @@ import numpy as np
 from sonicvacuum.discover import policy
 from sonicvacuum.discover.correlation import correlated
 from sonicvacuum.discover.fit.enough import data
-from sonicvacuum.discover.fit.refit import Fit, fit
+from sonicvacuum.discover.fit.refit import Fit, fit, simulated
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Hypothesis
 
@@ -170,8 +170,7 @@ def _quicker(forward: Forward, held: Hypothesis, one: Fit) -> np.ndarray:
         return np.zeros((0, forward.layout.size))
     rows = np.repeat(one.nu[None], 2 * len(QUICKER), axis=0)
     rows[:, at] = np.array([*QUICKER, *(-step for step in QUICKER)]) / sigma
-    there = forward.sampled(held, np.zeros((len(rows), 0)), rows)
-    left = sum(np.square(forward.data(run) - value).sum(axis=1) for run, value in enumerate(there))
+    left = simulated(forward, held, np.zeros((len(rows), 0)), rows)
     return rows[left + np.square(rows).sum(axis=1) < one.objective]
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from sonicvacuum.discover import policy
 from sonicvacuum.discover.fit.enough import data
-from sonicvacuum.discover.fit.refit import Fit
+from sonicvacuum.discover.fit.refit import Fit, simulated
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.nuisances import WORDS
 
@@ -31,8 +31,7 @@ def told(forward: Forward, null: Fit, final: Fit) -> list[str]:
     far = abs(float(nu[k]))
     if far < FAR or abs(float(final.nu[k])) > GONE * far:
         return []
-    there = forward.sampled(null.hypothesis, null.u[None], nu[None])
-    left = sum(float(np.square(forward.data(run) - value[0]).sum()) for run, value in enumerate(there))
+    left = simulated(forward, null.hypothesis, null.u[None], nu[None])[0]
     if not left <= policy.GROSS * data(forward):
         return []
     return [f"{ONLY_WITH} {_moved(forward, k, float(nu[k]))}, {far:.2g} of its stated errors away"]
