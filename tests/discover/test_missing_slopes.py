@@ -8,7 +8,7 @@ import pytest
 from linear_models import drawn, of_drag
 
 from sonicvacuum.discover import posterior
-from sonicvacuum.discover.fit import refit
+from sonicvacuum.discover.fit import descent, refit
 from sonicvacuum.discover.model.forward import NO_CHAIN, Forward
 from sonicvacuum.discover.model.hypothesis import Hypothesis
 from sonicvacuum.discover.model.problem import experiment
@@ -22,9 +22,12 @@ def test_a_fit_stays_where_slopes_are_missing(setup, monkeypatch, missing):
     whole = model.normal(np.zeros(5))
     lacking = replace(whole, **{missing: np.full_like(getattr(whole, missing), np.nan)})
     forward = SimpleNamespace(experiment=SimpleNamespace(size=lambda run: 40))
-    monkeypatch.setattr(refit, "spread", lambda forward: np.ones(4))
-    monkeypatch.setattr(refit, "linearised", lambda *rest: pytest.fail("a step without slopes was tried"))
-    now, settled = refit.descend(forward, of_drag(setup), lacking, None, 5)
+    monkeypatch.setattr(descent, "spread", lambda forward: np.ones(4))
+    for module in (descent, refit):
+        monkeypatch.setattr(
+            module, "linearised", lambda *rest: pytest.fail("a step without slopes was tried")
+        )
+    now, settled, _ = descent.descend(forward, of_drag(setup), lacking, None, 5)
     assert settled.all()
     assert np.array_equal(now.u, whole.u) and np.array_equal(now.nu, whole.nu)
     assert refit._finished(forward, of_drag(setup), lacking) is lacking

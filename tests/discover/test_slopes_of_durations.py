@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sonicvacuum.discover.fit import refit
+from sonicvacuum.discover.fit.descent import differences
 from sonicvacuum.discover.fit.normal import linearise
 from sonicvacuum.discover.fit.wide import nominal
 from sonicvacuum.discover.model.forward import Forward
@@ -33,7 +33,7 @@ def test_steps_of_a_fit_do_not_reach_where_a_duration_bends(coated, name, value)
     effect = CATALOGUE.effect(name)
     hypothesis = Hypothesis((Component(effect, variants(effect, setup_of(forward))[0]),))
     u = np.array([[c.inverse(value) for c in hypothesis.coordinates]])
-    steps = refit._differences(linearise(forward, hypothesis, u, null.nu[None]))
+    steps = differences(linearise(forward, hypothesis, u, null.nu[None]))
 
     def slope(steps):
         columns = forward.columns(hypothesis, u, null.nu[None], precise=True, steps=steps)

@@ -17,6 +17,8 @@ from sonicvacuum.records import Record
 
 # Steps of the search for a size, and the Δχ² below which a step is the last.
 STEPS, LAST = 6, 0.3
+# The same as a share of what is left beyond the noise, where that is more.
+ROUGH = 1e-3
 # A step by slopes is made longer by no more than this.
 FARTHER = 8.0
 # Tries of a search for a size without slopes, and how near it comes, in prior widths.
@@ -160,7 +162,7 @@ class Judge:
             gained, before = self._value(slip, model) - self._value(slip, new), (size, step)
             if gained > 0.0:
                 size, model = new_size, new
-            if gained < LAST:
+            if gained < max(LAST, ROUGH * (model.fit.objective - data(model.forward))):
                 break
         return self._judged(slip, size, model)
 
@@ -242,7 +244,11 @@ class Judge:
         one = self.model.fit
         nu = ([start.nu] if start else []) + ([one.nu, 0.0 * one.nu] if afresh or not start else [])
         one = start or one
-        found = fit(forward, one.hypothesis, np.repeat(one.u[None], len(nu), axis=0), np.stack(nu))
+        # What has no size is right or wrong: where it is no better than the record as it is, by how much does
+        # not matter.
+        worse = np.inf if slip.continuous else self.model.objective - noise_volume(forward.experiment)
+        many_u = np.repeat(one.u[None], len(nu), axis=0)
+        found = fit(forward, one.hypothesis, many_u, np.stack(nu), reach=worse)
         self.simulations += forward.chains
         return size, Model(bench, forward, found)
 

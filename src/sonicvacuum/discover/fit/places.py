@@ -40,7 +40,7 @@ def settled(forward: Forward, one: Fit, setup: Setup) -> Fit:
     """
     for _ in range(MOVES):
         near = [
-            fit(forward, one.hypothesis, u, one.nu[None], places, KEEP, ITERATIONS)
+            fit(forward, one.hypothesis, u, one.nu[None], places, KEEP, ITERATIONS, reach=one.objective)
             for u, places in (_around(one, setup, factors) for factors in FACTORS)
             if len(places)
         ]

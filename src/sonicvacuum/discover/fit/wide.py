@@ -187,5 +187,5 @@ def again(forward: Forward, one: Fit, more: np.ndarray | None = None) -> Fit:
     rows = starts(forward) if more is None else np.concatenate([starts(forward), more])
     u = np.repeat(one.u[None], len(rows), axis=0)
     rows = aligned(forward, one.hypothesis, u, rows)
-    other = fit(forward, one.hypothesis, u, rows, keep=FOLLOWED, halved=FIRST)
+    other = fit(forward, one.hypothesis, u, rows, keep=FOLLOWED, halved=FIRST, reach=one.objective)
     return min((one, other), key=lambda f: f.objective)

@@ -28,7 +28,8 @@ def restarted(forward: Forward, one: Fit, setup: Setup) -> Fit:
     if not rows:
         return one
     u, nu, places = (np.array([row[k] for row in rows]) for k in range(3))
-    other = fit(forward, one.hypothesis, one.hypothesis.inside(u), nu, places, FOLLOWED, ITERATIONS)
+    u = one.hypothesis.inside(u)
+    other = fit(forward, one.hypothesis, u, nu, places, FOLLOWED, ITERATIONS, reach=one.objective)
     return min((one, other), key=lambda f: f.objective)
 
 

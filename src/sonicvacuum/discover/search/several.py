@@ -27,6 +27,9 @@ from sonicvacuum.effects import Setup
 # Starts that are fitted jointly at each turn, by what they should gain; those of the first effect beside a
 # smooth misfit, where no single fit tells what it is; rounds of exchanges.
 TRIED, FIRST, EXCHANGES = 2, 5, 1
+# Effects of the largest set whose members are exchanged: beside something large from outside the catalogue
+# sets grow as far as they may, and exchanging all of six took eight minutes to no avail.
+EXCHANGED = 4
 # What slopes promise may fall short of what a fit gains by this share.
 PROMISE = 0.6
 # Once a set is found, all that slopes promise this share of what an effect gains there are fitted in its
@@ -96,13 +99,14 @@ class Turns:
             more = self._added(fit)
             if more is not None and self._hopeless(fit, more):
                 return self._grown(more)
-            if more is None and exchanges < EXCHANGES:
+            few = len(fit.hypothesis.components) <= EXCHANGED
+            if more is None and few and exchanges < EXCHANGES:
                 exchanges += 1
                 more = self._exchanged(fit)
             if more is None and not again:
                 again = True
                 more = self._again(fit)
-            if more is None and not fewer:
+            if more is None and few and not fewer:
                 fewer, exchanges = True, 0
                 more = self._one_for_two(fit)
             if more is None:

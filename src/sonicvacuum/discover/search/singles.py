@@ -2,7 +2,7 @@
 large.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from sonicvacuum.discover.fit import wide
 from sonicvacuum.discover.fit.enough import data
 from sonicvacuum.discover.fit.evidence import Candidate, log_bayes, ranked
 from sonicvacuum.discover.fit.places import settled
-from sonicvacuum.discover.fit.refit import Fit, fit
+from sonicvacuum.discover.fit.refit import Fit, Starts, fit, roughly
 from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, of_one_strength, variants
@@ -41,6 +41,12 @@ INSTEAD = 7.0
 # Steps of the search; of the first one where all effects are followed and the best are polished later.
 ITERATIONS, FIRST = 14, 5
 COARSE = 6
+# After so many of these it shows which effects come near the data: those that are not further behind the best
+# one than this share of what is left without any.
+LED, AHEAD = 3, 0.3
+# They explain the data if they leave no more than noise does, so many of its standard deviations; steps of
+# all others then.
+EXPLAINED, GLANCE = 2.0, 2
 
 
 def setup_of(forward: Forward) -> Setup:
@@ -61,6 +67,9 @@ def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
     steps = FIRST if loose else ITERATIONS
     setup = setup_of(forward)
     left = list(setup.catalogue.candidates(setup, forward.experiment.excluded))
+    if nonlinear and traced and not rough:
+        found = _raced(forward, null, scores, left, Effort(True, steps, COARSE))
+        return ranked(_once_more(forward, null, found, setup), forward.experiment.prior_odds)
     found: list[Candidate] = []
     best_gain, err = largest, ERR
 
@@ -87,10 +96,48 @@ def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
             err = ERR_FAR
         else:
             break
-    found = [c for c in found if c is not None]
-    if nonlinear and traced and not rough:
-        found = _once_more(forward, null, found, setup)
-    return ranked(found, forward.experiment.prior_odds)
+    return ranked([c for c in found if c is not None], forward.experiment.prior_odds)
+
+
+def _raced(forward, null, scores, effects, effort) -> list[Candidate]:
+    """Far from the data: all effects a few steps along running integrals of the traces, and from there those
+    that come near the data. If these explain them, all others are behind for good, and only glanced at.
+    """
+
+    def led(branch, effect):
+        ways = begun(branch, null, scores, effect, effort)
+        return [(free, _led(branch, effect, free, one, effort)) for free, one in ways]
+
+    def follow(branch, effect):
+        return candidate(branch, null, scores, effect, replace(effort, coarse=COARSE - LED), ways[effect.id])
+
+    def glance(branch, effect):
+        best = [(free, one.take([int(np.argmin(one.objective))])) for free, one in ways[effect.id]]
+        return candidate(branch, null, scores, effect, Effort(True, GLANCE, finish=False), best)
+
+    found = abreast.each(forward, led, effects, "effects, a few steps")
+    ways = {effect.id: one for effect, one in zip(effects, found, strict=True)}
+    left = {name: min((s.objective.min() for _, s in one), default=np.inf) for name, one in ways.items()}
+    nothing = roughly(forward, null.hypothesis, Starts(null.u[None], null.nu[None]), 1, LED).objective[0]
+    size, least = data(forward), min(left.values(), default=np.inf)
+    # What gauges do is told by slopes, and part of it not by integrals.
+    gains = {e: float(np.square(scores.z[k])) for e, k in scores.best().items()}
+    enough = (1.0 - AHEAD) * (null.objective - size)
+    ahead = [
+        e for e in effects if left[e.id] - least <= AHEAD * (nothing - size) or gains.get(e.id, 0.0) >= enough
+    ]
+    behind = [e for e in effects if e not in ahead]
+    found = abreast.each(forward, follow, ahead, "single effects")
+    rest = min((c.fit.objective for c in found if c is not None), default=np.inf) - size
+    explained = rest < EXPLAINED * np.sqrt(2.0 * size)
+    found += abreast.each(forward, glance if explained else follow, behind, "single effects")
+    return [c for c in found if c is not None]
+
+
+def _led(forward, effect, free, one, effort):
+    """Starts after the first steps along running integrals of the traces."""
+    hypothesis = Hypothesis((Component(effect, free),))
+    return roughly(forward, hypothesis, one, _kept(effect, free, effort), LED)
 
 
 def _once_more(forward, null, found, setup):
@@ -140,19 +187,30 @@ class Effort:
 
     grid: bool
     steps: int
-    coarse: int
+    coarse: int = 0
     halved: int = 0
     finish: bool = True
 
 
-def candidate(forward, null: Fit, scores: Screen, effect: Effect, effort: Effort):
-    """The best fit of one effect over its places, shapes and sets of strengths; None where nothing fits."""
+def begun(forward, null: Fit, scores: Screen, effect: Effect, effort: Effort):
+    """[(coordinates, starts)] of every set of strengths of an effect from which it is fitted."""
+    found = []
+    for free in variants(effect, setup_of(forward)):
+        u, places, nu = starts(forward, null, scores, effect, free, effort.grid)
+        if len(u):
+            found.append((free, Starts(u, nu, places)))
+    return found
+
+
+def candidate(forward, null: Fit, scores: Screen, effect: Effect, effort: Effort, near=None):
+    """The best fit of one effect over its places, shapes and sets of strengths; None where nothing fits.
+
+    `near`: starts, as `begun` has them where they are not given.
+    """
     found: list[tuple[float, Fit, float]] = []
     options = variants(effect, setup_of(forward))
-    for free in options:
-        u, places, nu = starts(forward, null, scores, effect, free, effort.grid)
-        if not len(u):
-            continue
+    for free, one in begun(forward, null, scores, effect, effort) if near is None else near:
+        u, nu, places = one.u, one.nu, one.places
         hypothesis = Hypothesis((Component(effect, free),))
         keep = _kept(effect, free, effort)
         how = (keep, effort.steps, effort.coarse, effort.halved)
