@@ -10,8 +10,8 @@ from click.testing import CliRunner
 
 from sonicvacuum import records
 from sonicvacuum.cli import cli
+from sonicvacuum.discover.imagined import changes, changes_of_two
 from sonicvacuum.discover.model.problem import experiment
-from sonicvacuum.discover.next_experiment import changes
 from sonicvacuum.files import InputError
 from sonicvacuum.laboratory.specimen import GRAVITY
 from sonicvacuum_blind import followup, study
@@ -49,7 +49,9 @@ def test_the_same_changes_are_offered(own, imagined):
 
 def test_what_is_made_is_what_is_imagined(own, imagined):
     assert {key.split(".")[0] for change, _ in imagined for key in change} == {"striker", "chain", "sensors"}
-    for change, wanted in imagined:
+    of_two = list(changes_of_two(experiment(hide(SPEC)[0])))
+    assert all(len(change) == 2 for change, _ in of_two)
+    for change, wanted in [*imagined, *of_two[::6]]:
         made = experiment(follow(SPEC, own, change))
         (run,), (batch,) = made.runs, made.batches
         # Values are proposed to four decimals, of which speeds of 0.02 m/s and more keep 0.3 %.

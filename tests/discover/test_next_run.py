@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 from made_records import block
 
+from sonicvacuum.discover.imagined import changes
 from sonicvacuum.discover.model.problem import experiment
-from sonicvacuum.discover.next_experiment import changes, put_behind, resolved
+from sonicvacuum.discover.next_experiment import put_behind, resolved
 from sonicvacuum.files import InputError
 from sonicvacuum.records import Record, Signals
 from sonicvacuum.records.reader import parse

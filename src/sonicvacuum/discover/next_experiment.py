@@ -8,27 +8,26 @@ true by its present probability, all others are most likely behind it; but for t
 such as a general law where one of its limits is true.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import scipy
 
 from sonicvacuum.discover.fit.refit import Fit
+from sonicvacuum.discover.imagined import changes, changes_of_two
 from sonicvacuum.discover.judge.degenerate import ALIKE
-from sonicvacuum.discover.model.experiment import Batch, Experiment, RunData
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.rounds import Investigation
 from sonicvacuum.discover.verdict import Next
-from sonicvacuum.laboratory.next_run import FASTEST, MASSES, PRELOADS, SLOWEST, SPEEDS, gauge_beads
-from sonicvacuum.laboratory.ranges import likely_ball
-from sonicvacuum.laboratory.specimen import GRAVITY
-from sonicvacuum.physics.chain import Chain
 
 # Explanations beside the best that are held apart: the nearest where nothing is left alike, and of those that
 # are left alike so many.
 _RIVALS, _ALIKE = 2, 6
 # Less likely than this to be put behind by any run: left out of account.
 _HOPELESS = 0.1
+# Two quantities are changed where no run with one changed is as sure as this to leave one explanation alone,
+# and if that is surer by so much.
+SURE, WORTH_TWO = 0.9, 0.05
 
 
 @dataclass(frozen=True)
@@ -41,7 +40,10 @@ class Explanation:
 
 
 def propose(found: Investigation, alike: list[list[str]]) -> Next | None:
-    """The run that most likely leaves one explanation alone; None without signals or rivals."""
+    """The run that most likely leaves one explanation alone; None without signals or rivals.
+
+    Two quantities of the last run are changed only where none alone would decide.
+    """
     forward = found.forward
     if not any(r.has_signals for r in forward.experiment.runs):
         return None
@@ -49,27 +51,39 @@ def propose(found: Investigation, alike: list[list[str]]) -> Next | None:
     if len(left) < 2:
         return None
     known = [precision(forward, one.fit) for one in left]
-    tried, apart = [], []
-    for change, imagined in changes(forward.experiment):
-        if "chain.orientation" in change and any(_depends_on_orientation(one.fit) for one in left):
-            continue  # records that hang differently say nothing of such an effect when taken together
-        new = Forward(imagined, forward.threads)
-        tried.append(change)
-        apart.append(separations(forward, new, [one.fit for one in left], known))
-        forward.simulations += new.simulations
+    weights = np.array([one.weight for one in left])
+    tried, apart = _tried(forward, left, known, changes(forward.experiment))
     if not tried:
         return None
-    weights = np.array([one.weight for one in left])
-    behind = put_behind(weights, np.array(apart))
+    behind = put_behind(weights, apart)
+    if alike and (surely(weights, behind) < SURE).all():
+        others = _tried(forward, left, known, changes_of_two(forward.experiment))
+        tried, apart = tried + others[0], np.concatenate([apart, others[1]])
+        behind = put_behind(weights, apart)
     value = resolved(weights, behind)
     able = np.flatnonzero(behind.max(axis=0)[0, 1:] > _HOPELESS) + 1
     rivals = able if len(able) else np.arange(1, len(left))
-    nearest = np.array(apart)[:, 0, rivals].min(axis=1)
     # Where any run will do, or none: the one that decides most.
-    best = int(np.lexsort((nearest, np.round(value, 3)))[-1])
-    rival = int(rivals[np.argmin(apart[best][0, rivals])])
+    order = np.lexsort((apart[:, 0, rivals].min(axis=1), np.round(value, 3)))
+    best = next(k for k in order[::-1] if len(tried[k]) == 1)
+    if value[order[-1]] > value[best] + WORTH_TWO:
+        best = order[-1]
+    rival = int(rivals[np.argmin(apart[best, 0, rivals])])
     separates = [left[0].name, left[rival].name]
-    return Next(change=tried[best], separates=separates, delta_chi2=float(apart[best][0, rival]))
+    return Next(change=tried[best], separates=separates, delta_chi2=float(apart[best, 0, rival]))
+
+
+def _tried(forward, left, known, imagined):
+    """Changes, and (c, n, n) how far each run takes explanations apart."""
+    tried, apart = [], []
+    for change, experiment in imagined:
+        if "chain.orientation" in change and any(_depends_on_orientation(one.fit) for one in left):
+            continue  # records that hang differently say nothing of such an effect when taken together
+        new = Forward(experiment, forward.threads)
+        tried.append(change)
+        apart.append(separations(forward, new, [one.fit for one in left], known))
+        forward.simulations += new.simulations
+    return tried, np.array(apart).reshape(len(tried), len(left), len(left))
 
 
 def put_behind(weights: np.ndarray, apart: np.ndarray) -> np.ndarray:
@@ -93,9 +107,13 @@ def resolved(weights: np.ndarray, behind: np.ndarray) -> np.ndarray:
     """(c,) probabilities that each run leaves the true explanation alone, but for those that no run can put
     behind it; arguments as `put_behind` has them.
     """
-    odds = np.exp(weights - np.logaddexp.reduce(weights))
     able = behind.max(axis=0) > _HOPELESS
-    return np.where(able, behind, 1.0).min(axis=2) @ odds
+    return surely(weights, np.where(able, behind, 1.0))
+
+
+def surely(weights: np.ndarray, behind: np.ndarray) -> np.ndarray:
+    """(c,) the same with none left out."""
+    return behind.min(axis=2) @ np.exp(weights - np.logaddexp.reduce(weights))
 
 
 def _depends_on_orientation(fit):
@@ -119,101 +137,6 @@ def _left(found: Investigation, alike) -> list[Explanation]:
         return near[: 1 + _ALIKE] if len(near) > 1 else ranked[: 1 + _RIVALS]
     nothing = Explanation("none", 0.0, found.null)
     return [nothing, *ranked[:_RIVALS]] if not found.named else ranked[: 1 + _RIVALS]
-
-
-@dataclass(frozen=True)
-class Means:
-    """What a laboratory can change, for the last of its runs.
-
-    Attributes:
-        speeds: of the striker in m/s.
-        masses: of the striker in kg.
-        preloads: static force in N.
-        turned: whether the chain can be hung the other way.
-        beads: that may hold the first embedded gauge.
-    """
-
-    speeds: tuple[float, ...]
-    masses: tuple[float, ...]
-    preloads: tuple[float, ...]
-    turned: bool
-    beads: tuple[int, ...]
-
-
-def means(experiment: Experiment, chain: Chain) -> Means:
-    """What the record's `apparatus` allows, or what most laboratories can do where it has none."""
-    speed, mass, force = (float(x[0]) for x in (chain.speed, chain.striker_mass, chain.static_force))
-    given = experiment.record.block.apparatus if experiment.record is not None else None
-    if given is None:
-        return Means(
-            speeds=tuple(speed * f for f in SPEEDS if SLOWEST <= speed * f <= FASTEST),
-            masses=tuple(mass * f for f in MASSES),
-            preloads=tuple(force + more for more in PRELOADS),
-            turned=True,
-            beads=tuple(gauge_beads(experiment.beads)),
-        )
-    slow, fast = given.speed_m_s or (speed, speed)
-    speeds = {slow, fast, *(speed * f for f in SPEEDS if slow <= speed * f <= fast)} - {speed}
-    other = "horizontal" if chain.gravity[0] > 0.0 else "vertical"
-    return Means(
-        speeds=tuple(sorted(speeds)),
-        masses=tuple(m / 1e3 for m in given.striker_mass_g if abs(m / 1e3 - mass) > 1e-9 * mass),
-        preloads=tuple(f for f in given.static_force_N if f != force),
-        turned=other in given.orientation,
-        beads=tuple(given.gauge_beads),
-    )
-
-
-def changes(experiment: Experiment):
-    """(change, experiment with that one run) for every run that can be imagined; the last run is varied."""
-    batch = next(b for b in experiment.batches if experiment.runs[b.runs[0]].has_signals)
-    lane = len(batch.runs) - 1
-    run = experiment.runs[batch.runs[lane]]
-    chain = batch.chain.take([lane])
-    speed = float(chain.speed[0])
-    can = means(experiment, chain)
-    for value in can.speeds:
-        changed = chain.struck_at(np.full_like(chain.speed, value))
-        imagined = _with(experiment, batch, run, changed, value / speed)
-        yield {"striker.speed_m_s": round(value, 4)}, imagined
-    for mass in can.masses:
-        # The contact keeps its radius, so that a ball keeps its size.
-        if likely_ball(mass, float(np.max(chain.striker_radius))):
-            changed = replace(chain, striker_mass=np.full_like(chain.striker_mass, mass))
-            yield {"striker.mass_g": round(mass * 1e3, 4)}, _with(experiment, batch, run, changed)
-    for force in can.preloads:
-        changed = replace(chain, static_force=np.full_like(chain.static_force, force))
-        yield {"chain.static_force_N": float(force)}, _with(experiment, batch, run, changed)
-    if can.turned:
-        upright = bool(chain.gravity[0] > 0.0)
-        changed = replace(chain, gravity=np.array([0.0 if upright else GRAVITY]))
-        imagined = _with(experiment, batch, run, changed)
-        yield {"chain.orientation": "horizontal" if upright else "vertical"}, imagined
-    yield from _gauges(experiment, batch, run, chain, can.beads)
-
-
-def _gauges(experiment, batch, run, chain, beads):
-    """The first embedded gauge moved to one of some beads."""
-    embedded = [k for k, g in enumerate(experiment.gauges) if g.kind == "embedded"]
-    for bead in beads if embedded else ():
-        gauge = experiment.gauges[embedded[0]]
-        moved = tuple(
-            replace(g, bead=bead) if k == embedded[0] else g for k, g in enumerate(experiment.gauges)
-        )
-        if bead != gauge.bead:
-            imagined = _with(experiment, batch, run, chain)
-            yield {f"sensors.{gauge.id}.bead": bead}, replace(imagined, gauges=moved)
-
-
-def _with(experiment, batch, run, chain, faster: float = 1.0):
-    """The experiment that consists of one imagined run; slower pulses are watched for longer."""
-    longer = max(1.0, faster**-0.2)
-    step = run.interval
-    samples = int(len(run.time) * longer)
-    time = run.time[0] + step * np.arange(samples)
-    data = RunData("next", time, np.zeros((len(experiment.gauges), samples)), (), run.speed_rel_sigma)
-    new = Batch(chain, (0,), batch.interval, batch.duration + step * (samples - len(run.time)))
-    return replace(experiment, runs=(data,), batches=(new,), smooth=None, slow=None)
 
 
 def separations(old: Forward, new: Forward, fits: list[Fit], known: list[np.ndarray]) -> np.ndarray:
