@@ -22,6 +22,9 @@ ROUNDS = 3
 POINTS, FARTHEST = (-1.0, -0.5, 0.5, 1.0), 0.5
 # Errors that differ by less than this factor are the same.
 ALIKE = 1.5
+# A coordinate with a larger error than this stands where data hardly change at all, near the limit of a law:
+# what ends the valley lies elsewhere.
+FLAT = 2.0
 
 
 def asks(hypothesis: Hypothesis) -> bool:
@@ -31,12 +34,12 @@ def asks(hypothesis: Hypothesis) -> bool:
 
 def broadened(forward: Forward, hypothesis: Hypothesis, now: Normal, columns: list[np.ndarray]) -> Normal:
     """A fit, one lane, with slopes over its own standard errors, at the lowest point of its valley; as it is
-    where its errors stay what they were.
+    where its errors stay what they were, and are no longer than errors can be.
 
     `columns` are those of a point nearby (`Forward.columns`), whose slopes to the nuisances are held.
     """
     wide = sloped(forward, hypothesis, now, columns) if now.has_slopes[0] else None
-    if wide is None or not wide.has_slopes[0] or _alike(now, wide):
+    if wide is None or not wide.has_slopes[0] or (_alike(now, wide) and not _flat(wide)):
         return now
     here = _lowest(forward, hypothesis, wide, columns)
     for _ in range(ROUNDS):
@@ -66,6 +69,10 @@ def covariance(now: Normal) -> np.ndarray:
 def _alike(one, other):
     one, other = (np.maximum(np.diag(covariance(x)), ridge.LEAST) for x in (one, other))
     return np.abs(np.log(other / one)).max() < 2.0 * np.log(ALIKE)
+
+
+def _flat(now):
+    return np.diag(covariance(now)).max() > FLAT**2
 
 
 def _axes(now):

@@ -14,6 +14,8 @@ LARGEST_STEP, STEP_AIM = 3e-3, 10.0
 # decays by its own size within one, and the fast limit of relaxation no longer is the law it tends to; below
 # LONGEST coated chains with any law err by some 1e-4 of a gauge's peak.
 ERROR, ERROR_AIM, LONGEST = 1e-6, 0.05, 3.0
+# The same of running integrals, which only lead to where fits start.
+LEADING_AIM = 1.0
 
 
 def difference(norm: float) -> float:
@@ -21,6 +23,9 @@ def difference(norm: float) -> float:
     return float(np.clip(STEP_AIM / max(norm, 1e-9), 1e-5, LARGEST_STEP))
 
 
-def refinement(norm: float) -> float:
-    """By what the stepper's full accuracy is refined: below 1, as far as the noise leaves it unseen."""
-    return float(np.clip((ERROR * norm / ERROR_AIM) ** 0.25, 1.0 / LONGEST, 1.0))
+def refinement(norm: float, leading: bool = False) -> float:
+    """By what the stepper's full accuracy is refined: below 1, as far as noise leaves it unseen; less still
+    where predictions are only `leading` to where others begin.
+    """
+    aim = LEADING_AIM if leading else ERROR_AIM
+    return float(np.clip((ERROR * norm / aim) ** 0.25, 1.0 / LONGEST, 1.0))
