@@ -98,6 +98,11 @@ class Starts:
         rows = (self.u, self.nu, self.places, self.objective)
         return Starts(*(None if row is None else row[lanes] for row in rows))
 
+    def beside(self, others: "Starts") -> "Starts":
+        """These and others, their objectives left aside."""
+        rows = zip((self.u, self.nu, self.places), (others.u, others.nu, others.places), strict=True)
+        return Starts(*(None if one is None else np.concatenate([one, other]) for one, other in rows))
+
 
 def _begun(forward, u, nu, places):
     u = np.atleast_2d(np.asarray(u, dtype=float))

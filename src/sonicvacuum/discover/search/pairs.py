@@ -18,7 +18,8 @@ from sonicvacuum.discover.fit.refit import Fit, finished, fit, polish
 from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, is_law, of_one_strength, variants
-from sonicvacuum.discover.search import directions, restart, screen, secants, singles
+from sonicvacuum.discover.search import directions, restart, screen, secants
+from sonicvacuum.discover.search.starts import coordinates, setup_of, starts_of
 from sonicvacuum.effects import Setup
 
 # Singles that pairs start from.
@@ -67,7 +68,7 @@ class Pairs:
     """
 
     def __init__(self, forward: Forward, null: Fit, scores: screen.Screen, candidates: list[Candidate]):
-        self.forward, self.null, self.setup = forward, null, singles.setup_of(forward)
+        self.forward, self.null, self.setup = forward, null, setup_of(forward)
         let_go = partial(_let_go, candidates)
         self.seen = [let_go(s) for s in linear(scores, self.setup)]
         started = [c for c in candidates[:STARTED] if c.gain > 0.0]
@@ -263,7 +264,7 @@ def _from_plane(scores, setup, ks, strengths, gain):
         components.append(Component(setup.catalogue.effect(d.effect), free))
         u += [
             float(np.clip(x, c.low + 1e-9, c.high - 1e-9))
-            for c, x in zip(free, singles.coordinates(free, d, strength), strict=True)
+            for c, x in zip(free, coordinates(free, d, strength), strict=True)
         ]
         places.append(d.place or 0)
     nu = scores.moved(list(ks), np.array(strengths))[1]
@@ -297,7 +298,7 @@ def beside(
         finite = secants.search(branch, first, effect, setup, 2, sparse=True)
         more = max([float(np.square(scores.z[k])), *(one.gain for one in finite)])
         free = _variant(scores.directions[k], setup)
-        u, places, nu = singles.starts(branch, first, scores, effect, free, False, finite)
+        u, places, nu = starts_of(branch, first, scores, effect, free, False, finite)
         if not len(u):
             return None
         u = np.column_stack([np.repeat(first.u[None], len(u), axis=0), u])

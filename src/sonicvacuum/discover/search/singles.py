@@ -16,6 +16,7 @@ from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, of_one_strength, variants
 from sonicvacuum.discover.search import restart, secants
 from sonicvacuum.discover.search.screen import Screen
+from sonicvacuum.discover.search.starts import CLEAR, along, coordinates, kept, setup_of, starts_of, within
 from sonicvacuum.effects import Effect, Setup
 
 # Beyond this misfit of the nominal model (in χ²) its slopes may point the wrong way: whole ranges are
@@ -26,9 +27,6 @@ NONLINEAR = 1500.0
 HOPELESS, ERR = 20.0, 0.2
 # That share where all that were refitted leave much.
 ERR_FAR = 0.75
-PLACES_TRIED = 5
-# Below this largest z² nothing can be named, and slopes suffice.
-CLEAR = 9.0
 # A nominal fit whose nuisances stand so many standard errors off does the work of what is missing with them.
 STRAINED = 5.0
 # A deviation that the screen puts beyond this many typical ones may lie where slopes do not reach.
@@ -47,11 +45,8 @@ LED, AHEAD = 3, 0.3
 # They explain the data if they leave no more than noise does, so many of its standard deviations; steps of
 # all others then.
 EXPLAINED, GLANCE = 2.0, 2
-
-
-def setup_of(forward: Forward) -> Setup:
-    """The nominal setup of the first batch, which knows places and off values."""
-    return forward.nominal(forward.experiment.batches[0], np.zeros((1, forward.layout.size)))
+# What hardly acts, in typical deviations.
+HARDLY = 1e-4
 
 
 def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
@@ -112,8 +107,8 @@ def _raced(forward, null, scores, effects, effort) -> list[Candidate]:
         return candidate(branch, null, scores, effect, replace(effort, coarse=COARSE - LED), ways[effect.id])
 
     def glance(branch, effect):
-        best = [(free, one.take([int(np.argmin(one.objective))])) for free, one in ways[effect.id]]
-        return candidate(branch, null, scores, effect, Effort(True, GLANCE, finish=False), best)
+        near = [(free, _glanced(null, scores, effect, free, one)) for free, one in ways[effect.id]]
+        return candidate(branch, null, scores, effect, Effort(True, GLANCE, finish=False), near)
 
     found = abreast.each(forward, led, effects, "effects, a few steps")
     ways = {effect.id: one for effect, one in zip(effects, found, strict=True)}
@@ -134,10 +129,23 @@ def _raced(forward, null, scores, effects, effort) -> list[Candidate]:
     return [c for c in found if c is not None]
 
 
+def _glanced(null: Fit, scores: Screen, effect: Effect, free, led: Starts) -> Starts:
+    """The best start that was led somewhere, and one with an effect that hardly acts: no effect explains less
+    than the nominal model does.
+    """
+    best = led.take([int(np.argmin(led.objective))])
+    for k in along(scores, effect, free)[:1]:
+        d = scores.directions[k]
+        size = HARDLY * (np.sign(scores.z[k]) or 1.0)
+        place = np.array([[d.place or 0]]) if effect.places else None
+        best = best.beside(Starts(within(free, [coordinates(free, d, size)]), null.nu[None], place))
+    return best
+
+
 def _led(forward, effect, free, one, effort):
     """Starts after the first steps along running integrals of the traces."""
     hypothesis = Hypothesis((Component(effect, free),))
-    return roughly(forward, hypothesis, one, _kept(effect, free, effort), LED)
+    return roughly(forward, hypothesis, one, kept(effect, free, effort.grid), LED)
 
 
 def _once_more(forward, null, found, setup):
@@ -196,7 +204,7 @@ def begun(forward, null: Fit, scores: Screen, effect: Effect, effort: Effort):
     """[(coordinates, starts)] of every set of strengths of an effect from which it is fitted."""
     found = []
     for free in variants(effect, setup_of(forward)):
-        u, places, nu = starts(forward, null, scores, effect, free, effort.grid)
+        u, places, nu = starts_of(forward, null, scores, effect, free, effort.grid)
         if len(u):
             found.append((free, Starts(u, nu, places)))
     return found
@@ -212,7 +220,7 @@ def candidate(forward, null: Fit, scores: Screen, effect: Effect, effort: Effort
     for free, one in begun(forward, null, scores, effect, effort) if near is None else near:
         u, nu, places = one.u, one.nu, one.places
         hypothesis = Hypothesis((Component(effect, free),))
-        keep = _kept(effect, free, effort)
+        keep = kept(effect, free, effort.grid)
         how = (keep, effort.steps, effort.coarse, effort.halved)
         # The evidence of a shape asks for its error, and so for slopes to second order.
         shaped = any(c.parameter.known or not c.parameter.switches for c in free)
@@ -250,82 +258,3 @@ def place_weights(scores, effect, one):
     weights = np.exp(0.5 * (squares - squares.max()))
     weights /= weights.sum()
     return tuple((scores.directions[k].place, float(w)) for k, w in zip(at, weights, strict=True) if w > 0.01)
-
-
-def starts(forward, null: Fit, scores: Screen, effect: Effect, free, grid: bool, finite=None):
-    """Coordinates (L, p), places (L, 1) or None and nuisances (L, q) from which one effect is fitted.
-
-    `finite` are trials of finite strength, searched where not given.
-    """
-    rows = _from_screen(scores, effect, free)
-    if finite is None and _tried(effect, free) and float(np.square(scores.z).max()) > CLEAR:
-        finite = secants.search(forward, null, effect, setup_of(forward))
-    names = tuple(c.parameter.name for c in free)
-    rows += [(list(one.u), one.place, one.nu) for one in finite or () if one.free == names]
-    if grid:
-        nuisances = wide.minima(forward, null)
-        rows += [(*row, nu) for row in _grid(scores, effect, free) for nu in nuisances]
-    u = np.array([r[0] for r in rows]).reshape(len(rows), len(free))
-    for k, c in enumerate(free):
-        u[:, k] = u[:, k].clip(c.low + 1e-9, c.high - 1e-9)
-    places = np.array([[r[1] or 0] for r in rows]) if effect.places else None
-    return u, places, np.array([r[2] for r in rows]).reshape(len(rows), forward.layout.size)
-
-
-def _kept(effect, free, effort):
-    """How many starts are followed: all of the striker's mass, which nuisances hide at first."""
-    if _tried(effect, free) and not effect.places:
-        return 8
-    return 5 if effort.grid else 3
-
-
-def _tried(effect, free):
-    """Whether trials of finite strength are starts of this set of parameters."""
-    return len(free) == 1 and (effect.places in secants.PLACES or free[0].parameter.tried_at_once)
-
-
-def _from_screen(scores, effect, free):
-    strengths = [c.parameter.name for c in free if c.parameter.switches]
-    at = [k for k, d in enumerate(scores.directions) if d.effect == effect.id and d.strength in strengths]
-    at = sorted(at, key=lambda k: -abs(scores.z[k]))[:PLACES_TRIED]
-    rows = []
-    for k in at:
-        d = scores.directions[k]
-        size = scores.strength[k] if scores.z[k] else 1.0 / max(scores.length[k], 1e-9)
-        rows.append((coordinates(free, d, size), d.place, scores.moved(k)[1]))
-    return rows
-
-
-def coordinates(free, direction, size: float) -> list[float]:
-    """Coordinates of an effect's parameters for a direction taken `size` typical deviations far."""
-    shape = dict(direction.shape)
-    return [_start(c, direction, shape, size) for c in free]
-
-
-def _start(c, direction, shape, size):
-    """Coordinate of one parameter for a direction taken `size` typical deviations far."""
-    p = c.parameter
-    if p.name in shape:
-        return c.inverse(shape[p.name])
-    if p.name != direction.strength:
-        return 1e-3 if c.kind in ("ratio", "linear") else c.low
-    if c.endless:
-        return float(np.log(max(abs(size), 1e-12)))
-    if p.acts_like == "modulus":
-        # Its slope is that of the modulus as a nuisance, which is log-normal.
-        return float(size * p.scale / c.unit)
-    if c.kind == "ratio":
-        # As far down as up: a straight line would soon meet a ratio of nothing.
-        relative = size * p.scale / c.unit
-        return float(np.copysign(np.log1p(abs(relative)), relative))
-    return size if c.two_sided or c.high > 0.0 else -abs(size)
-
-
-def _grid(scores, effect, free):
-    """All strengths, coarse in whatever else is free, at all places."""
-    axes = [c.starts() if k == 0 else c.starts()[1::4] for k, c in enumerate(free)]
-    points = np.array(np.meshgrid(*axes, indexing="ij")).reshape(len(free), -1).T
-    if not effect.places:
-        return [(list(p), None) for p in points]
-    places = dict.fromkeys(d.place for d in scores.directions if d.effect == effect.id)
-    return [(list(p), place) for place in places for p in points[:: 2 if len(places) > 3 else 1]]
