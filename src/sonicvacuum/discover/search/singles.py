@@ -108,7 +108,8 @@ def _raced(forward, null, scores, effects, effort) -> list[Candidate]:
 
     def glance(branch, effect):
         near = [(free, _glanced(null, scores, effect, free, one)) for free, one in ways[effect.id]]
-        return candidate(branch, null, scores, effect, Effort(True, GLANCE, finish=False), near)
+        effort = Effort(True, GLANCE, finish=False, shapes=False)
+        return candidate(branch, null, scores, effect, effort, near)
 
     found = abreast.each(forward, led, effects, "effects, a few steps")
     ways = {effect.id: one for effect, one in zip(effects, found, strict=True)}
@@ -190,7 +191,7 @@ def _strained(forward: Forward, null: Fit) -> bool:
 class Effort:
     """How an effect is searched: `grid` adds starts over the whole range to those of the screen; all are
     followed for so many `steps`, on integrals of the traces for `coarse` steps before. `halved` and `finish`:
-    see `fit`.
+    see `fit`; without `finish` those with a shape are finished all the same, if `shapes` are.
     """
 
     grid: bool
@@ -198,6 +199,7 @@ class Effort:
     coarse: int = 0
     halved: int = 0
     finish: bool = True
+    shapes: bool = True
 
 
 def begun(forward, null: Fit, scores: Screen, effect: Effect, effort: Effort):
@@ -223,7 +225,7 @@ def candidate(forward, null: Fit, scores: Screen, effect: Effect, effort: Effort
         keep = kept(effect, free, effort.grid)
         how = (keep, effort.steps, effort.coarse, effort.halved)
         # The evidence of a shape asks for its error, and so for slopes to second order.
-        shaped = any(c.parameter.known or not c.parameter.switches for c in free)
+        shaped = effort.shapes and any(c.parameter.known or not c.parameter.switches for c in free)
         one = fit(forward, hypothesis, u, nu, places, *how, finish=effort.finish or shaped)
         if not np.isfinite(one.objective):
             continue
