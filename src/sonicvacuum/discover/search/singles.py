@@ -73,8 +73,8 @@ def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
         grid = nonlinear or (loose and far and not effect.places)
         # Most are far behind another; near the nominal model, those that are not are finished once all
         # are known. Far from it the last steps are as good as any.
-        effort = Effort(grid, steps, COARSE if grid and traced else 0, finish=loose)
-        effort = Effort(True, ITERATIONS, 0, wide.FIRST) if grid and rough else effort
+        effort = Effort(grid, steps, finish=loose)
+        effort = Effort(True, ITERATIONS, halved=wide.FIRST) if grid and rough else effort
         return candidate(branch, null, scores, effect, effort)
 
     while left:
