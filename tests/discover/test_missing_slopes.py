@@ -40,7 +40,7 @@ def test_places_of_an_effect_beside_none_are_indices(setup, monkeypatch):
     )
     starts = np.zeros((1, 1)), np.array([[1]]), np.zeros((1, 3))
     monkeypatch.setattr(pairs.secants, "search", lambda *rest, **options: [])
-    monkeypatch.setattr(pairs.singles, "starts", lambda *rest: starts)
+    monkeypatch.setattr(pairs, "starts_of", lambda *rest: starts)
     monkeypatch.setattr(pairs.abreast, "each", lambda f, work, items, calls: [work(f, i) for i in items])
     (start,) = pairs.beside(None, nothing, nothing, setup, scores)
     assert np.arange(3)[start.places].tolist() == [[1]]
