@@ -1,12 +1,16 @@
 """The next run is one that the laboratory can make."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from made_records import block
 
-from sonicvacuum.discover.imagined import changes
+from sonicvacuum.discover import next_experiment
+from sonicvacuum.discover.imagined import changes, changes_of_two
 from sonicvacuum.discover.model.problem import experiment
 from sonicvacuum.discover.next_experiment import put_behind, resolved
+from sonicvacuum.discover.verdict import Next
 from sonicvacuum.files import InputError
 from sonicvacuum.records import Record, Signals
 from sonicvacuum.records.reader import parse
@@ -94,3 +98,49 @@ def test_what_no_run_tells_apart_decides_nothing_between_runs():
     weak, strong = between((0, 2, 5.0), (1, 2, 5.0)), between((0, 2, 90.0), (1, 2, 90.0))
     one, other = worth(np.zeros(3), weak, strong)
     assert one < 0.4 < 0.99 < other
+
+
+def test_two_changes_are_of_different_quantities_and_leave_the_chain_as_it_hangs():
+    content = block([SPEED])
+    time = np.arange(0.0, 300.0)
+    quiet = Signals(time, {s["id"]: np.zeros(len(time)) for s in content["sensors"]})
+    found = [change for change, _ in changes_of_two(experiment(Record(parse(content), {"v0": quiet})))]
+    assert found and all(len(change) == 2 for change in found)
+    assert all(sum(key.startswith("sensors.") for key in change) < 2 for change in found)
+    assert "chain.orientation" not in {key for change in found for key in change}
+
+
+ONE, TWO = {"striker.speed_m_s": 2.0}, {"striker.speed_m_s": 2.0, "striker.mass_g": 1.0}
+
+
+def proposed(monkeypatch, apart_by_one, apart_by_two):
+    """What is proposed between three explanations as likely as each other, and whether two were asked for."""
+    asked = []
+
+    def tried(forward, left, known, imagined):
+        asked.append(imagined)
+        change, apart = {"one": (ONE, apart_by_one), "two": (TWO, apart_by_two)}[imagined]
+        return [change], np.array([apart])
+
+    for name, value in (("_tried", tried), ("precision", lambda *rest: None)):
+        monkeypatch.setattr(next_experiment, name, value)
+    for name, value in (("changes", "one"), ("changes_of_two", "two")):
+        monkeypatch.setattr(next_experiment, name, lambda seen, value=value: value)
+    explanations = [next_experiment.Explanation(name, 0.0, None) for name in "abc"]
+    monkeypatch.setattr(next_experiment, "_left", lambda *rest: explanations)
+    seen = SimpleNamespace(runs=[SimpleNamespace(has_signals=True)])
+    found = SimpleNamespace(forward=SimpleNamespace(experiment=seen))
+    return next_experiment.propose(found, [["a", "b", "c"]]), "two" in asked
+
+
+def test_two_quantities_are_changed_only_where_one_does_not_decide(monkeypatch):
+    decisive, weak = np.full((3, 3), 200.0), np.full((3, 3), 12.0)
+    for by_one, change, asked in ((decisive, ONE, False), (weak, TWO, True)):
+        wanted = Next(change=change, separates=["a", "b"], delta_chi2=200.0)
+        assert proposed(monkeypatch, by_one, decisive) == (wanted, asked)
+
+
+def test_a_second_change_that_helps_little_is_left_out(monkeypatch):
+    weak, hardly_better = np.full((3, 3), 12.0), np.full((3, 3), 12.2)
+    found, asked = proposed(monkeypatch, weak, hardly_better)
+    assert asked and found.change == ONE
