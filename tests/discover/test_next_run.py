@@ -14,6 +14,7 @@ from sonicvacuum.discover.verdict import Next
 from sonicvacuum.files import InputError
 from sonicvacuum.records import Record, Signals
 from sonicvacuum.records.reader import parse
+from sonicvacuum.report import words
 
 SPEED = 0.5
 
@@ -144,3 +145,18 @@ def test_a_second_change_that_helps_little_is_left_out(monkeypatch):
     weak, hardly_better = np.full((3, 3), 12.0), np.full((3, 3), 12.2)
     found, asked = proposed(monkeypatch, weak, hardly_better)
     assert asked and found.change == ONE
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        (ONE, "with the striker at 2 m/s"),
+        (TWO, "with a striker of 1 g at 2 m/s"),
+        ({"striker.mass_g": 1.5, "chain.static_force_N": 0.5}, "with a striker of 1.5 g and under a static"),
+        ({"striker.speed_m_s": 2.0, "sensors.g1.bead": 3}, "at 2 m/s and with gauge g1 in bead 3"),
+    ],
+)
+def test_a_run_is_said_in_words(change, told):
+    proposal = Next(change=change, separates=["tsuji", "viscous-drag"], delta_chi2=25.0)
+    text = words.experiment(proposal, [])
+    assert told in text and "5 standard errors" in text

@@ -215,7 +215,7 @@ def experiment(proposal: Next | None, cells: list[dict], catalogue: Catalogue = 
         if not any(c["sensor"] for c in cells):
             return "No proposal: the gain of a further run is predicted for traces, and this record has none."
         return "No proposal: no rivals are left to separate."
-    steps = joined([_change(key, value) for key, value in proposal.change.items()])
+    steps = joined(_changes(proposal.change))
     one, other = (plain(name, catalogue) for name in proposal.separates[:2])
     text = (
         f"One more run {steps} would most likely leave one explanation alone: {one} and {other}, its nearest "
@@ -223,6 +223,15 @@ def experiment(proposal: Next | None, cells: list[dict], catalogue: Catalogue = 
         f"{number(f'{math.sqrt(max(proposal.delta_chi2, 0.0)):.2g}', 2)} standard errors."
     )
     return text + (" That would hardly decide." if proposal.delta_chi2 < 9.0 else "")
+
+
+def _changes(change: dict) -> list[str]:
+    """What is changed, one phrase for a striker that is another one and strikes at another speed."""
+    rest = dict(change)
+    if {"striker.speed_m_s", "striker.mass_g"} <= set(rest):
+        speed, mass = rest.pop("striker.speed_m_s"), rest.pop("striker.mass_g")
+        return [f"with a striker of {mass:.4g} g at {speed:.4g} m/s", *_changes(rest)]
+    return [_change(key, value) for key, value in rest.items()]
 
 
 def _change(key, value):
