@@ -63,7 +63,7 @@ def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
     setup = setup_of(forward)
     left = list(setup.catalogue.candidates(setup, forward.experiment.excluded))
     if nonlinear and traced and not rough:
-        found = _raced(forward, null, scores, left, Effort(True, steps, COARSE))
+        found = _raced(forward, null, scores, gains, left, Effort(True, steps, COARSE))
         return ranked(_once_more(forward, null, found, setup), forward.experiment.prior_odds)
     found: list[Candidate] = []
     best_gain, err = largest, ERR
@@ -94,7 +94,7 @@ def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
     return ranked([c for c in found if c is not None], forward.experiment.prior_odds)
 
 
-def _raced(forward, null, scores, effects, effort) -> list[Candidate]:
+def _raced(forward, null, scores, gains, effects, effort) -> list[Candidate]:
     """Far from the data: all effects a few steps along running integrals of the traces, and from there those
     that come near the data. If these explain them, all others are behind for good, and only glanced at.
     """
@@ -117,7 +117,6 @@ def _raced(forward, null, scores, effects, effort) -> list[Candidate]:
     nothing = roughly(forward, null.hypothesis, Starts(null.u[None], null.nu[None]), 1, LED).objective[0]
     size, least = data(forward), min(left.values(), default=np.inf)
     # What gauges do is told by slopes, and part of it not by integrals.
-    gains = {e: float(np.square(scores.z[k])) for e, k in scores.best().items()}
     enough = (1.0 - AHEAD) * (null.objective - size)
     ahead = [
         e for e in effects if left[e.id] - least <= AHEAD * (nothing - size) or gains.get(e.id, 0.0) >= enough
