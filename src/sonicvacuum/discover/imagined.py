@@ -1,6 +1,6 @@
 """Runs that a laboratory could make next: its last one with one quantity changed, or two."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 
@@ -16,6 +16,8 @@ from sonicvacuum.physics.chain import Chain
 # What is changed in one run together: how it is struck, how it is pressed, where it is measured. A chain that
 # is hung the other way is another one.
 TOGETHER = {"striker.speed_m_s", "striker.mass_g", "chain.static_force_N", "sensors"}
+# What of a chain a change may touch.
+CHANGED = ("speed", "striker_mass", "static_force", "gravity")
 
 
 @dataclass(frozen=True)
@@ -91,6 +93,25 @@ def changes_of_two(experiment: Experiment) -> Iterator[tuple[dict, Experiment]]:
     for one, other in combinations(offers, 2):
         if _kind(one) != _kind(other):
             yield _imagined(experiment, one, other)
+
+
+def together(imagined: Sequence[Experiment]) -> Experiment:
+    """Runs that were imagined one by one as runs of one experiment, which are simulated side by side: those
+    with the same gauges for as long as any of them is watched.
+    """
+    batches: dict[tuple, list[int]] = {}
+    for k, one in enumerate(imagined):
+        batches.setdefault(one.gauges, []).append(k)
+    made = []
+    for gauges, runs in batches.items():
+        (alone,) = imagined[runs[0]].batches
+        own = [imagined[k].batches[0] for k in runs]
+        numbers = {n: np.concatenate([getattr(b.chain, n) for b in own]) for n in CHANGED}
+        chain = replace(alone.chain.take(np.zeros(len(runs), dtype=int)), **numbers)
+        longest = max(b.duration for b in own)
+        made.append(Batch(chain, tuple(runs), alone.interval, longest, gauges))
+    runs = tuple(one.runs[0] for one in imagined)
+    return replace(imagined[0], runs=runs, batches=tuple(made))
 
 
 def _kind(change):

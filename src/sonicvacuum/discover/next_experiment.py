@@ -14,8 +14,9 @@ import numpy as np
 import scipy
 
 from sonicvacuum.discover.fit.refit import Fit
-from sonicvacuum.discover.imagined import changes, changes_of_two
+from sonicvacuum.discover.imagined import changes, changes_of_two, together
 from sonicvacuum.discover.judge.degenerate import ALIKE
+from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.rounds import Investigation
 from sonicvacuum.discover.verdict import Next
@@ -28,6 +29,8 @@ _HOPELESS = 0.1
 # Two quantities are changed where no run with one changed is as sure as this to leave one explanation alone,
 # and if that is surer by so much.
 SURE, WORTH_TWO = 0.9, 0.05
+# Runs that are simulated side by side.
+_BESIDE = 10
 
 
 @dataclass(frozen=True)
@@ -75,15 +78,20 @@ def propose(found: Investigation, alike: list[list[str]]) -> Next | None:
 
 def _tried(forward, left, known, imagined):
     """Changes, and (c, n, n) how far each run takes explanations apart."""
-    tried, apart = [], []
-    for change, experiment in imagined:
-        if "chain.orientation" in change and any(_depends_on_orientation(one.fit) for one in left):
-            continue  # records that hang differently say nothing of such an effect when taken together
-        new = Forward(experiment, forward.threads)
-        tried.append(change)
-        apart.append(separations(forward, new, [one.fit for one in left], known))
-        forward.simulations += new.simulations
-    return tried, np.array(apart).reshape(len(tried), len(left), len(left))
+    # Records that hang differently say nothing of such an effect when taken together.
+    turned = any(_depends_on_orientation(one.fit) for one in left)
+    offers = [one for one in imagined if not (turned and "chain.orientation" in one[0])]
+
+    def asked(branch, some):
+        new = Forward(together([experiment for _, experiment in some]), branch.threads)
+        apart = separations(branch, new, [one.fit for one in left], known)
+        branch.simulations += new.simulations
+        return apart
+
+    shares = [offers[k : k + _BESIDE] for k in range(0, len(offers), _BESIDE)]
+    found = abreast.each(forward, asked, shares, calls=len(left))
+    apart = np.concatenate(found) if found else np.zeros((0, len(left), len(left)))
+    return [change for change, _ in offers], apart
 
 
 def put_behind(weights: np.ndarray, apart: np.ndarray) -> np.ndarray:
@@ -140,28 +148,30 @@ def _left(found: Investigation, alike) -> list[Explanation]:
 
 
 def separations(old: Forward, new: Forward, fits: list[Fit], known: list[np.ndarray]) -> np.ndarray:
-    """(n, n) χ² by which a new run is expected to tell what made it (row) from a rival (column).
+    """(c, n, n) χ² by which each of c new runs is expected to tell what made it (row) from a rival (column).
 
     The rival's parameters and the shared nuisances (gains, modulus) move within what the old data leave
     them; speed and trigger of the new run are free within their errors.
 
     Args:
-        old, new: the old runs and the new one.
+        old, new: the old runs and the new ones.
         fits: n fits to the old runs.
         known: their `precision`.
     """
-    columns = [new.columns(f.hypothesis, f.u[None], _shared(old, new, f)[None])[0][0] for f in fits]
-    apart = np.zeros((len(fits), len(fits)))
-    for k, (own, prior) in enumerate(zip(columns, known, strict=True)):
-        miss, slopes = np.stack([c[0] for c in columns]) - own[0], own[1:]
-        projection = slopes @ miss.T
-        explained = np.linalg.lstsq(slopes @ slopes.T + prior, projection, rcond=1e-12)[0]
-        apart[:, k] = (miss * miss).sum(axis=1) - (projection * explained).sum(axis=0)
+    columns = [new.columns(f.hypothesis, f.u[None], _shared(old, new, f)[None]) for f in fits]
+    apart = np.zeros((len(new.experiment.runs), len(fits), len(fits)))
+    for run, told in enumerate(apart):
+        predicted = np.stack([c[run][0, 0] for c in columns])
+        for k, (own, prior) in enumerate(zip(columns, known, strict=True)):
+            miss, slopes = predicted - predicted[k], own[run][0, 1:]
+            projection = slopes @ miss.T
+            explained = np.linalg.lstsq(slopes @ slopes.T + prior, projection, rcond=1e-12)[0]
+            told[:, k] = (miss * miss).sum(axis=1) - (projection * explained).sum(axis=0)
     return np.maximum(apart, 0.0)
 
 
 def _shared(old, new, fit):
-    """(q,) nuisances of the new run: what is shared as fitted, speed and trigger at zero."""
+    """(q,) nuisances of the new runs: what is shared as fitted, speeds and triggers at zero."""
     nu = np.zeros(new.layout.size)
     nu[new.layout.shared] = fit.nu[old.layout.shared]
     return nu
