@@ -250,7 +250,7 @@ class Experiment:
 
     def whiten(self, run: int, readings: np.ndarray, scalars: np.ndarray) -> np.ndarray:
         """(L, M) readings (L, S, T) and scalars (L, n) of a run over their noise, not `divided`; linear."""
-        return self.whitened_on(run, self.noise_whitened(run, readings), scalars)
+        return self.whitened_on(run, self.noise_whitened(run, readings / self.sigma[:, None]), scalars)
 
     def whitened_on(self, run: int, white: np.ndarray, scalars: np.ndarray) -> np.ndarray:
         """The same, of readings that `noise_whitened` has made."""
@@ -269,8 +269,8 @@ class Experiment:
         return np.concatenate([white, scalars / np.array([s.sigma for s in data.scalars])], axis=1)
 
     def noise_whitened(self, run: int, readings: np.ndarray) -> np.ndarray:
-        """(…, S, T) readings of a run over the noise of single samples."""
-        return whitened_gaps(readings / self.sigma[:, None], self.correlation, self.runs[run].present)
+        """(…, S, T) independent numbers from readings of a run over the noise of single samples, `sigma`."""
+        return whitened_gaps(readings, self.correlation, self.runs[run].present)
 
     def length(self, run: int) -> int:
         """Length of a run's whitened data: a place for every sample, counting or not, and every scalar."""
@@ -300,8 +300,11 @@ def whitened_gaps(noise: np.ndarray, correlation: np.ndarray, present: np.ndarra
         if not np.any(correlation):
             return noise
         rho = correlation[:, None]
-        rest = (noise[..., 1:] - rho * noise[..., :-1]) / np.sqrt(1.0 - rho**2)
-        return np.concatenate([noise[..., :1], rest], axis=-1)
+        root, white = np.sqrt(1.0 - rho**2), np.empty_like(noise)
+        white[..., 0] = noise[..., 0]
+        np.multiply(noise[..., :-1], -rho / root, out=white[..., 1:])
+        white[..., 1:] += noise[..., 1:] / root
+        return white
     white = np.zeros_like(noise)
     for s, rho in enumerate(correlation):
         at = np.flatnonzero(present[s])

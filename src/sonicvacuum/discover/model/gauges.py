@@ -124,7 +124,8 @@ def traces(e, layout, sigma, batch, places, readings, gain, nu, rate_of: int):
         trigger = layout.trigger(np.array(runs))
         shift = np.array([e.runs[r].shift for r in runs])[:, None] + (nu[:, trigger] * sigma[trigger]).T
         chain = lane * len(batch.runs) + np.array(places)[which]
-        own = gain[lane], shift.ravel(), nu[lane], rated
+        # All that follows is linear in the gain: over the noise from the start.
+        own = (gain / e.sigma)[lane], shift.ravel(), nu[lane], rated
         value, timing = at_record(layout, sigma, batch.interval, data.time, readings, chain, *own)
     else:
         value = np.zeros((len(lane), len(e.gauges), 0))

@@ -57,7 +57,7 @@ def _block(experiment, run, s, lines):
     if not data.has_signals:
         return np.zeros((0, 0)), np.zeros(0)
     alone = np.zeros((traces.shape[1], len(experiment.gauges), len(data.time)))
-    alone[:, s] = traces.T
+    alone[:, s] = traces.T / experiment.sigma[s]
     white = experiment.noise_whitened(run, alone)[:, s]
     directions, values, _ = np.linalg.svd(white.T, full_matrices=False)
     kept = values > 1e-9 * max(values.max(), 1e-300)
