@@ -59,19 +59,35 @@ def test_results_and_what_serves_come_in_the_order_of_the_items(hidden, worth_it
     assert known == [0, 1, 2, 3]
 
 
-def test_threads_and_chains_in_the_memory_are_shared_out(hidden, worth_it):
+def test_threads_are_shared_out(hidden, worth_it):
     forward = ready(hidden, 5)
-    shares = abreast.each(forward, lambda branch, k: (branch.threads, branch.chunk), range(2))
-    assert shares == [(2, model.CHUNK // 2)] * 2
-    (alone,) = abreast.each(forward, lambda branch, k: (branch.threads, branch.chunk), range(1))
-    assert alone == (5, model.CHUNK)
+    assert abreast.each(forward, lambda branch, k: branch.threads, range(2)) == [2, 2]
+    assert abreast.each(forward, lambda branch, k: branch.threads, range(1)) == [5]
 
 
-def test_predictions_do_not_depend_on_how_many_chains_are_simulated_at_once(hidden):
+@pytest.mark.parametrize("threads", [1, 2])
+def test_as_many_chains_go_at_once_whatever_the_processors(hidden, worth_it, threads, monkeypatch):
+    """The last digits of a chain may depend on those beside it."""
+    monkeypatch.setattr(model, "CHUNK", 8)
+    forward = ready(hidden, threads)
+
+    def work(branch, k):
+        own, simulate = [], branch.simulate
+        branch.simulate = lambda batch, setup, *rest: (
+            own.append(setup.chain.lanes) or simulate(batch, setup, *rest)
+        )
+        branch.sampled(Hypothesis(), np.zeros((20, 0)), np.zeros((20, forward.layout.size)))
+        return own
+
+    for sizes in abreast.each(forward, work, range(2)):
+        assert sum(sizes) == 20 * forward.layout.runs and max(sizes) <= 8
+
+
+def test_predictions_do_not_depend_on_how_many_chains_are_simulated_at_once(hidden, monkeypatch):
     forward = ready(hidden, 1)
     nu = np.random.default_rng(np.random.SeedSequence(3)).standard_normal((7, forward.layout.size))
     whole = forward.sampled(Hypothesis(), np.zeros((7, 0)), nu)
-    forward.chunk = 4
+    monkeypatch.setattr(model, "CHUNK", 4)
     parts = forward.sampled(Hypothesis(), np.zeros((7, 0)), nu)
     assert all(np.array_equal(a, b) for a, b in zip(whole, parts, strict=True))
 

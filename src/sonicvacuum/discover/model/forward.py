@@ -24,7 +24,9 @@ from sonicvacuum.effects import Setup
 from sonicvacuum.forward import Seen, see, virtual
 from sonicvacuum.physics.chain import Chain
 
-CHUNK = 512  # chains simulated at once, to bound the memory
+# Chains simulated at once, to bound the memory; however many processors there are, since the last digits of
+# a chain may depend on those beside it.
+CHUNK = 256
 # Natural logarithm of a ratio at which a chain is none that a laboratory has: a speed, a modulus or a mass a
 # thousand times what was stated. A step that runs away to there would ask for steps without end.
 NO_CHAIN = 7.0
@@ -49,14 +51,13 @@ class Forward:
         self._tiled: dict[tuple, Chain] = {}
         self._alike: dict[tuple, list[list[int]]] = {}
         self.calls, self.seconds = 0, 0.0
-        self.chunk = CHUNK
 
     def branch(self, beside: int = 1) -> "Forward":
         """The same predictor for one of several hypotheses, with a memory of its own that begins as it is;
-        `beside`: among how many at a time threads and chains are shared out.
+        `beside`: among how many at a time threads are shared out.
         """
         other = copy(self)
-        other.threads, other.chunk = max(1, self.threads // beside), max(1, self.chunk // beside)
+        other.threads = max(1, self.threads // beside)
         other.simulations, other.calls, other.seconds = 0, 0, 0.0
         other.strengths, other.memory = dict(self.strengths), self.memory.copy()
         other._coarse = self._coarse.branch(beside) if self._coarse else None
@@ -94,7 +95,6 @@ class Forward:
         """The same predictor of running integrals of the traces."""
         if self._coarse is None:
             self._coarse = Forward(replace(self.experiment, integrated=True), self.threads)
-            self._coarse.chunk = self.chunk
         return self._coarse
 
     @property
@@ -246,7 +246,7 @@ class Forward:
         runs = len(self.experiment.runs)
         values = [[] for _ in range(runs)]
         rates = [[] for _ in range(runs)]
-        per_call = max(rate_of or 1, self.chunk // max(1, runs))
+        per_call = max(rate_of or 1, CHUNK // max(1, runs))
         per_call -= per_call % (rate_of or 1)
         for first in range(0, len(nu), per_call):
             part = np.arange(first, min(first + per_call, len(nu)))
