@@ -24,12 +24,15 @@ from sonicvacuum.discover.fit import broad, ridge
 from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.judge import rivals
 from sonicvacuum.discover.judge.rivals import Rival
+from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.forward import CHUNK, Forward
 
 # Draws, and their seed; SPARE times as many are proposed, for those that lie beyond the bounds.
 DRAWS, SEED, SPARE = 200, 20061017, 16
 # A profile reaches so many standard errors to either side, by so many values.
 REACH, VALUES = 5.0, 61
+# A batch of draws takes as long as so many calls of the predictor, about.
+BATCH = 10
 # What of a profile lies to one side of a fit that its 90 % do not hold.
 TAIL = 0.05
 # In χ², what a step may promise below the fit: that has settled no better.
@@ -181,13 +184,21 @@ def _misfit(forward, fit, point):
     possible = np.flatnonzero(objective < fit.objective + NOTHING)
     objective[np.setdiff1d(np.arange(len(u)), possible)] = np.inf
     gradient[~np.isfinite(objective)] = np.nan
-    lanes = max(1, CHUNK // forward.layout.runs)
-    for part in (possible[first : first + lanes] for first in range(0, len(possible), lanes)):
-        for run, value in enumerate(forward.sampled(fit.hypothesis, u[part], nu[part])):
-            left = forward.data(run) - value
-            objective[part] += np.square(left).sum(axis=1)
-            own = np.concatenate([np.arange(p), p + forward.local(run)])
-            gradient[part[:, None], own] += left @ columns[run][0, 1:].T
+
+    def seen(branch, part):
+        misfit, slopes = np.zeros(len(part)), np.zeros((len(part), gradient.shape[1]))
+        for run, value in enumerate(branch.sampled(fit.hypothesis, u[part], nu[part])):
+            left = branch.data(run) - value
+            misfit += np.square(left).sum(axis=1)
+            own = np.concatenate([np.arange(p), p + branch.local(run)])
+            slopes[:, own] += left @ columns[run][0, 1:].T
+        return misfit, slopes
+
+    batches = -(-len(possible) * forward.layout.runs // CHUNK)
+    parts = np.array_split(possible, batches) if batches else []
+    for part, (misfit, slopes) in zip(parts, abreast.each(forward, seen, parts, calls=BATCH), strict=True):
+        objective[part] += misfit
+        gradient[part] += slopes
     return objective, gradient
 
 

@@ -10,6 +10,7 @@ import itertools
 import numpy as np
 
 from sonicvacuum.discover.fit.refit import Fit, fit
+from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.effects import Setup
 
@@ -38,12 +39,14 @@ def settled(forward: Forward, one: Fit, setup: Setup) -> Fit:
         one: a fit, followed to its minimum at its places.
         setup: which knows the places.
     """
+
+    def followed(branch, starts):
+        u, at = starts
+        return fit(branch, one.hypothesis, u, one.nu[None], at, KEEP, ITERATIONS, reach=one.objective)
+
     for _ in range(MOVES):
-        near = [
-            fit(forward, one.hypothesis, u, one.nu[None], places, KEEP, ITERATIONS, reach=one.objective)
-            for u, places in (_around(one, setup, factors) for factors in FACTORS)
-            if len(places)
-        ]
+        around = [_around(one, setup, factors) for factors in FACTORS]
+        near = abreast.each(forward, followed, [starts for starts in around if len(starts[1])])
         best = min(near, key=lambda f: f.objective, default=None)
         if best is None or not best.objective < one.objective - WORTH:
             break

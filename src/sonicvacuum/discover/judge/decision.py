@@ -54,7 +54,8 @@ class Case:
         """Name the best single, a pair, more, or unknown."""
         best = self.found[0]
         beside = directions.catalogue(self.setup, (best.effect, *self.forward.experiment.excluded))
-        scores = screen.screen(self.forward, best.fit, beside)
+        shapes = unknown.families(self.forward, best.fit)
+        scores = screen.screen(self.forward, best.fit, beside, also=shapes)
         shape, most = unknown.simplest(self.forward, self.null)
         seen = left(self.forward, best.fit, self.known, scores, _behind(best.gain, most))
         alarms = {"single": seen.p}

@@ -8,6 +8,7 @@ run by run.
 The Fisher score with nuisance parameters: Rao, Proc. Camb. Phil. Soc. 44, 50 (1948).
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -119,15 +120,25 @@ class Screen:
         return result
 
 
-def screen(forward: Forward, fit: Fit, families: list[ways.Family], rough: bool = False) -> Screen:
-    """Scores of families of directions at a fitted model; `rough` ones take half the simulations."""
+def screen(
+    forward: Forward,
+    fit: Fit,
+    families: list[ways.Family],
+    rough: bool = False,
+    also: Sequence[ways.Family] = (),
+) -> Screen:
+    """Scores of families of directions at a fitted model; `rough` ones take half the simulations.
+
+    `also` are families that will be asked about there next: their slopes are taken beside, and remembered.
+    """
     base = forward.columns(fit.hypothesis, fit.u[None], fit.nu[None], precise=not rough)
 
     def taken(branch, family):
         alike = ways.like_nuisance(branch, family, base, fit.normal.free)
         return alike or ways.simulate(branch, fit.hypothesis, fit.u, fit.nu, family, rough)[0]
 
-    parts = abreast.each(forward, taken, families, calls=abreast.SLOPES)
+    # The others are the larger ones, of many places: they come first, so that all end together.
+    parts = abreast.each(forward, taken, [*also, *families], calls=abreast.SLOPES)[len(also) :]
     slopes = [np.concatenate([p[run] for p in parts]) for run in range(len(base))]
     directions = tuple(d for f in families for d in f.directions)
     return from_columns(forward, fit, directions, base, slopes)
