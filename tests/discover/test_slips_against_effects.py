@@ -10,10 +10,11 @@ from made_slips import altered
 from msgspec.structs import replace
 
 from sonicvacuum.discover import session
-from sonicvacuum.discover.faults import changes, competition
+from sonicvacuum.discover.faults import changes, ranking
 from sonicvacuum.discover.faults.competition import LIKELIER, Search
 from sonicvacuum.discover.faults.found import Bench
 from sonicvacuum.discover.faults.judged import Judged
+from sonicvacuum.discover.faults.ranking import Ranking
 from sonicvacuum.discover.faults.slips import hypotheses
 from sonicvacuum.discover.faults.weights import parts
 from sonicvacuum.discover.rounds import investigate
@@ -164,8 +165,8 @@ def test_a_small_slip_is_followed_where_slopes_foresee_half_of_what_the_effect_g
         look_at=lambda slips: [judged(empty, "bead-mass", gain=foreseen * own)],
         follow_all=lambda near: asked.extend(near) or [fitted for _ in near],
     )
-    monkeypatch.setattr(competition, "Judge", lambda model, make: judge)
-    search = Search(Bench(empty), CATALOGUE, 1, [])
-    kept = search._as_small(SimpleNamespace(bench=Bench(empty)), seen)
+    monkeypatch.setattr(ranking, "Judge", lambda model, make: judge)
+    slips = Ranking(Bench(empty), CATALOGUE, 1, [])
+    kept = slips.as_small(SimpleNamespace(bench=Bench(empty)), seen)
     assert kept == [fitted] * followed
     assert len(asked) == followed

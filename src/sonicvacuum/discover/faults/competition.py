@@ -13,7 +13,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sonicvacuum import stages
 from sonicvacuum.discover.faults import policy
 from sonicvacuum.discover.faults.examine import examine, with_noise_of
 from sonicvacuum.discover.faults.expected import predicted
@@ -21,21 +20,15 @@ from sonicvacuum.discover.faults.found import Bench, Finding
 from sonicvacuum.discover.faults.judged import (
     Judged,
     Model,
-    both_off,
     excess,
     most_of,
     obvious,
-    of_the_chain,
-    out_of_reach,
     suspicious,
     without_slip,
 )
-from sonicvacuum.discover.faults.judging import Judge
-from sonicvacuum.discover.faults.lines import drifts
+from sonicvacuum.discover.faults.ranking import Ranking
 from sonicvacuum.discover.faults.retract import retracted, value
-from sonicvacuum.discover.faults.slips import hypotheses
 from sonicvacuum.discover.faults.table import FAULTS
-from sonicvacuum.discover.faults.timing import time_zero, with_starts
 from sonicvacuum.discover.faults.weights import (
     ALIKE,
     NUISANCES,
@@ -50,12 +43,9 @@ from sonicvacuum.discover.faults.weights import (
     weight_of,
     without,
 )
-from sonicvacuum.discover.fit import evidence, smooth
-from sonicvacuum.discover.fit.refit import Fit, polish
-from sonicvacuum.discover.fit.wide import nominal
+from sonicvacuum.discover.fit import evidence
+from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.judge import explanations
-from sonicvacuum.discover.model.experiment import Experiment
-from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.problem import together
 from sonicvacuum.discover.policy import SAME_MINIMUM
 from sonicvacuum.discover.rounds import Investigation, investigate
@@ -65,9 +55,6 @@ from sonicvacuum.records import Record
 
 # A slip with more of the probability than this is not shared with an effect that is like another: it is told.
 LIKELIER = 0.5
-# Slopes foresee this share of what a small slip gains, or more: of beads a tenth too heavy, which gained 31
-# beside strained nuisances, they had foreseen 15.
-FORESEEN = 0.5
 
 
 @dataclass(frozen=True)
@@ -117,30 +104,19 @@ def _investigated(benches, catalogue, threads):
     return investigate(Bench(benches[0].record, lost, lines).masked(experiment), threads)
 
 
-class Search:
+class Search(Ranking):
     """Slips of one record that only the model can tell, in competition with effects."""
 
     def __init__(self, bench: Bench, catalogue: Catalogue, threads: int, plain: list[Finding]):
-        self.bench, self.catalogue, self.threads = bench, catalogue, threads
-        self.findings, self.simulations = list(plain), 0
+        super().__init__(bench, catalogue, threads, plain)
         self._nominal: Model | None = None
         # Effects that alone explain as much as the likeliest slip, which moves all pulses as they may.
         self._matching: set[str] = set()
 
-    def make(self, bench: Bench) -> Experiment:
-        """The data set of a record as far as it was put right."""
-        return bench.masked(together((bench.record,), self.catalogue))
-
-    def judged(self, bench: Bench) -> Experiment:
-        """The same with the smooth misfit that the record states counted as noise, as the search has it."""
-        experiment = self.make(bench)
-        size = experiment.model_floor_rel
-        return smooth.with_size(experiment, size) if size else experiment
-
     def run(self) -> Outcome:
         """Slips that leave nothing to doubt, then effects, then the rest of the slips against them."""
         for _ in range(policy.MOST):
-            model = self.nominal()
+            model = self._nominal = self.nominal()
             looked = suspicious(model)
             ranked = self.ranked(model) if looked else []
             if ranked and obvious(ranked[0], model) and (lower := without_slip(ranked[0], model)):
@@ -158,7 +134,7 @@ class Search:
             looked = suspicious(model)
             ranked = self.ranked(model) if looked else []
         if not ranked and set(found.named) - {explanations.UNKNOWN}:
-            ranked = self._as_small(model, found)
+            ranked = self.as_small(model, found)
         elif ranked and any(self._like_slips(found, name) for name in found.named):
             ranked = self.ranked(model, afar=True)
         for _ in range(policy.MOST):
@@ -169,64 +145,10 @@ class Search:
         order = sorted(self.findings, key=lambda f: -f.probability)
         return Outcome(found, tuple(order), self.bench.record, self.simulations)
 
-    def nominal(self) -> Model:
-        """The nominal model of the record as far as it was put right."""
-        forward = Forward(self.judged(self.bench), self.threads)
-        found = nominal(forward)
-        # Far from the data nuisances creep; a slip must not be asked to do what they would have done.
-        found = found if found.settled else polish(forward, found)
-        self.simulations += forward.chains
-        self._nominal = Model(self.bench, forward, found)
-        return self._nominal
-
     def _investigate(self) -> Investigation:
         one = self._nominal
         null = one.fit if one is not None and one.bench is self.bench else None
         return investigate(self.make(self.bench), self.threads, null)
-
-    def _as_small(self, model: Model, found: Investigation) -> list[Judged]:
-        """Slips that explain what is as small as to be no misfit by itself, and was named an effect.
-
-        Only sizes can be so small, and only those count that explain about as much as the effects do.
-        """
-        judge, own = Judge(model, self.judged), found.null.objective - found.final.objective
-        looked = judge.look_at([s for s in hypotheses(model.bench.record) if s.continuous])
-        near = [j for j in looked if j.gain > FORESEEN * own - ALIKE]
-        followed = judge.follow_all(sorted(near, key=lambda j: -j.log_odds)[: policy.FOLLOWED])
-        self.simulations += judge.simulations
-        kept = [j for j in followed if j.gain > own - ALIKE and j.log_odds > 0.0]
-        return sorted(kept, key=lambda j: -j.log_odds)
-
-    def ranked(self, model: Model, afar: bool = False) -> list[Judged]:
-        """Slips that gain enough beside a model, fitted, the likeliest first; masses also `afar`."""
-        judge, record = Judge(model, self.judged), model.bench.record
-        seen = predicted(self.make(model.bench), self.threads)
-        done = {(f.fault, f.run, f.sensor) for f in self.findings}
-        slips = with_starts(hypotheses(record), record, seen)
-        slips = [s for s in slips if (s.fault, s.run, s.sensor) not in done]
-        if any(c.effect.places in ("bead", "contact") for c in model.fit.hypothesis.components):
-            # In a chain of another length its place would be another one, or none.
-            slips = [s for s in slips if not of_the_chain(s)]
-        shown = [*time_zero(record, seen), *drifts(record, seen)]
-        stages.begin("slips of the laboratory")
-        far = excess(model) > policy.SURE_GAIN
-        looked = judge.look_at(slips)
-        if far and afar:
-            looked = [judge.from_afar(j) if FAULTS[j.slip.fault].curved else j for j in looked]
-        looked.sort(key=lambda j: -j.log_odds)
-        worth = [j for j in looked if j.gain > policy.LEAST_GAIN][: policy.FOLLOWED]
-        # Slopes know nothing of a pulse that comes a bead earlier, or with another run's speed.
-        apart = [j for j in looked if not (j.slip.continuous or j in worth or out_of_reach(j, model))]
-        if far:
-            pairs = both_off(worth)
-            worth += [j for j in apart if of_the_chain(j.slip) or j.slip.run in pairs]
-        whole = judge.look_at([s for s in shown if (s.fault, s.run, s.sensor) not in done])
-        followed = judge.follow_all([*worth, *whole])
-        if far and not any(obvious(j, model) for j in followed):
-            followed += judge.follow_all([j for j in apart if j not in worth])
-        self.simulations += judge.simulations
-        kept = [j for j in followed if j.gain > policy.LEAST_GAIN and j.log_odds > 0.0]
-        return sorted(kept, key=lambda j: -j.log_odds)
 
     def _matched(self, judged: Judged, model: Model) -> bool:
         """Whether an effect alone explains about as much as a slip, or more: one that moves all pulses as an

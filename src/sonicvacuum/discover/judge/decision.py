@@ -52,10 +52,9 @@ class Case:
 
     def decide(self) -> Decision:
         """Name the best single, a pair, more, or unknown."""
-        best = self.found[0]
-        beside = directions.catalogue(self.setup, (best.effect, *self.forward.experiment.excluded))
-        shapes = unknown.families(self.forward, best.fit)
-        scores = screen.screen(self.forward, best.fit, beside, also=shapes)
+        best, forward = self.found[0], self.forward
+        beside = directions.catalogue(self.setup, (best.effect, *forward.experiment.excluded))
+        scores = screen.screen(forward, best.fit, beside, also=unknown.families(forward, best.fit))
         shape, most = unknown.simplest(self.forward, self.null)
         seen = left(self.forward, best.fit, self.known, scores, _behind(best.gain, most))
         alarms = {"single": seen.p}
