@@ -275,6 +275,27 @@ def test_command_writes_both_tables(tmp_path):
     )
 
 
+def test_tables_of_several_studies_count_all_their_records(tmp_path):
+    """Studies number their records alike: none takes the place of another."""
+    for study in ("one", "other"):
+        put(tmp_path / study / "truth", "p", "truth.json", truth("p"))
+        put(tmp_path / study / "verdicts", "p", "verdict.json", verdict())
+        folder = tmp_path / study
+        arguments = ["--truth", folder / "truth", "--verdicts", folder / "verdicts", "--tables", folder]
+        arguments += ["--out", folder / "score.csv", "--summary", folder / "summary.csv"]
+        CliRunner().invoke(cli, ["blind", "score", *map(str, arguments)], catch_exceptions=False)
+    both = [str(tmp_path / study) for study in ("one", "other")]
+    for folders, records in ((both[:1], 1), (both, 2)):
+        out = tmp_path / f"of-{records}"
+        CliRunner().invoke(cli, ["blind", "tables", *folders, "--out", str(out)], catch_exceptions=False)
+        with open(out / "summary.csv", newline="") as stream:
+            lines = {(line["measure"], line["group"]): line for line in csv.DictReader(stream)}
+        assert lines["exact name", "all"]["count"] == str(records)
+        with open(out / "coverage.csv", newline="") as stream:
+            held = {(line["effect"], line["level"]): line for line in csv.DictReader(stream)}
+        assert held["all", "0.9"]["count"] == str(records)
+
+
 def test_missing_verdicts_are_named(tmp_path):
     put(tmp_path / "truth", "p", "truth.json", truth("p"))
     (tmp_path / "verdicts").mkdir()

@@ -1,5 +1,6 @@
 """`sonicvacuum blind score` and `tables`: how well `discover` did on hidden effects."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import click
@@ -32,17 +33,24 @@ def score(truth, verdicts, out, summary, ideal, tables):
 
 
 @verb("sonicvacuum blind tables scored --out tables")
-@click.argument("folder", type=PRESENT)
+@click.argument("folders", type=PRESENT, nargs=-1, required=True)
 @click.option("--out", required=True, type=FOLDER, help="Folder for the tables.")
 @click.option("--page", type=existing(), help="Page (Markdown) whose table is written anew.")
-def tables(folder, out, page):
-    """Make the tables of a study of FOLDER's score.csv and parameters.csv again."""
+def tables(folders, out, page):
+    """Make the tables of a study again, of score.csv and parameters.csv in its folder; of the FOLDERS of
+    several studies, tables of all their records together.
+    """
     from sonicvacuum_blind import score as scoring
     from sonicvacuum_blind.stated import Parameter
 
-    check_apart([Path(out) / "summary.csv", *_paths(out).values()], [folder])
-    rows = scoring.read_table(scoring.Row, Path(folder) / "score.csv")
-    intervals = scoring.read_table(Parameter, Path(folder) / "parameters.csv")
+    check_apart([Path(out) / "summary.csv", *_paths(out).values()], folders)
+
+    def read(kind, name):
+        first, *others = [scoring.read_table(kind, Path(folder) / name) for folder in folders]
+        # Studies number their records alike.
+        return first + [replace(row, id=f"{k}/{row.id}") for k, one in enumerate(others) for row in one]
+
+    rows, intervals = read(scoring.Row, "score.csv"), read(Parameter, "parameters.csv")
     lines = _tabulate(rows, intervals, Path(out) / "summary.csv", out)
     if page:
         from sonicvacuum_blind import table_page
