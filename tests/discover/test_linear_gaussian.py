@@ -310,7 +310,7 @@ def test_separation_is_the_expected_misfit_in_closed_form(setup, seed):
     other = np.vstack([miss, rng.normal(size=(layout_columns - 1, samples))])
     new = Imagined({"viscous-drag": np.vstack([np.zeros(samples), slopes]), "": other}, gauges)
     fits = [true, rival]
-    apart = next_experiment.separations(new, new, fits, [next_experiment.precision(new, f) for f in fits])
+    (apart,) = next_experiment.separations(new, new, fits, [next_experiment.precision(new, f) for f in fits])
     found = apart[0, 1]
     known = np.linalg.inv(rival.normal.total()[1][0])
     # Columns: parameter, modulus, gains as the old data leave them; speed and trigger of the new run afresh.

@@ -7,10 +7,16 @@ import pytest
 from made_records import block
 
 from sonicvacuum.discover import next_experiment
-from sonicvacuum.discover.imagined import changes, changes_of_two
+from sonicvacuum.discover.fit import wide
+from sonicvacuum.discover.fit.refit import fit
+from sonicvacuum.discover.imagined import changes, changes_of_two, together
+from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, variants
 from sonicvacuum.discover.model.problem import experiment
 from sonicvacuum.discover.next_experiment import put_behind, resolved
+from sonicvacuum.discover.search import singles
 from sonicvacuum.discover.verdict import Next
+from sonicvacuum.effects import effect
 from sonicvacuum.files import InputError
 from sonicvacuum.records import Record, Signals
 from sonicvacuum.records.reader import parse
@@ -109,6 +115,23 @@ def test_two_changes_are_of_different_quantities_and_leave_the_chain_as_it_hangs
     assert found and all(len(change) == 2 for change in found)
     assert all(sum(key.startswith("sensors.") for key in change) < 2 for change in found)
     assert "chain.orientation" not in {key for change in found for key in change}
+
+
+def test_runs_imagined_side_by_side_tell_apart_what_they_do_one_by_one(hidden):
+    """Also those with a gauge elsewhere, and those that are watched for longer."""
+    old = Forward(experiment(hidden))
+    setup, null = singles.setup_of(old), wide.nominal(old)
+    law = Hypothesis((Component(effect("viscous-drag"), variants(effect("viscous-drag"), setup)[0]),))
+    fits = [null, fit(old, law, np.array([[-1.0]]), null.nu[None])]
+    known = [next_experiment.precision(old, one) for one in fits]
+    every = [*changes(old.experiment), *list(changes_of_two(old.experiment))[::9]]
+    assert len({one.gauges for _, one in every}) > 2 < len({one.batches[0].duration for _, one in every})
+    assert {"sensors", "striker", "chain"} <= {key.split(".")[0] for change, _ in every for key in change}
+    abreast = next_experiment.separations(old, Forward(together([one for _, one in every])), fits, known)
+    alone = [next_experiment.separations(old, Forward(one), fits, known) for _, one in every]
+    # The last digits of a chain depend on those beside it, and differences of chains have fewer.
+    np.testing.assert_allclose(abreast, np.concatenate(alone), rtol=1e-6, atol=1e-6)
+    assert abreast[:, 0, 1].min() > 0.0 and np.ptp(abreast[:, 0, 1]) > 1.0
 
 
 ONE, TWO = {"striker.speed_m_s": 2.0}, {"striker.speed_m_s": 2.0, "striker.mass_g": 1.0}

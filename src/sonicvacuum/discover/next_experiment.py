@@ -159,7 +159,7 @@ def separations(old: Forward, new: Forward, fits: list[Fit], known: list[np.ndar
         known: their `precision`.
     """
     columns = [new.columns(f.hypothesis, f.u[None], _shared(old, new, f)[None]) for f in fits]
-    apart = np.zeros((len(new.experiment.runs), len(fits), len(fits)))
+    apart = np.zeros((len(columns[0]), len(fits), len(fits)))
     for run, told in enumerate(apart):
         predicted = np.stack([c[run][0, 0] for c in columns])
         for k, (own, prior) in enumerate(zip(columns, known, strict=True)):
