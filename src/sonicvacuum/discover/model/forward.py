@@ -107,14 +107,14 @@ class Forward:
         return self._whitened[run]
 
     @cached_property
-    def _norm(self) -> float:
+    def norm(self) -> float:
         """Length of all data together, in standard errors."""
         return float(np.sqrt(sum(float(d @ d) for d in self._whitened)))
 
     @cached_property
     def _refine(self) -> float:
         """What divides the steps of simulations."""
-        return accuracy.refinement(self._norm, leading=self.experiment.integrated)
+        return accuracy.refinement(self.norm, leading=self.experiment.integrated)
 
     @cached_property
     def _whitened(self):
@@ -197,7 +197,7 @@ class Forward:
         if steps is None:
             steps = np.broadcast_to([c.step for c in hypothesis.coordinates], u.shape)
         orders = (1.0, 2.0) if precise else (1.0,)
-        h = accuracy.difference(self._norm)
+        h = accuracy.difference(self.norm)
         where = () if held else self.slopes.simulated
         many_u, many_nu, sets = differences.displaced(hypothesis, u, nu, steps, orders, where, h)
         many_places = None if places is None else np.repeat(places, sets, axis=0)

@@ -16,10 +16,12 @@ from sonicvacuum.discover.model.parameters import coordinate, shape_grid
 from sonicvacuum.discover.model.slopes import among
 from sonicvacuum.effects import Effect, Setup
 
-# The first trial strength (typical deviations), and the change of all data, in standard errors, that is
-# aimed at.
-TRIAL, AIM = 0.03, 6.0
+# The change of all data, in standard errors, that is aimed at, and the strength (typical deviations) that
+# about changes them by as much as they are: what comes nearest to the one is tried first.
+AIM, TRIAL = 6.0, 2.0
 WEAKEST, STRONGEST = 1e-5, 0.5
+# So much less or more than what is aimed at will do; where a ranking or a test is all that is asked for.
+NEAR, ROUGHLY = (0.3, 5.0), (0.1, 10.0)
 
 
 @dataclass(frozen=True)
@@ -50,7 +52,7 @@ class Family:
     Attributes:
         directions: K of them.
         change: (setup, lane index, (lanes,) strengths) → setup, lane k departing in direction k.
-        trial: strength of the first trial.
+        trial: strength that about changes the data by as much as they are, for the first trial.
         least: smallest strength at which the change is what it is called (a gap opens at once).
         common: whether the change composes the common law set itself.
         acts_like: the nuisance that the strength moves exactly as, see `effects.Parameter`; None for none.
@@ -159,45 +161,45 @@ def _simulated(forward, hypothesis, u, nu, family, rough):
     if family.common:
         hypothesis = replace(hypothesis, common=False)
 
-    def at(strengths):
-        return finite(forward, hypothesis, u, nu, family, strengths)
+    def sloped(strengths, some):
+        """For each run the changes (K', M) with some directions, and their slopes."""
+        if rough:
+            once = finite(forward, hypothesis, u, nu, family, strengths, some)
+            return once, [a / strengths[:, None] for a in once]
+        found = finite(forward, hypothesis, u, nu, family, np.concatenate([strengths, 2.0 * strengths]), some)
+        once, twice = ([c[part] for c in found] for part in (slice(len(some)), slice(len(some), None)))
+        return once, [(2.0 * a - 0.5 * b) / strengths[:, None] for a, b in zip(once, twice, strict=True)]
 
-    def at_both(strengths):
-        found = at(np.concatenate([strengths, 2.0 * strengths]))
-        return [c[:count] for c in found], [c[count:] for c in found]
-
-    known = forward.strengths.get(family.directions)
-    trial = np.full(count, family.trial) if known is None else known
-    # Strengths that served before will do again, so that both differences are taken at once.
-    changes, twice = (at(trial), None) if rough or known is None else at_both(trial)
-    size = np.sqrt(sum(np.square(c).sum(axis=1) for c in changes))
+    trial = forward.strengths.get(family.directions)
+    if trial is None:
+        first = family.trial * AIM / max(forward.norm, 1e-9)
+        trial = np.full(count, np.clip(first, family.least, STRONGEST))
+    once, slopes = sloped(trial, np.arange(count))
+    size = np.sqrt(sum(np.square(c).sum(axis=1) for c in once))
     strengths = np.clip(trial * AIM / np.maximum(size, 1e-9), family.least, STRONGEST)
-    far = (strengths < 0.3 * trial) | (strengths > 3.0 * trial)
-    strengths = np.where(far, strengths, trial)
-    forward.strengths[family.directions] = strengths
-    once = changes
-    if rough:
-        once = at(strengths) if np.any(far) else changes
-        slopes = [a / strengths[:, None] for a in once]
-    else:
-        if np.any(far):
-            once, twice = at_both(strengths)
-        twice = twice or at(2.0 * strengths)
-        slopes = [(2.0 * a - 0.5 * b) / strengths[:, None] for a, b in zip(once, twice, strict=True)]
+    less, more = ROUGHLY if rough else NEAR
+    far = np.flatnonzero((more * strengths < trial) | (strengths * less > trial))
+    near = trial.copy()
+    near[far] = strengths[far]
+    forward.strengths[family.directions] = near
+    if len(far):
+        for slope, again in zip(slopes, sloped(near[far], far)[1], strict=True):
+            slope[far] = again
     for run, slope in enumerate(slopes):
         slope[:, forward.counts(run)] = 0.0
-    return slopes, strengths
+    return slopes, near
 
 
-def finite(forward: Forward, hypothesis: Hypothesis, u, nu, family: Family, strengths=None):
+def finite(forward: Forward, hypothesis: Hypothesis, u, nu, family: Family, strengths=None, some=None):
     """For each run, the changes (n K, M) of the whitened data when each direction takes its strength.
 
-    `strengths` are (n K,), one for each direction and then the next for each; None: (K,) of 1.
+    `strengths` are (n K,), one for each direction and then the next for each; None: (K,) of 1. `some` are the
+    places (K,) of the directions in the family; None: all.
     """
-    count = len(family.directions)
-    strengths = np.append(np.ones(count) if strengths is None else strengths, 0.0)
+    some = np.arange(len(family.directions)) if some is None else some
+    strengths = np.append(np.ones(len(some)) if strengths is None else strengths, 0.0)
     lanes = len(strengths)
-    which = np.append(np.arange(lanes - 1) % count, count - 1)
+    which = np.append(np.resize(some, lanes - 1), some[-1])
     many_u, many_nu = np.repeat(u[None], lanes, axis=0), np.repeat(nu[None], lanes, axis=0)
 
     def change(setup, index):

@@ -37,7 +37,7 @@ def family() -> Family:
                 changed.append(Defect("mass", at, np.where(stiff, 1.0, ratio)))
         return with_defects(setup, changed)
 
-    return Family(directions, change, 0.01)
+    return Family(directions, change, 0.5)
 
 
 def with_defects(setup, defects):

@@ -129,16 +129,18 @@ def screen(
 ) -> Screen:
     """Scores of families of directions at a fitted model; `rough` ones take half the simulations.
 
-    `also` are families that will be asked about there next: their slopes are taken beside, and remembered.
+    `also` are families whose rough slopes will be asked for there next: taken beside, and remembered.
     """
     base = forward.columns(fit.hypothesis, fit.u[None], fit.nu[None], precise=not rough)
 
-    def taken(branch, family):
+    def taken(branch, asked):
+        family, roughly = asked
         alike = ways.like_nuisance(branch, family, base, fit.normal.free)
-        return alike or ways.simulate(branch, fit.hypothesis, fit.u, fit.nu, family, rough)[0]
+        return alike or ways.simulate(branch, fit.hypothesis, fit.u, fit.nu, family, roughly)[0]
 
     # The others are the larger ones, of many places: they come first, so that all end together.
-    parts = abreast.each(forward, taken, [*also, *families], calls=abreast.SLOPES)[len(also) :]
+    asked = [*((family, True) for family in also), *((family, rough) for family in families)]
+    parts = abreast.each(forward, taken, asked, calls=abreast.SLOPES)[len(also) :]
     slopes = [np.concatenate([p[run] for p in parts]) for run in range(len(base))]
     directions = tuple(d for f in families for d in f.directions)
     return from_columns(forward, fit, directions, base, slopes)
