@@ -1,4 +1,4 @@
-"""Slopes are taken over strengths that change the data by about as much as is aimed at, after a try or two."""
+"""Slopes are taken over strengths that change the data by about what is aimed at, after a try or two."""
 
 import numpy as np
 import pytest
