@@ -157,6 +157,19 @@ def test_the_committed_page_shows_the_committed_tables(pytestconfig):
     assert published.with_study(text, made) == text
 
 
+def test_the_page_of_two_studies_shows_what_their_rows_come_to(pytestconfig, tmp_path):
+    kept = pytestconfig.rootpath / "workflow/resources/reference"
+    folders = [str(kept / "blind_full"), str(kept / "blind_before")]
+    done = CliRunner().invoke(
+        cli, ["blind", "tables", *folders, "--out", str(tmp_path)], catch_exceptions=False
+    )
+    assert done.exit_code == 0
+    made, committed = tmp_path / "summary.csv", kept / "blind_both/summary.csv"
+    assert made.read_text() == committed.read_text()
+    table = study.results(pd.read_csv(committed, keep_default_na=False, dtype=str))
+    assert table.markdown in (pytestconfig.rootpath / "docs/both.md").read_text(encoding="utf-8")
+
+
 @pytest.mark.parametrize("asked", [1, 3])
 def test_the_page_says_about_how_many_records_the_ideal_rule_was_asked(asked):
     errors = ["0.5" if k < asked else "nan" for k in range(3)]
