@@ -72,6 +72,16 @@ def test_the_posterior_is_that_of_fits_with_the_parameter_held(verdict):
     assert quick - quick[2] == pytest.approx(slow - slow[2], abs=0.05)
 
 
+def test_draws_of_a_record_of_very_many_runs_go_one_at_a_time(verdict, monkeypatch):
+    forward, fit = verdict.found.forward, verdict.found.final
+    point = np.tile(np.concatenate([fit.u, fit.nu]), (3, 1))
+    whole = posterior._misfit(forward, fit, point)
+    monkeypatch.setattr(posterior, "CHUNK", 1)
+    for one, other in zip(whole, posterior._misfit(forward, fit, point), strict=True):
+        # Last digits of chains may depend on those beside them.
+        np.testing.assert_allclose(one, other, rtol=1e-8, atol=1e-5)
+
+
 def test_nothing_is_better_than_the_fit_however_far_from_it(verdict):
     """A step of Gauss and Newton with the slopes of the fit, taken far away, may promise anything."""
     forward, fit = verdict.found.forward, verdict.found.final

@@ -194,7 +194,8 @@ def _misfit(forward, fit, point):
             slopes[:, own] += left @ columns[run][0, 1:].T
         return misfit, slopes
 
-    batches = -(-len(possible) * forward.layout.runs // CHUNK)
+    # Of a record of very many runs one draw at a time.
+    batches = min(len(possible), -(-len(possible) * forward.layout.runs // CHUNK))
     parts = np.array_split(possible, batches) if batches else []
     for part, (misfit, slopes) in zip(parts, abreast.each(forward, seen, parts, calls=BATCH), strict=True):
         objective[part] += misfit

@@ -301,7 +301,7 @@ def whitened_gaps(noise: np.ndarray, correlation: np.ndarray, present: np.ndarra
             return noise
         rho = correlation[:, None]
         root, white = np.sqrt(1.0 - rho**2), np.empty_like(noise)
-        white[..., 0] = noise[..., 0]
+        white[..., :1] = noise[..., :1]
         np.multiply(noise[..., :-1], -rho / root, out=white[..., 1:])
         white[..., 1:] += noise[..., 1:] / root
         return white
