@@ -2,6 +2,7 @@
 
 import math
 
+import msgspec
 import numpy as np
 import pytest
 from made_records import block, made
@@ -191,3 +192,34 @@ def test_what_counts_as_exact_is_said(empty):
     words = exact(some, experiment(some).shared)
     assert words == "the striker's mass: taken as exact, no tolerance being stated"
     assert exact(some, experiment(with_keys(empty, tolerances=TOLERANCES)).shared) == ""
+
+
+def wall_of(record: Record, name: str, given: dict | None, bead: str = "brass") -> Record:
+    """The record with solid beads of `bead` on a wall of a material, of which `given` is stated."""
+    content = block([r.striker.speed_m_s for r in record.block.runs])
+    solid = {k: v for k, v in content["chain"]["bead"].items() if k not in ("coating_um", "core")}
+    content["chain"] |= {"bead": solid | {"material": bead}, "wall": {"material": name}}
+    content["materials"] = {bead: {"modulus_rel_sigma": 0.05}} | ({name: given} if given else {})
+    return Record(parse(content), record.signals, "other")
+
+
+@pytest.mark.parametrize(
+    ("name", "given", "error"),
+    [
+        ("stainless-steel", None, 0.01),  # 20 samples within 1 %, see materials.py
+        ("stainless-steel", {"modulus_GPa": 193.0}, 0.01),  # key by key: the error stays the table's
+        ("tool-steel", {"modulus_GPa": 207.0, "poisson": 0.3}, 0.01),
+        ("glass", None, 0.05),
+        ("plate", {"modulus_GPa": 207.0, "poisson": 0.3}, 0.05),
+        ("stainless-steel", {"modulus_rel_sigma": 0.1}, 0.1),
+    ],
+)
+def test_a_wall_is_as_well_known_as_its_material(quiet, name, given, error):
+    moduli = {o.of: o.sigma for o in experiment(wall_of(quiet, name, given)).shared if o.kind == "modulus"}
+    assert moduli[name] == error
+
+
+def test_beads_without_a_stated_error_are_known_to_a_twentieth_whatever_they_are_made_of(quiet):
+    content = wall_of(quiet, "glass", None, "stainless-steel").block
+    unstated = msgspec.structs.replace(content, materials={})
+    assert experiment(Record(unstated, quiet.signals, "other")).modulus_rel_sigma == 0.05

@@ -83,11 +83,11 @@ def materials():
     """Print the built-in table of materials with its sources."""
     from sonicvacuum.materials import MATERIALS
 
-    click.echo(f"{'name':18} {'E/GPa':>7} {'nu':>6} {'kg/m3':>7} {'yield/MPa':>9}  source")
+    click.echo(f"{'name':18} {'E/GPa':>7} {'error':>6} {'nu':>6} {'kg/m3':>7} {'yield/MPa':>9}  source")
     for name, m in MATERIALS.items():
         strength = "" if m.yield_strength is None else f"{m.yield_strength / 1e6:g}"
-        row = f"{name:18} {m.modulus / 1e9:7g} {m.poisson:6g} {m.density:7g} {strength:>9}  {m.source}"
-        click.echo(row)
+        elastic = f"{m.modulus / 1e9:7g} {m.modulus_rel_sigma:6g} {m.poisson:6g}"
+        click.echo(f"{name:18} {elastic} {m.density:7g} {strength:>9}  {m.source}")
 
 
 @verb(

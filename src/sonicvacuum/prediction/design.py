@@ -17,11 +17,11 @@ import numpy as np
 from sonicvacuum.discover.model.experiment import Batch, Experiment, RunData
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis
-from sonicvacuum.discover.model.nuisances import MODULUS_REL_SIGMA
 from sonicvacuum.discover.model.parameters import coordinate
 from sonicvacuum.effects import CATALOGUE, Effect, Setup
 from sonicvacuum.files import InputError, likely
 from sonicvacuum.laboratory.next_run import FASTEST, SLOWEST
+from sonicvacuum.materials import MODULUS_REL_SIGMA
 from sonicvacuum.physics.scales import COUNTING, passage_of, sampling_of
 from sonicvacuum.prediction.setup import card_of
 from sonicvacuum.simulation import check_extent, set_up

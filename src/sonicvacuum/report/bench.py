@@ -9,8 +9,9 @@ import re
 from collections.abc import Iterator
 
 from sonicvacuum.discover.faults.table import FAULTS
-from sonicvacuum.discover.model.nuisances import MODULUS_REL_SIGMA, WORDS
+from sonicvacuum.discover.model.nuisances import WORDS
 from sonicvacuum.discover.verdict import PUT_RIGHT, Fault, Model, Verdict
+from sonicvacuum.materials import MODULUS_REL_SIGMA
 from sonicvacuum.records import Record
 from sonicvacuum.report.tables import number
 from sonicvacuum.report.words import in_words, joined

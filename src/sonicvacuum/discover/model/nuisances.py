@@ -17,11 +17,10 @@ import numpy as np
 
 from sonicvacuum.effects.coating_thickness import TERM as LAYER
 from sonicvacuum.effects.free_form import TERM
+from sonicvacuum.materials import modulus_rel_sigma
 from sonicvacuum.physics.chain import Chain
 from sonicvacuum.records.record import Record, Tolerances
 
-# Relative error of a modulus where a record states none: handbook values are seldom better.
-MODULUS_REL_SIGMA = 0.05
 # Where a record does not say. Bodies are weighed and measured, and their sizes are what the record is about:
 # a tolerance is the user's to state. A common error of the speeds or of the gains is part of the single ones,
 # which the record states, unless it says that there is one.
@@ -256,9 +255,11 @@ def _moduli(record, chain) -> dict[str, float]:
         stated = record.modulus_rel_sigma(name)
         if name == first or (stated is None and name not in surfaces):
             continue
-        if stated is None and _share(surfaces[name], own) * MODULUS_REL_SIGMA < NEGLIGIBLE:
-            continue
-        found[name] = MODULUS_REL_SIGMA if stated is None else stated
+        if stated is None:
+            stated = modulus_rel_sigma(name)
+            if _share(surfaces[name], own) * stated < NEGLIGIBLE:
+                continue
+        found[name] = stated
     return found
 
 

@@ -11,12 +11,13 @@ import numpy as np
 from sonicvacuum.discover.model.beginnings import begun
 from sonicvacuum.discover.model.experiment import Batch, Experiment, RunData, Scalar
 from sonicvacuum.discover.model.noise import MODEL_FLOOR, believed, doubtful, noise
-from sonicvacuum.discover.model.nuisances import MODULUS_REL_SIGMA, shared
+from sonicvacuum.discover.model.nuisances import shared
 from sonicvacuum.discover.model.present import acting, stated
 from sonicvacuum.discover.model.slow import slow
 from sonicvacuum.discover.model.start import started
 from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.files import InputError
+from sonicvacuum.materials import MODULUS_REL_SIGMA
 from sonicvacuum.records.assemble import assemble, chain_of, duration_of, interval_of
 from sonicvacuum.records.record import Record
 
@@ -58,6 +59,7 @@ def _experiment(record, catalogue):
         correlation=correlation,
         gain_rel_sigma=np.array([g.log_gain_sigma for g in record.gauges]),
         trigger_sigma=record.trigger_width_s,
+        # Roundness and surface of the beads are in it too, so that no handbook narrows it.
         modulus_rel_sigma=MODULUS_REL_SIGMA if named is None else named,
         diameter=record.specimen.diameters,
         record=record,
