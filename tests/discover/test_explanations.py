@@ -144,7 +144,7 @@ def test_what_was_tried_while_a_set_grew_competes_with_it():
     for one in grown[:1]:
         one.effects = (one.effect,)
     own = several(("tsuji", "static-preload", "sensor-droop"), 42.0)
-    found = decision._together(pairs, grown, own)
+    found = explanations.together(pairs, grown, own)
     assert [c.log_bayes for c in found] == [42.0, 40.0, 10.0, 9.0]
 
 

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from made_records import BEADS, made
 
-from sonicvacuum.discover import session
+from sonicvacuum.discover import policy, session
 from sonicvacuum.discover.fit import refit, wide
 from sonicvacuum.discover.judge.decision import Case
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, variants
 from sonicvacuum.discover.model.problem import experiment
 from sonicvacuum.discover.rounds import investigate
-from sonicvacuum.discover.search import pairs, singles
+from sonicvacuum.discover.search import pairs, planes, singles
 from sonicvacuum.discover.search.directions import Direction
 from sonicvacuum.effects import effect
 
@@ -32,7 +32,7 @@ def screened(columns, data, two_sided):
 def test_the_joint_gain_of_two_directions_is_that_of_least_squares():
     rng = np.random.default_rng(np.random.SeedSequence(7))
     columns, data = rng.normal(size=(4, 30)), rng.normal(size=30)
-    gain, strength = pairs._planes(screened(columns, data, [True] * 4), np.arange(4))
+    gain, strength = planes._planes(screened(columns, data, [True] * 4), np.arange(4))
     for i in range(4):
         for j in range(i + 1, 4):
             both = columns[[i, j]].T
@@ -44,8 +44,35 @@ def test_the_joint_gain_of_two_directions_is_that_of_least_squares():
 
 def test_a_one_sided_direction_of_the_wrong_sign_makes_no_pair():
     columns = np.eye(3)[:2]
-    gain, _ = pairs._planes(screened(columns, np.array([1.0, -1.0, 0.0]), [True, False]), np.arange(2))
+    gain, _ = planes._planes(screened(columns, np.array([1.0, -1.0, 0.0]), [True, False]), np.arange(2))
     assert gain[0, 1] == -np.inf
+
+
+def test_what_pairs_promise_is_the_best_joint_gain():
+    rng = np.random.default_rng(np.random.SeedSequence(8))
+    columns, data = rng.normal(size=(5, 30)), rng.normal(size=30)
+    scores = screened(columns, data, [True] * 5)
+    scores.length[4] = 0.0  # one that nuisances take up altogether counts for nothing
+    pairs_of = [columns[[i, j]].T for i in range(4) for j in range(i)]
+    left = [np.linalg.lstsq(both, data, rcond=None)[1][0] for both in pairs_of]
+    assert planes.promised(scores) == pytest.approx(data @ data - min(left), rel=1e-9)  # rounding only
+    scores.length[:] = 0.0
+    assert planes.promised(scores) == -np.inf
+
+
+@pytest.mark.parametrize(
+    ("more", "named", "kept"),
+    [(1.0, ["a", "b"], True), (-1.0, ["a", "b"], False), (1.0, ["a", "unknown"], False), (1.0, None, False)],
+    ids=["a pair", "little promised", "something unknown beside one", "none that passes"],
+)
+def test_a_pair_stands_in_for_one_effect_only_where_slopes_promise_much_more(monkeypatch, more, named, kept):
+    """Gravity and friction of d′ 10 each passed for a gap, which left nothing and gained 44 less."""
+    pair = named and SimpleNamespace(named=named)
+    monkeypatch.setattr(planes, "promised", lambda scores: 130.0 + policy.PROMISED + more)
+    monkeypatch.setattr(pairs, "Pairs", lambda *given: SimpleNamespace(search=lambda: []))
+    monkeypatch.setattr(Case, "_passing", lambda self, *given: (pair, None, None))
+    case = Case(None, None, None, [SimpleNamespace(gain=130.0)], None, None)
+    assert case._pair_instead(13.0, 0.0, {}, None) is (pair if kept else None)
 
 
 def test_two_effects_are_named_together():
@@ -125,9 +152,9 @@ def test_a_pair_far_behind_is_spared_its_last_steps(monkeypatch):
     nu = np.zeros((1, forward.layout.size))
     starts = []
     for second, place in ((gain, 1), (other, 0)):
-        both = pairs.joined(Hypothesis((drag,)), second, setup)
+        both = planes.joined(Hypothesis((drag,)), second, setup)
         u = np.array([[c.inverse(v) for c, v in zip(both.coordinates, (300.0, 1.2), strict=True)]])
-        starts.append(pairs.Start(0.0, both, u, nu, np.array([[0, place]])))
+        starts.append(planes.Start(0.0, both, u, nu, np.array([[0, place]])))
     near, far = pairs.followed(forward, starts)
     assert near.finished and not far.finished
     assert far.objective > near.objective + pairs.BEHIND

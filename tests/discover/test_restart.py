@@ -11,7 +11,7 @@ from sonicvacuum.discover.fit.refit import Fit, fit, polish
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, variants
 from sonicvacuum.discover.model.problem import experiment
-from sonicvacuum.discover.search import directions, pairs, restart, screen, secants, singles
+from sonicvacuum.discover.search import directions, pairs, planes, restart, screen, secants, singles
 from sonicvacuum.effects import effect
 
 GAP, MASS = ("contact-gap", {"gap_um": 0.15, "contact": 5}), ("mass-defect", {"mass_ratio": 0.95, "bead": 8})
@@ -28,7 +28,7 @@ def stuck():
         Component(effect(name), variants(effect(name), setup)[0], place=place)
         for name, place in (("contact-gap", 5), ("mass-defect", 6))
     )
-    hypothesis = pairs.joined(Hypothesis((first,)), second, setup)
+    hypothesis = planes.joined(Hypothesis((first,)), second, setup)
     start = [c.inverse(value) for c, value in zip(hypothesis.coordinates, (0.15, 1.02), strict=True)]
     return forward, fit(forward, hypothesis, np.array([start]), null.nu[None])
 
@@ -81,7 +81,7 @@ def test_a_single_effect_that_a_pair_leads_lower_is_followed_beyond_its_range():
         Hypothesis((alone,)), linearise(forward, Hypothesis((alone,)), np.zeros((1, 1)), null.nu[None])
     )
     own = Candidate("sensor-gain", start, null.objective - start.objective, 0.0, ((1, 1.0),), ())
-    both = pairs.joined(Hypothesis((alone,)), drag, setup)
+    both = planes.joined(Hypothesis((alone,)), drag, setup)
     at = np.array([[c.inverse(0.3) if c.parameter.name == "gain_ratio" else c.low for c in both.coordinates]])
     pair = pairs.combination(null, fit(forward, both, at, np.zeros((1, forward.layout.size))), setup)
     (found,) = restart.lower(forward, null, [pair], [own], setup)
@@ -98,7 +98,7 @@ def test_an_effect_of_which_slopes_promised_nothing_is_fitted_alone_where_a_pair
         Component(effect(name), variants(effect(name), setup)[0], place=place)
         for name, place in (("sensor-gain", 1), ("viscous-drag", None))
     )
-    both = pairs.joined(Hypothesis((gain,)), drag, setup)
+    both = planes.joined(Hypothesis((gain,)), drag, setup)
     at = np.array([[c.inverse(1.3) if c.parameter.name == "gain_ratio" else c.low for c in both.coordinates]])
     pair = pairs.combination(null, fit(forward, both, at, null.nu[None]), setup)
     alone = Hypothesis((gain,))

@@ -24,6 +24,9 @@ MARGIN, SHARE = 6.0, 0.05
 # were likelier by less: two were right, and nine stood for one thing outside the catalogue; of the others 315
 # were right, and nine stood for such a thing.
 FURTHER = 9.0
+# Pairs are asked for although the best single effect leaves nothing, where slopes at the nominal model
+# promise a Δχ² of so much more than it gains: in 157 records with one effect they promised 14 more at most.
+PROMISED = 20.0
 # Beside what is left, effects are named where they are so many times likelier than all else together.
 CLEAR = 1.0
 # Where the best explanation leaves more χ² per datum than this, twice the noise, that no longer counts, ...

@@ -13,7 +13,9 @@ from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Hypothesis
 
 ITERATIONS = 30
-LAST = 2
+# Last steps, and how often slopes are taken afresh for some of them, while these still gain more than this in
+# χ²: with slopes that were held a fit may come to rest hundreds above its minimum, for they promise nothing.
+LAST, AFRESH, GAINED = 2, 4, 0.1
 # A fit has settled when an accepted step gains less than this in χ², before slopes are taken to second order,
 # where there are any: the last steps gain the rest.
 NEARLY = 0.02
@@ -29,7 +31,7 @@ class Fit:
         settled: whether the fit converged.
         others: (n,) objectives of the other starts that settled elsewhere, ascending.
         elsewhere: (n, q) their nuisances.
-        finished: whether the last steps were taken with slopes to second order.
+        finished: whether the last steps were taken, with fresh slopes, those of parameters to second order.
     """
 
     hypothesis: Hypothesis
@@ -137,7 +139,7 @@ def fit(
 
     With `coarse`, starts are judged, and followed for so many steps, on running integrals of the traces
     first. With `halved`, four times as many starts are followed for so many steps before they are judged.
-    Without `finish` the last steps, with slopes to second order, are left to `polish`.
+    Without `finish` the last steps, with fresh slopes to second order, are left to `polish`.
     """
     begun = _begun(forward, u, nu, places)
     many = 4 * keep if halved else keep
@@ -180,13 +182,18 @@ def finished(forward: Forward, one: Fit) -> Fit:
 
 
 def _finished(forward, hypothesis, now):
-    """The last steps with slopes to second order: those to first order point a little beside the minimum."""
-    if not (np.isfinite(now.objective[0]) and now.has_slopes[0]) or now.free == 0:
+    """The last steps, with slopes taken afresh, those of parameters to second order: to first order they
+    point a little beside the minimum.
+    """
+    if not (np.isfinite(now.objective[0]) and now.has_slopes[0]):
         return now
-    steps = differences(now)
-    precise, columns = linearised(forward, hypothesis, now.u, now.nu, None, steps, True)
-    last = descend(forward, hypothesis, precise, None, LAST, columns, precise=True)[0]
-    return broad.broadened(forward, hypothesis, last, columns) if broad.asks(hypothesis) else last
+    for _ in range(AFRESH):
+        before = now.objective[0]
+        fresh, columns = linearised(forward, hypothesis, now.u, now.nu, None, differences(now), True)
+        now = descend(forward, hypothesis, fresh, None, LAST, columns, precise=True)[0]
+        if not before - now.objective[0] > GAINED:
+            break
+    return broad.broadened(forward, hypothesis, now, columns) if broad.asks(hypothesis) else now
 
 
 def simulated(forward: Forward, hypothesis: Hypothesis, u, nu, places=None) -> np.ndarray:

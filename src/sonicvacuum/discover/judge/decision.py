@@ -11,10 +11,10 @@ from sonicvacuum.discover.fit.evidence import Candidate, Combination
 from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.judge import explanations, gross, weighing
 from sonicvacuum.discover.judge.decided import Decision, View, viewed
-from sonicvacuum.discover.judge.left import Left, left, sure
+from sonicvacuum.discover.judge.left import Left, left, short, sure
 from sonicvacuum.discover.judge.rivals import of_weights
 from sonicvacuum.discover.model.forward import Forward
-from sonicvacuum.discover.search import directions, pairs, restart, screen, several, singles, unknown
+from sonicvacuum.discover.search import directions, pairs, planes, restart, screen, several, singles, unknown
 from sonicvacuum.effects import Setup
 
 # Pairs that are asked what they leave.
@@ -56,7 +56,7 @@ class Case:
         beside = directions.catalogue(self.setup, (best.effect, *forward.experiment.excluded))
         scores = screen.screen(forward, best.fit, beside, also=unknown.families(forward, best.fit))
         shape, most = unknown.simplest(self.forward, self.null)
-        seen = left(self.forward, best.fit, self.known, scores, _behind(best.gain, most))
+        seen = left(self.forward, best.fit, self.known, scores, short(best.gain, most))
         alarms = {"single": seen.p}
         alone = self._smooth_alone()
         instead = alone > best.log_bayes + seen.size.log_odds
@@ -64,6 +64,9 @@ class Case:
             return self._out_of_smooth(best, scores.threshold(policy.FALSE_ALARM), most, alarms, alone)
         if seen.shapes.failed or seen.fit.failed or seen.size.found:
             return self._more(scores.threshold(policy.FALSE_ALARM), most, shape, alarms, seen)
+        instead = self._pair_instead(scores.threshold(policy.FALSE_ALARM), most, alarms, seen)
+        if instead is not None:
+            return instead
         if seen.behind > 0.0:
             return self._unknown(alarms, [f"{shape} explains more than {best.effect}"], seen)
         if heldout.better(self.null, best.fit):
@@ -90,7 +93,7 @@ class Case:
         if not grown.best.effects:
             return self._unknown({"none": without.p, **alarms}, [reason], without)
         final = several.moved(self.forward, grown.best.fit)
-        behind = _behind(self.null.objective - final.objective, most)
+        behind = short(self.null.objective - final.objective, most)
         after = left(self.forward, final, self.known, behind=behind)
         return self._beside(grown, needed, {**alarms, "set": after.p}, after, [])
 
@@ -107,6 +110,14 @@ class Case:
             if [id(pair) for pair in tried[:ASKED]] != [id(pair) for pair in asked]:
                 passed, start, lowest = self._passing(tried, needed, most, alarms, seen)
         return passed or self._set(needed, most, shape, alarms, start, lowest, tried)
+
+    def _pair_instead(self, needed, most, alarms, seen: Left) -> Decision | None:
+        """A pair instead of one effect that leaves nothing but stands for both, where slopes promise more."""
+        if planes.promised(self.scores) <= self.found[0].gain + policy.PROMISED:
+            return None
+        tried = pairs.Pairs(self.forward, self.null, self.scores, self.found).search()
+        passed = self._passing(tried, needed, most, dict(alarms), seen)[0]
+        return passed if passed is not None and UNKNOWN not in passed.named else None
 
     def _anew(self, lower: list[Candidate]) -> Decision:
         """The same with single effects of which one has a lower minimum than it was known to have."""
@@ -125,7 +136,7 @@ class Case:
                 continue
             # A third effect may hide in what the record states: nuisances that strain leave no residual.
             more = pairs.screened(self.forward, pair.fit, self.setup)
-            after = left(self.forward, pair.fit, self.known, more, _behind(pair.gain, most))
+            after = left(self.forward, pair.fit, self.known, more, short(pair.gain, most))
             alarms.setdefault("pair", after.p)
             if pair.log_bayes + after.size.log_odds <= rival:
                 continue
@@ -177,12 +188,12 @@ class Case:
         final = several.moved(self.forward, grown.best.fit) if grown.size.size else grown.best.fit
         if len(effects) == 1 and (lower := restart.led(self.null, final, self.found)):
             return self._anew(lower)
-        behind = _behind(self.null.objective - final.objective, most)
+        behind = short(self.null.objective - final.objective, most)
         if behind > 0.0 and effects and grown.size.size:
             # Slow shapes take up the smooth misfit itself: they and effects are held against each other with
             # that counted as noise.
             most = unknown.simplest(grown.forward, grown.null)[1]
-            behind = _behind(grown.null.objective - grown.best.fit.objective, most)
+            behind = short(grown.null.objective - grown.best.fit.objective, most)
         after = left(self.forward, final, self.known, behind=behind) if effects else seen
         if len(effects) > 1 and not after.failed:
             final, after = self._rivalled(turns, final, after, most)
@@ -191,7 +202,7 @@ class Case:
         others = () if grown.size.size else grown.tried.values()
         if len(effects) > 1:
             own = pairs.combination(self.null, final, self.setup)
-            tried = _together(tried, others, own)
+            tried = explanations.together(tried, others, own)
             if not after.failed:
                 return self._whole(own, others, alarms, after, tried)
         if effects and not after.failed:
@@ -215,12 +226,12 @@ class Case:
         best = grown.best
         if len(best.effects) < fewest or best.log_bayes <= rival:
             return None
-        after = left(self.forward, best.fit, self.known, behind=_behind(best.gain, most))
+        after = left(self.forward, best.fit, self.known, behind=short(best.gain, most))
         if after.failed:
             return None
         final, after = self._rivalled(turns, best.fit, after, most)
         best = pairs.combination(self.null, final, self.setup)
-        ranked = _together(tried, grown.tried.values(), best)
+        ranked = explanations.together(tried, grown.tried.values(), best)
         return self._whole(best, grown.tried.values(), {**alarms, "set": after.p}, after, ranked)
 
     def _rivalled(self, turns: several.Turns, final: Fit, after: Left, most) -> tuple[Fit, Left]:
@@ -229,7 +240,7 @@ class Case:
         """
         other = turns.rivals(final)
         if other is not final:
-            behind = _behind(self.null.objective - other.objective, most)
+            behind = short(self.null.objective - other.objective, most)
             instead = left(self.forward, other, self.known, behind=behind)
             if not instead.failed:
                 return other, instead
@@ -238,7 +249,7 @@ class Case:
     def _standing_out(self, standing: gross.Standing, alarms, seen: Left, tried, shape, most) -> Decision:
         """What stands out of a misfit that is large beside the noise, and something unknown."""
         one = standing.fit
-        if one is not None and _behind(self.null.objective - one.objective, most) > 0.0:
+        if one is not None and short(self.null.objective - one.objective, most) > 0.0:
             return self._unknown(alarms, [f"{shape} explains more than any effect or set"], seen, tried)
         after = left(self.forward, one, self.known) if one is not None else seen
         reasons = [f"what is left is large beside the noise: {after.where}"]
@@ -256,7 +267,7 @@ class Case:
             return replace(nothing, counted=view, rivals=standing.rivals)
         alarms["set"] = after.p
         reasons += standing.instead
-        tried = _together(tried, standing.found, pairs.combination(self.null, one, self.setup))
+        tried = explanations.together(tried, standing.found, pairs.combination(self.null, one, self.setup))
         return Decision(
             [*names, UNKNOWN],
             one,
@@ -336,15 +347,3 @@ class Case:
         near = [c for c in self.found if c.gain > 0.5 * most and frozenset((c.effect,)) not in grown.tried]
         fits = [several.moved(grown.forward, c.fit) for c in near[:4]]
         return [pairs.combination(grown.null, f, self.setup) for f in fits]
-
-
-def _together(tried, grown, own: Combination) -> list[Combination]:
-    """All sets that were fitted on noise as it is, each as it is best, the best first; `own` in any case."""
-    found = [*sorted((*tried, *grown), key=lambda c: c.log_bayes), own]
-    sets = {frozenset(c.effects): c for c in found if len(c.effects) > 1 and np.isfinite(c.log_bayes)}
-    return sorted(sets.values(), key=lambda c: -c.log_bayes)
-
-
-def _behind(gain: float, most: float) -> float:
-    """By how much an explanation's Δχ² falls short of that of the simplest shape outside the catalogue."""
-    return max(0.0, most - gain - policy.MARGIN - policy.SHARE * gain)

@@ -36,6 +36,15 @@ def effects(name: str) -> list[str]:
     return [] if name == NONE else name.split(" + ")
 
 
+def together(
+    tried: Iterable[Combination], grown: Iterable[Combination], own: Combination
+) -> list[Combination]:
+    """All sets that were fitted on noise as it is, each as it is best, the best first; `own` in any case."""
+    found = [*sorted((*tried, *grown), key=lambda c: c.log_bayes), own]
+    sets = {frozenset(c.effects): c for c in found if len(c.effects) > 1 and np.isfinite(c.log_bayes)}
+    return sorted(sets.values(), key=lambda c: -c.log_bayes)
+
+
 def aliases(forward: Forward, null: Fit, found: list[Candidate]) -> list[str]:
     """Effects that change these data as the best one does, it included; one name where it is alone."""
     if not found:

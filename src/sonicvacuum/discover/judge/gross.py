@@ -22,7 +22,7 @@ from sonicvacuum.discover.judge import explanations, rivals, weighing
 from sonicvacuum.discover.judge.rivals import Rival
 from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.forward import Forward
-from sonicvacuum.discover.search import pairs, profiles, screen, several, singles, unknown
+from sonicvacuum.discover.search import pairs, planes, profiles, screen, several, singles, unknown
 from sonicvacuum.effects import Setup
 
 # Third effects, and further ones, that are fitted beside what stands out.
@@ -150,7 +150,7 @@ def _crossed(forward, null, found: list[Combination], setup: Setup) -> list[Comb
 
     def crossed(branch, other):
         best = alone[0].fit
-        hypothesis = pairs.joined(best.hypothesis, other.fit.hypothesis.components[0], setup)
+        hypothesis = planes.joined(best.hypothesis, other.fit.hypothesis.components[0], setup)
         u = np.concatenate([best.u, other.fit.u])
         nu = np.array([best.nu, other.fit.nu])
         one = fit(branch, hypothesis, np.array([u, u]), nu, iterations=pairs.ITERATIONS)

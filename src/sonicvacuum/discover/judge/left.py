@@ -71,6 +71,11 @@ def left(forward: Forward, fit: Fit, known, scores: screen.Screen | None = None,
     return Left(unknown.shape_test(forward, fit, scores), goodness.goodness(forward, fit), size, behind)
 
 
+def short(gain: float, most: float) -> float:
+    """By how much an explanation's Δχ² falls short of that of the simplest shape outside the catalogue."""
+    return max(0.0, most - gain - policy.MARGIN - policy.SHARE * gain)
+
+
 def sure(found: Left) -> bool:
     """Whether the nominal model leaves a misfit beyond doubt: nothing is named then but that."""
     return found.p < policy.NULL_MISFIT

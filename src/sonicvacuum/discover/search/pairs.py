@@ -7,7 +7,7 @@ share one effect with it are tried as well.
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -17,9 +17,10 @@ from sonicvacuum.discover.fit.evidence import Candidate, Combination, log_bayes
 from sonicvacuum.discover.fit.refit import Fit, finished, fit, polish
 from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.forward import Forward
-from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, is_law, of_one_strength, variants
+from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, of_one_strength, variants
 from sonicvacuum.discover.search import directions, restart, screen, secants
-from sonicvacuum.discover.search.starts import coordinates, setup_of, starts_of
+from sonicvacuum.discover.search.planes import Start, joined, linear, variant
+from sonicvacuum.discover.search.starts import setup_of, starts_of
 from sonicvacuum.effects import Setup
 
 # Singles that pairs start from.
@@ -34,27 +35,6 @@ TRIALS = 3
 # taken: these gain some hundredths, or some units with laws of several parameters.
 BEHIND = 30.0
 ITERATIONS = 12
-# Signatures closer to parallel than this span no plane.
-_PARALLEL = 1e-3
-
-
-@dataclass(frozen=True)
-class Start:
-    """Where the joint fit of several effects starts, and the Δχ² that it should gain.
-
-    `u` (L, p), `nu` (L, q) and `places` (L, effects) are L starts.
-    """
-
-    gain: float
-    hypothesis: Hypothesis
-    u: np.ndarray
-    nu: np.ndarray
-    places: np.ndarray
-
-    @property
-    def effects(self) -> frozenset:
-        """Ids of all."""
-        return frozenset(self.hypothesis.ids)
 
 
 class Pairs:
@@ -221,63 +201,6 @@ def _best(starts, found, most):
     return list(best.values())[:most]
 
 
-def linear(scores: screen.Screen, setup: Setup, most: int = 12) -> list[Start]:
-    """Pairs by what they should gain if all effects acted in proportion, best first."""
-    at = np.flatnonzero(scores.length > 0.0)
-    gain, strength = _planes(scores, at)
-    names = np.array([scores.directions[k].effect for k in at])
-    best: dict[tuple[str, str], tuple[int, int]] = {}
-    for i, j in zip(*np.nonzero(np.triu(gain > 0.0, 1)), strict=True):
-        key = (str(names[i]), str(names[j]))
-        if key not in best or gain[i, j] > gain[best[key]]:
-            best[key] = (i, j)
-    ranked = sorted(best.values(), key=lambda ij: -gain[ij])[:most]
-    return [
-        _from_plane(scores, setup, (at[i], at[j]), (strength[i, j], strength[j, i]), gain[i, j])
-        for i, j in ranked
-    ]
-
-
-def _planes(scores, at):
-    """(K, K) joint gain of two directions, −∞ where they span no plane or one would have the wrong sign; and
-    the first one's estimate beside the second.
-    """
-    length = scores.length[at]
-    z, rho = scores.projected[0][at] / length, scores.correlation[np.ix_(at, at)]
-    effects = np.array([scores.directions[k].effect for k in at])
-    one_sided = np.array([not scores.directions[k].two_sided for k in at])
-    plane = 1.0 - np.square(rho)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        first = (z[:, None] - rho * z[None, :]) / plane
-        gain = z[:, None] * first + z[None, :] * first.T
-    wrong = (plane < _PARALLEL) | (effects[:, None] == effects[None, :])
-    wrong |= (one_sided[:, None] & (first < 0.0)) | (one_sided[None, :] & (first.T < 0.0))
-    return np.where(wrong, -np.inf, gain), first / length[:, None]
-
-
-def _from_plane(scores, setup, ks, strengths, gain):
-    """The start at the estimates of two directions."""
-    components, u, places = [], [], []
-    for k, strength in zip(ks, strengths, strict=True):
-        d = scores.directions[k]
-        free = _variant(d, setup)
-        components.append(Component(setup.catalogue.effect(d.effect), free))
-        u += [
-            float(np.clip(x, c.low + 1e-9, c.high - 1e-9))
-            for c, x in zip(free, coordinates(free, d, strength), strict=True)
-        ]
-        places.append(d.place or 0)
-    nu = scores.moved(list(ks), np.array(strengths))[1]
-    hypothesis = joined(Hypothesis((components[0],)), components[1], setup)
-    return Start(float(gain), hypothesis, np.array([u]), nu[None], np.array([places]))
-
-
-def _variant(direction, setup):
-    """The free parameters of an effect whose strength is that of a direction."""
-    options = variants(setup.catalogue.effect(direction.effect), setup)
-    return next(v for v in options if v[0].parameter.name == direction.strength)
-
-
 def screened(forward: Forward, first: Fit, setup: Setup) -> screen.Screen:
     """Roughly what the residual of a fit says of every effect that is not in it."""
     present = (*first.hypothesis.ids, *forward.experiment.excluded)
@@ -297,7 +220,7 @@ def beside(
         effect = setup.catalogue.effect(second)
         finite = secants.search(branch, first, effect, setup, 2, sparse=True)
         more = max([float(np.square(scores.z[k])), *(one.gain for one in finite)])
-        free = _variant(scores.directions[k], setup)
+        free = variant(scores.directions[k], setup)
         u, places, nu = starts_of(branch, first, scores, effect, free, False, finite)
         if not len(u):
             return None
@@ -334,13 +257,6 @@ def combination(null: Fit, one: Fit, setup: Setup) -> Combination:
     """A fit of several effects with its evidence against the nominal model."""
     gain, names = null.objective - one.objective, one.hypothesis.ids
     return Combination(names, one, gain, log_bayes(one, gain) - _places(names, setup))
-
-
-def joined(hypothesis: Hypothesis, component: Component, setup: Setup) -> Hypothesis:
-    """A hypothesis with one effect more; two force laws share the common law set."""
-    laws = is_law(component.effect, setup) and any(is_law(c.effect, setup) for c in hypothesis.components)
-    more = hypothesis.with_component(component)
-    return Hypothesis(more.components, hypothesis.common or laws)
 
 
 def _places(names, setup):
