@@ -10,7 +10,7 @@ from made_records import block, made
 from sonicvacuum.discover.fit.wide import nominal
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Hypothesis
-from sonicvacuum.discover.model.nuisances import Layout, Shared, exact
+from sonicvacuum.discover.model.nuisances import Layout, Shared, assumed, exact
 from sonicvacuum.discover.model.problem import experiment
 from sonicvacuum.discover.model.slow import columns
 from sonicvacuum.discover.search import directions, screen
@@ -192,6 +192,23 @@ def test_what_counts_as_exact_is_said(empty):
     words = exact(some, experiment(some).shared)
     assert words == "the striker's mass: taken as exact, no tolerance being stated"
     assert exact(some, experiment(with_keys(empty, tolerances=TOLERANCES)).shared) == ""
+
+
+def test_what_is_taken_of_moduli_is_said(empty):
+    chains = [batch.chain for batch in experiment(empty).batches]
+    taken = "errors of moduli taken so, none being stated"
+    assert assumed(empty, chains) == f"alumina 5 %, stainless-steel 1 %: {taken}"
+    given = {name: {"modulus_rel_sigma": 0.02} for name in ("alumina", "stainless-steel")}
+    assert (
+        assumed(with_keys(empty, materials={"alumina": given["alumina"]}), chains)
+        == f"stainless-steel 1 %: {taken}"
+    )
+    assert assumed(with_keys(empty, materials=given), chains) == ""
+    steel = wall_of(empty, "stainless-steel", {"modulus_rel_sigma": 0.0}, "bearing-steel")
+    unstated = msgspec.structs.replace(steel.block, materials={})
+    assert "bearing-steel 5 %" in assumed(
+        Record(unstated, empty.signals, "other"), [experiment(steel).batches[0].chain]
+    )
 
 
 def wall_of(record: Record, name: str, given: dict | None, bead: str = "brass") -> Record:

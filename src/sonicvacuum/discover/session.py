@@ -19,7 +19,7 @@ from sonicvacuum.discover.judge import behind, degenerate, explanations, locate,
 from sonicvacuum.discover.judge.law import surface
 from sonicvacuum.discover.model import window
 from sonicvacuum.discover.model.forward import Forward
-from sonicvacuum.discover.model.nuisances import exact
+from sonicvacuum.discover.model.nuisances import assumed, exact
 from sonicvacuum.discover.posterior import posterior
 from sonicvacuum.discover.rounds import Investigation
 from sonicvacuum.discover.search.free_law import FreeLaw
@@ -167,13 +167,14 @@ def _with_hidden(found: Investigation, scores: Screen) -> Investigation:
 
 
 def _taken_as_stated(found: Investigation) -> list[str]:
-    """What was taken as exact, where something is named: a tolerance might explain it instead. And what the
-    nominal model would have of the record otherwise than stated.
+    """What was taken as exact, or as known so well, where something is named: a tolerance might explain it
+    instead. And what the nominal model would have of the record otherwise than stated.
     """
-    e = found.forward.experiment
-    said = exact(e.record, e.shared) if found.named and e.record is not None else ""
+    e, said = found.forward.experiment, []
+    if found.named and e.record is not None:
+        said = [exact(e.record, e.shared), assumed(e.record, (b.chain for b in e.batches))]
     moved = strained.told(found.forward, found.null, found.final) if verdict.named_effects(found) else []
-    return [said] * bool(said) + moved
+    return [*filter(None, said), *moved]
 
 
 def _doubts(found: Investigation, record: Record) -> list[str]:

@@ -9,7 +9,7 @@ Gaussian prior is N(0, 1); an error of 0 means exact, and costs nothing. Baselin
 the readings, and are marginalised as noise (`slow`).
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -17,7 +17,7 @@ import numpy as np
 
 from sonicvacuum.effects.coating_thickness import TERM as LAYER
 from sonicvacuum.effects.free_form import TERM
-from sonicvacuum.materials import modulus_rel_sigma
+from sonicvacuum.materials import MODULUS_REL_SIGMA, modulus_rel_sigma
 from sonicvacuum.physics.chain import Chain
 from sonicvacuum.records.record import Record, Tolerances
 
@@ -242,6 +242,20 @@ def exact(record: Record, given: tuple[Shared, ...]) -> str:
     open_ = {one.kind for one in given}
     words = [_SAID[kind] for kind in bodies if kind not in open_]
     return f"{', '.join(words)}: taken as exact, no tolerance being stated" if words else ""
+
+
+def assumed(record: Record, chains: Iterable[Chain]) -> str:
+    """How well the moduli of what touches in some chains are taken to be known where the record states no
+    error of them, in words; "" where it states all.
+    """
+    first = record.specimen.first.surface.name
+    names = dict.fromkeys(s.surface.name for chain in chains for s in chain.solids)
+    unstated = [name for name in names if record.modulus_rel_sigma(name) is None]
+    taken = [
+        f"{name} {100.0 * (MODULUS_REL_SIGMA if name == first else modulus_rel_sigma(name)):g} %"
+        for name in unstated
+    ]
+    return f"{', '.join(taken)}: errors of moduli taken so, none being stated" if taken else ""
 
 
 def _moduli(record, chain) -> dict[str, float]:
