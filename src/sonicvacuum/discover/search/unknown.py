@@ -3,7 +3,8 @@
 The residual is projected on groups of directions: the catalogue, a flexible contact law and drag, stiffness
 and mass of each contact and bead, their smooth and alternating profiles along the chain, distortions of each
 gauge, gain and delay of each gauge in each run, and time bins around the pulse. Each group gives a χ² of as
-many degrees of freedom as it resolves; the smallest p counts, times their number.
+many degrees of freedom as it resolves, and its largest score, which tells one heavier bead among forty where
+the χ² of all does not; the smallest p counts, times their number.
 """
 
 from dataclasses import dataclass, replace
@@ -149,7 +150,9 @@ def _groups(whole):
 
 
 def test(whole: screen.Screen, at: np.ndarray) -> tuple[float, int, float]:
-    """χ², degrees of freedom and p of the residual's part along some directions."""
+    """χ² of the residual's part along some directions, its degrees of freedom, and p: of that, or of the
+    largest score among them (Bonferroni: times their number), whichever is less likely, times two.
+    """
     at = at[whole.length[at] > 1e-3 * np.sqrt(np.einsum("kk->k", whole.products.sum(axis=0)))[at]]
     if not len(at):
         return 0.0, 0, 1.0
@@ -157,8 +160,12 @@ def test(whole: screen.Screen, at: np.ndarray) -> tuple[float, int, float]:
     kept = values > _RANK
     scores = whole.projected[0][at] / whole.length[at]
     parts = (vectors[:, kept].T @ scores) / np.sqrt(values[kept])
-    chi2 = float(parts @ parts)
-    return chi2, int(kept.sum()), tails.chi_squared(chi2, float(kept.sum()))
+    chi2, freedom = float(parts @ parts), int(kept.sum())
+    spread = tails.chi_squared(chi2, float(freedom))
+    if freedom == 1:
+        return chi2, freedom, spread
+    alone = len(at) * tails.chi_squared(float(np.square(scores).max()), 1)
+    return chi2, freedom, min(1.0, 2.0 * min(spread, alone))
 
 
 def _largest(catalogue):
