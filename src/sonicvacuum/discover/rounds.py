@@ -17,7 +17,7 @@ from sonicvacuum.discover.judge.rivals import Rival, of_odds
 from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.experiment import Experiment
 from sonicvacuum.discover.model.forward import Forward
-from sonicvacuum.discover.search import directions, screen, singles
+from sonicvacuum.discover.search import around, directions, screen, singles
 
 # Candidates whose Δχ² is this far behind the best are not followed to their minimum.
 NEAR = 15.0
@@ -275,7 +275,7 @@ def _along(forward, null, found):
     least = max(c.gain for c in found) - ALONG
     for k, c in enumerate(found):
         if c.gain > least and places.placed(c.fit):
-            better = places.settled(forward, c.fit, setup)
+            better = around.refined(forward, null, places.settled(forward, c.fit, setup), setup)
             if better is not c.fit:
                 result[k] = _moved(c, null, better, ((better.hypothesis.components[0].place, 1.0),), c.flags)
     return enough.first(forward, evidence.ranked(result, forward.experiment.prior_odds))

@@ -70,13 +70,13 @@ def _around(one, setup, factors):
                 rows.append([*now[:k], possible[at + step], *now[k + 1 :]])
                 u = one.u.copy()
                 strength = columns[k].start
-                u[strength] = _stronger(c.free[0], u[strength], factor)
+                u[strength] = stronger(c.free[0], u[strength], factor)
                 coordinates.append(u)
     shape = (len(rows), len(components))
     return np.array(coordinates).reshape(len(rows), len(one.u)), np.array(rows, dtype=int).reshape(shape)
 
 
-def _stronger(coordinate, u, factor):
-    """The coordinate of a deviation multiplied by a factor, within the bounds of the search."""
+def stronger(coordinate, u, factor):
+    """The coordinate of a deviation multiplied by a factor (any shape), within the bounds of the search."""
     moved = u + np.log(factor) if coordinate.kind == "log" else u * factor
     return np.clip(moved, coordinate.low, coordinate.high)

@@ -6,6 +6,7 @@ change Δ of the data gains 2 b − G, with b its score and G its squared length
 projected out.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -73,14 +74,22 @@ def search(
 
 
 def tried(
-    forward: Forward, fit: Fit, component: Component, setup: Setup, most: int, sizes: np.ndarray
+    forward: Forward,
+    fit: Fit,
+    component: Component,
+    setup: Setup,
+    most: int,
+    sizes: np.ndarray,
+    places: Sequence[int] | None = None,
 ) -> list[Secant]:
     """The most promising trials of any effect with one strength, its shapes and places included.
 
-    `sizes` (n,) are coordinates of the strength, see `coarsely` and `finely`.
+    `sizes` (n,) are coordinates of the strength, see `coarsely` and `finely`; `places` are all that the
+    effect may have, unless given.
     """
     effect, free = component.effect, component.free
-    places = effect.candidates(setup) if effect.places else (None,)
+    if places is None:
+        places = effect.candidates(setup) if effect.places else (None,)
     rows = [
         (place, u)
         for place in places

@@ -1,0 +1,57 @@
+"""One effect with a place, tried around where it was found: the narrow minimum next door, and what stays."""
+
+import numpy as np
+import pytest
+from made_records import made
+
+from sonicvacuum.discover.fit import wide
+from sonicvacuum.discover.fit.refit import fit
+from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, variants
+from sonicvacuum.discover.model.problem import experiment
+from sonicvacuum.discover.search import around
+from sonicvacuum.discover.search.starts import setup_of
+from sonicvacuum.effects import effect
+
+
+def found(hidden, name, strength, place, seed=3):
+    """A predictor, its nominal fit, and the fit of one effect that begins at a strength and a place."""
+    forward = Forward(experiment(made(hidden, seed=seed)[0]))
+    null, setup = wide.nominal(forward), setup_of(forward)
+    free = variants(effect(name), setup)[0]
+    hypothesis = Hypothesis((Component(effect(name), free),))
+    u = np.array([[c.inverse(strength) for c in free]])
+    where = None if place is None else np.array([[place]])
+    return forward, null, fit(forward, hypothesis, u, null.nu[None], where), setup
+
+
+@pytest.mark.parametrize(
+    ("name", "key", "hidden", "place", "start", "beside"),
+    [
+        ("contact-gap", "contact", 0.9, 5, 0.3, 6),
+        ("mass-defect", "bead", 0.93, 5, 1.04, 6),
+        ("mass-defect", "bead", 0.93, 5, 0.97, 3),
+    ],
+)
+def test_a_narrow_minimum_at_another_place_is_found(name, key, hidden, place, start, beside):
+    strength = effect(name).parameters[0].name
+    forward, null, one, setup = found([(name, {strength: hidden, key: place})], name, start, beside)
+    better = around.refined(forward, null, one, setup)
+    assert better.objective < one.objective - 10.0  # beyond what noise makes of one parameter
+    assert better.hypothesis.components[0].place == place
+    value = better.hypothesis.values(better.u)[name][strength]
+    slope = abs(better.hypothesis.coordinates[0].value(better.u + better.sigma)[0] - value)
+    assert abs(value - hidden) < 4.0 * slope  # four standard errors
+
+
+def test_a_fit_at_its_minimum_stays_as_it_is():
+    hidden = [("mass-defect", {"mass_ratio": 1.06, "bead": 5})]
+    forward, null, one, setup = found(hidden, "mass-defect", 1.06, 5)
+    assert around.refined(forward, null, one, setup) is one
+
+
+def test_what_has_no_place_is_not_tried():
+    forward, null, one, setup = found([("viscous-drag", {"rate_per_s": 150.0})], "viscous-drag", 150.0, None)
+    before = forward.simulations
+    assert around.refined(forward, null, one, setup) is one
+    assert forward.simulations == before
