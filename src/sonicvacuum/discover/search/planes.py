@@ -37,7 +37,7 @@ class Start:
 def promised(scores: screen.Screen) -> float:
     """The Δχ² of the best pair if all effects acted in proportion; −∞ where no two act."""
     gain, _ = _planes(scores, np.flatnonzero(scores.length > 0.0))
-    return float(np.max(np.triu(gain, 1), initial=-np.inf))
+    return float(gain[np.triu_indices(len(gain), 1)].max(initial=-np.inf))
 
 
 def linear(scores: screen.Screen, setup: Setup, most: int = 12) -> list[Start]:
