@@ -9,8 +9,8 @@ from dataclasses import dataclass
 # Relative error of a modulus of which nothing better is known: ceramics and glasses by what is in them,
 # textured metals by how they were made, polymers by temperature and rate.
 MODULUS_REL_SIGMA = 0.05
-# Steels: in 20 samples of AISI 304 from as many sources Young's modulus varied by 1 % or less (Ledbetter,
-# Frederick & Austin, J. Appl. Phys. 51, 305 (1980)); alloying changes that of others as little.
+# Steels: of 20 samples of AISI 304 acquired at random Young's modulus varied by 1 % or less (Ledbetter,
+# Frederick & Austin, J. Appl. Phys. 51, 305 (1980)); that of other steels is taken to do so too.
 STEEL_REL_SIGMA = 0.01
 
 
