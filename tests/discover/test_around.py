@@ -1,9 +1,12 @@
 """One effect with a place, tried around where it was found: the narrow minimum next door, and what stays."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from made_records import made
 
+from sonicvacuum.discover import rounds
 from sonicvacuum.discover.fit import wide
 from sonicvacuum.discover.fit.refit import fit
 from sonicvacuum.discover.model.forward import Forward
@@ -55,3 +58,30 @@ def test_what_has_no_place_is_not_tried():
     before = forward.simulations
     assert around.refined(forward, null, one, setup) is one
     assert forward.simulations == before
+
+
+@pytest.mark.parametrize(
+    ("gains", "asked"),
+    [
+        ({"mass-defect": 1762.0, "contact-gap": 412.0, "gravity": 90.0}, ["mass-defect", "contact-gap"]),
+        ({"gravity": 1762.0, "mass-defect": 412.0, "contact-gap": 90.0}, []),
+        ({"contact-gap": 40.0, "mass-defect": 0.0, "gravity": 30.0}, ["contact-gap"]),
+    ],
+    ids=["one leads", "none is near the best", "what gains nothing"],
+)
+def test_all_with_a_place_are_looked_for_where_one_leads(monkeypatch, gains, asked):
+    """A gap of d′ 50 gained 412 where its slopes had led it, and a lighter bead 1762; 2539 one contact on."""
+    followed = []
+    fits = {name: SimpleNamespace(name=name) for name in gains}
+    monkeypatch.setattr(rounds.singles, "setup_of", lambda forward: None)
+    monkeypatch.setattr(rounds.places, "placed", lambda fit: fit.name != "gravity")
+    monkeypatch.setattr(
+        rounds.places, "settled", lambda forward, fit, setup: followed.append(fit.name) or fit
+    )
+    monkeypatch.setattr(rounds.around, "refined", lambda forward, null, fit, setup: fit)
+    monkeypatch.setattr(rounds.enough, "first", lambda forward, found: found)
+    monkeypatch.setattr(rounds.evidence, "ranked", lambda found, odds: found)
+    found = [SimpleNamespace(effect=name, gain=gain, fit=fits[name]) for name, gain in gains.items()]
+    forward = SimpleNamespace(experiment=SimpleNamespace(prior_odds={}))
+    assert rounds._along(forward, None, found) == found
+    assert followed == asked

@@ -269,12 +269,15 @@ def _beyond(forward, null, c):
 
 
 def _along(forward, null, found):
-    """The leading candidates with a place followed along the chain."""
+    """Candidates with a place followed along the chain, where one of them is among the leading."""
     result = list(found)
     setup = singles.setup_of(forward)
     least = max(c.gain for c in found) - ALONG
+    # A gap is much like a lighter bead: where one of the two leads, the other is looked for as well.
+    placed = [c.gain > 0.0 and places.placed(c.fit) for c in found]
+    leads = any(c.gain > least for c, one in zip(found, placed, strict=True) if one)
     for k, c in enumerate(found):
-        if c.gain > least and places.placed(c.fit):
+        if leads and placed[k]:
             better = around.refined(forward, null, places.settled(forward, c.fit, setup), setup)
             if better is not c.fit:
                 result[k] = _moved(c, null, better, ((better.hypothesis.components[0].place, 1.0),), c.flags)
