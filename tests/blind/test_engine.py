@@ -1,5 +1,6 @@
 """Two implementations of the same contract: the hidden-effect laws against the engine with the catalogue."""
 
+import itertools
 from dataclasses import replace
 
 import numpy as np
@@ -60,6 +61,39 @@ def test_effects_agree(record, entry):
     largest = np.abs(mine).max()
     assert np.abs(mine - other).max() < CLOSE.get(entry.id, USUAL) * largest
     assert np.abs(mine - predict(record).traces).max() > 0.01 * largest
+
+
+CONTACT_LAWS = (
+    "contact-exponent",
+    "coating-thickness",
+    "plastic-contact",
+    "hunt-crossley",
+    "kuwabara-kono",
+    "tsuji",
+    "relaxing-contact",
+)
+
+
+@pytest.mark.parametrize("ids", list(itertools.combinations(CONTACT_LAWS, 2)), ids="+".join)
+def test_laws_of_contact_join_alike(record, ids):
+    plan = record.reference
+    both = [next(e for e in catalogue.ENTRIES if e.id == id) for id in ids]
+    shapes = [e.shapes(plan)[-1] for e in both]
+    hides = [
+        catalogue.hidden(e, 5.0 * e.start, shape, None, plan) for e, shape in zip(both, shapes, strict=True)
+    ]
+    given = [e.values(5.0 * e.start, plan, shape) for e, shape in zip(both, shapes, strict=True)]
+
+    def model(setup):
+        for id, parameters in zip(ids, given, strict=True):
+            setup = effect(id).apply(setup, **parameters)
+        return setup
+
+    mine = predict(record, lambda p: hides[1](hides[0](p)), tolerance=1e-10).traces
+    other = readings(record, Conditions(model=model))
+    # As alone; contacts of a layer that lose energy are off by as much again.
+    close = 2.0 * max(CLOSE.get(id, USUAL) for id in ids)
+    assert np.abs(mine - other).max() < close * np.abs(mine).max()
 
 
 def test_scalars_mean_the_same():

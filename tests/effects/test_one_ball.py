@@ -101,6 +101,15 @@ def test_plastic_restitution_depends_on_the_residual_alone():
         np.testing.assert_allclose(restitution, np.sqrt(1 - residual), rtol=3e-8)
 
 
+def test_a_plastic_contact_unloads_from_where_any_loading_curve_has_led():
+    for exponent, residual in ((1.4, 0.1), (1.8, 0.3)):
+        loaded = effect("contact-exponent").apply(ball(SPEEDS), exponent=exponent)
+        restitution = bounce(effect("plastic-contact").apply(loaded, residual_fraction=residual))
+        # Work F_max delta_max/(n + 1) done, (2/5) F_max (delta_max − delta_res) returned; a step's cube as above.
+        left = 0.4 * (exponent + 1.0) * (1.0 - residual)
+        np.testing.assert_allclose(restitution, np.sqrt(left), rtol=1e-6)
+
+
 def test_relaxing_contact_is_lossless_at_either_end_and_lossy_between():
     tau = np.array([1e5, 3000.0, 300.0, 100.0, 30.0, 10.0, 3.0])
     loss = (

@@ -5,15 +5,15 @@ from sonicvacuum.physics.lanes import positive, power_3_2, select
 from sonicvacuum.physics.laws import Term
 
 
-def plastic_force(delta, loading, largest, residual):
+def plastic_force(delta, loading, largest, top, residual):
     """Force in N: the loading curve at the largest compression so far, below it the unloading curve.
 
-    F_max ((delta − delta_res)/(delta_max − delta_res))^{3/2} with delta_res = residual × delta_max is
-    F_load(delta) × ((delta − delta_res)/((1 − residual) delta))^{3/2} for the Hertz law; that form is used,
-    as it joins any other loading curve too.
+    F_max ((delta − delta_res)/(delta_max − delta_res))^{3/2} with delta_res = residual × delta_max, F_max
+    (`top`) by whatever loading curve is in force. Where nothing stays behind, that curve is the way back too,
+    of whatever shape it is.
     """
-    share = positive(delta - residual * largest) / ((1.0 - residual) * select(delta, delta, 1.0))
-    return select(largest - delta, loading * power_3_2(share), loading)
+    share = positive(delta - residual * largest) / ((1.0 - residual) * select(largest, largest, 1.0))
+    return select(residual * (largest - delta), top * power_3_2(share), loading)
 
 
 TERM = Term("plastic-contact", "path", plastic_force, 1, strengths=(0,))
@@ -34,10 +34,11 @@ EFFECT = Effect(
     title="Plastic contact",
     missing="unloading follows a different path than loading",
     equation="delta_res = e delta_max; unloading and reloading F = F_max ((delta - "
-    "delta_res)/(delta_max - delta_res))^{3/2} up to delta_max, loading F = K delta^{3/2} "
-    "beyond",
+    "delta_res)/(delta_max - delta_res))^{3/2} up to delta_max, the loading curve (Hertz unless another "
+    "effect changes it) beyond",
     energy="takes the fraction e of the loading work (2/5) K delta_max^{5/2}; nothing while reloading "
-    "below delta_max",
+    "below delta_max. Beside a loading curve F ~ delta^n it leaves (2/5)(n + 1)(1 - e) of the loading work: "
+    "with n > 3/2 and a small e more than was put in",
     reference="Walton & Braun, J. Rheol. 30, 949 (1986); Thornton, J. Appl. Mech. 64, 383 (1997). "
     "Chosen here: Hertzian shape of both branches and a residual in proportion to the "
     "largest compression",

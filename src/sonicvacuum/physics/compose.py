@@ -76,14 +76,16 @@ class _Source:
 
     def add_elastic(self, first_memory):
         """Leave the elastic force before and after path dependence in `loading` and `elastic`."""
-        (base,) = self.laws.in_slot("elastic")
-        self.add(f"loading = {self.call(base, 'formula', 'delta')}")
-        for term in self.laws.in_slot("factor"):
-            self.add(f"loading = loading * {self.call(term, 'formula', 'delta')}")
-        self.add("elastic = loading")
+        self.add(f"loading = {self.loading('delta')}", "elastic = loading")
         for term in self.laws.in_slot("path"):
             largest = f"read(row, {first_memory} + {self.laws.memory_of[term.name]})"
-            self.add_acting(term, f"elastic = {self.call(term, 'formula', 'delta', 'loading', largest)}")
+            unloading = self.call(term, "formula", "delta", "loading", largest, self.loading(largest))
+            self.add_acting(term, f"elastic = {unloading}")
+
+    def loading(self, delta):
+        """The loading curve at a compression."""
+        terms = (*self.laws.in_slot("elastic"), *self.laws.in_slot("factor"))
+        return " * ".join(self.call(term, "formula", delta) for term in terms)
 
     def add_energy(self, name, delta):
         """Leave the work of the loading curve up to a compression in a variable.
@@ -98,8 +100,7 @@ class _Source:
         self.add(f"{name} = 0.0 * {delta}")
         for t, weight in zip(_NODES, _WEIGHTS, strict=True):
             self.add(f"part = {t * t!r} * {delta}")
-            force = " * ".join(self.call(term, "formula", "part") for term in (base, *factors))
-            self.add(f"{name} = {name} + {2.0 * t * weight!r} * {delta} * {force}")
+            self.add(f"{name} = {name} + {2.0 * t * weight!r} * {delta} * {self.loading('part')}")
 
     def function(self):
         """The finished Python function."""

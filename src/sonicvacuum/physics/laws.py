@@ -6,7 +6,8 @@ that is absent costs nothing. The order of composition is fixed by the slot of e
 
     elastic   F(delta, c…)             the loading curve; Hertz unless replaced (at most one)
     factor    × f(delta, c…)           corrections to the loading curve
-    path      F(delta, F, delta_max, c…)  unloading unlike loading; remembers the largest compression
+    path      F(delta, F, delta_max, F_max, c…)  unloading unlike loading; remembers the largest
+              compression, F_max being the loading curve there
     force     + f(delta, rate, F, c…)  dissipative or other additions, F being the elastic force
     memory    + f(F, s, c…) with ds/dt = g(F, s, c…), s = 0 out of contact
     body      acceleration f(velocity, c…) of a bead (not of the striker)
@@ -30,7 +31,7 @@ from sonicvacuum.physics.lanes import power_3_2
 # lies below the rounding errors of the law.
 SETTLED = 1e-10
 # Slot → arguments of its formula besides the coefficients.
-SLOTS = {"elastic": 1, "factor": 1, "path": 3, "force": 3, "memory": 2, "body": 1}
+SLOTS = {"elastic": 1, "factor": 1, "path": 4, "force": 3, "memory": 2, "body": 1}
 
 
 @dataclass(frozen=True)

@@ -52,7 +52,7 @@ def _hertz_like(chain, laws, table, mass):
     for term in laws.in_slot("path"):
         columns = columns_of(laws, term, table)
         nearly = 0.99 * delta
-        fall = load - term.formula(nearly, elastic_at(laws, table, nearly), delta, *columns)
+        fall = load - term.formula(nearly, elastic_at(laws, table, nearly), delta, load, *columns)
         steepest = np.maximum(steepest, fall / (load * 0.015))
     return (steepest * load / delta**1.5).max(axis=0)
 
