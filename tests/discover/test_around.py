@@ -32,6 +32,8 @@ def found(hidden, name, strength, place, seed=3):
     ("name", "key", "hidden", "place", "start", "beside"),
     [
         ("contact-gap", "contact", 0.9, 5, 0.3, 6),
+        # The first round leads to the place, with half the width.
+        ("contact-gap", "contact", 0.9, 3, 0.27, 5),
         ("mass-defect", "bead", 0.93, 5, 1.04, 6),
         ("mass-defect", "bead", 0.93, 5, 0.97, 3),
     ],

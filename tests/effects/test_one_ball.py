@@ -105,9 +105,9 @@ def test_a_plastic_contact_unloads_from_where_any_loading_curve_has_led():
     for exponent, residual in ((1.4, 0.1), (1.8, 0.3)):
         loaded = effect("contact-exponent").apply(ball(SPEEDS), exponent=exponent)
         restitution = bounce(effect("plastic-contact").apply(loaded, residual_fraction=residual))
-        # Work F_max delta_max/(n + 1) done, (2/5) F_max (delta_max − delta_res) returned; a step's cube as above.
+        # Work F_max delta_max/(n + 1) done, (2/5) F_max (delta_max − delta_res) returned.
         left = 0.4 * (exponent + 1.0) * (1.0 - residual)
-        np.testing.assert_allclose(restitution, np.sqrt(left), rtol=1e-6)
+        np.testing.assert_allclose(restitution, np.sqrt(left), rtol=1e-6)  # a step's cube, as above
 
 
 def test_relaxing_contact_is_lossless_at_either_end_and_lossy_between():

@@ -13,6 +13,7 @@ import msgspec
 from sonicvacuum.gauges import KINDS, Gauge
 from sonicvacuum.laboratory.blocks import material_of, specimen_of, striker_of
 from sonicvacuum.laboratory.specimen import Specimen, Striker
+from sonicvacuum.materials import MODULUS_REL_SIGMA, modulus_rel_sigma
 from sonicvacuum.observe.run import Geometry
 from sonicvacuum.records.blocks import PRESENT, SCALED, UNITS, RecordBlock, RunBlock
 from sonicvacuum.records.signals import Signals
@@ -161,6 +162,16 @@ class Record:
         """Relative standard error of a material's modulus, 0: exact, None where the record gives none."""
         given = self.block.materials.get(name)
         return None if given is None else given.modulus_rel_sigma
+
+    def taken_modulus_rel_sigma(self, name: str) -> float:
+        """The same, or what it is taken for where the record gives none.
+
+        Of the beads roundness and surface are in it too, so that no handbook narrows it.
+        """
+        stated = self.modulus_rel_sigma(name)
+        if stated is not None:
+            return stated
+        return MODULUS_REL_SIGMA if name == self.specimen.first.surface.name else modulus_rel_sigma(name)
 
     @cached_property
     def gauges(self) -> tuple[Gauge, ...]:

@@ -11,7 +11,6 @@ from collections.abc import Iterator
 from sonicvacuum.discover.faults.table import FAULTS
 from sonicvacuum.discover.model.nuisances import WORDS
 from sonicvacuum.discover.verdict import PUT_RIGHT, Fault, Model, Verdict
-from sonicvacuum.materials import MODULUS_REL_SIGMA
 from sonicvacuum.records import Record
 from sonicvacuum.report.tables import number
 from sonicvacuum.report.words import in_words, joined
@@ -122,10 +121,8 @@ def _moves(verdict, model, record) -> Iterator[tuple[float, str]]:
         said = f"Check the calibration of gauge {gauge.id}: it reads {ratio:.3f} of what the model expects"
         yield from _far(math.log(ratio), gauge.gain_rel_sigma, said)
     name = record.specimen.first.surface.name
-    stated = record.modulus_rel_sigma(name)
     said = _asked(f"the modulus of {name}", model.modulus_ratio)
-    error = MODULUS_REL_SIGMA if stated is None else stated
-    yield from _far(math.log(model.modulus_ratio), error, said)
+    yield from _far(math.log(model.modulus_ratio), record.taken_modulus_rel_sigma(name), said)
     yield from _others(verdict)
 
 

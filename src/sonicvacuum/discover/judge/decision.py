@@ -55,16 +55,17 @@ class Case:
         best, forward = self.found[0], self.forward
         beside = directions.catalogue(self.setup, (best.effect, *forward.experiment.excluded))
         scores = screen.screen(forward, best.fit, beside, also=unknown.families(forward, best.fit))
+        needed = scores.threshold(policy.FALSE_ALARM)
         shape, most = unknown.simplest(self.forward, self.null)
         seen = left(self.forward, best.fit, self.known, scores, short(best.gain, most))
         alarms = {"single": seen.p}
         alone = self._smooth_alone()
         instead = alone > best.log_bayes + seen.size.log_odds
         if instead and not gross.gross(self.forward, best.fit, self.known):
-            return self._out_of_smooth(best, scores.threshold(policy.FALSE_ALARM), most, alarms, alone)
+            return self._out_of_smooth(best, needed, most, alarms, alone)
         if seen.shapes.failed or seen.fit.failed or seen.size.found:
-            return self._more(scores.threshold(policy.FALSE_ALARM), most, shape, alarms, seen)
-        instead = self._pair_instead(scores.threshold(policy.FALSE_ALARM), most, alarms, seen)
+            return self._more(needed, most, shape, alarms, seen)
+        instead = self._pair_instead(needed, most, alarms, seen)
         if instead is not None:
             return instead
         if seen.behind > 0.0:

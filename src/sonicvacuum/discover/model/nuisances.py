@@ -17,7 +17,6 @@ import numpy as np
 
 from sonicvacuum.effects.coating_thickness import TERM as LAYER
 from sonicvacuum.effects.free_form import TERM
-from sonicvacuum.materials import MODULUS_REL_SIGMA, modulus_rel_sigma
 from sonicvacuum.physics.chain import Chain
 from sonicvacuum.records.record import Record, Tolerances
 
@@ -248,13 +247,9 @@ def assumed(record: Record, chains: Iterable[Chain]) -> str:
     """How well the moduli of what touches in some chains are taken to be known where the record states no
     error of them, in words; "" where it states all.
     """
-    first = record.specimen.first.surface.name
     names = dict.fromkeys(s.surface.name for chain in chains for s in chain.solids)
     unstated = [name for name in names if record.modulus_rel_sigma(name) is None]
-    taken = [
-        f"{name} {100.0 * (MODULUS_REL_SIGMA if name == first else modulus_rel_sigma(name)):g} %"
-        for name in unstated
-    ]
+    taken = [f"{name} {100.0 * record.taken_modulus_rel_sigma(name):g} %" for name in unstated]
     return f"{', '.join(taken)}: errors of moduli taken so, none being stated" if taken else ""
 
 
@@ -266,14 +261,12 @@ def _moduli(record, chain) -> dict[str, float]:
     own = surfaces.pop(first)
     found = {}
     for name in surfaces | cores:
-        stated = record.modulus_rel_sigma(name)
-        if name == first or (stated is None and name not in surfaces):
+        unstated, error = record.modulus_rel_sigma(name) is None, record.taken_modulus_rel_sigma(name)
+        if name == first or (unstated and name not in surfaces):
             continue
-        if stated is None:
-            stated = modulus_rel_sigma(name)
-            if _share(surfaces[name], own) * stated < NEGLIGIBLE:
-                continue
-        found[name] = stated
+        if unstated and _share(surfaces[name], own) * error < NEGLIGIBLE:
+            continue
+        found[name] = error
     return found
 
 

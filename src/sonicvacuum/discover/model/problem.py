@@ -17,7 +17,6 @@ from sonicvacuum.discover.model.slow import slow
 from sonicvacuum.discover.model.start import started
 from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.files import InputError
-from sonicvacuum.materials import MODULUS_REL_SIGMA
 from sonicvacuum.records.assemble import assemble, chain_of, duration_of, interval_of
 from sonicvacuum.records.record import Record
 
@@ -44,7 +43,6 @@ def _ready(data: Experiment, records) -> Experiment:
 def _experiment(record, catalogue):
     runs = tuple(_run(record, run) for run in record.runs)
     sigma, correlation = noise((record,))
-    named = record.modulus_rel_sigma(record.specimen.first.surface.name)
     parts = batches(record)
     odds = _priors(record, catalogue)
     informed = catalogue.informed(parts[0].chain, record.tolerances)
@@ -59,8 +57,7 @@ def _experiment(record, catalogue):
         correlation=correlation,
         gain_rel_sigma=np.array([g.log_gain_sigma for g in record.gauges]),
         trigger_sigma=record.trigger_width_s,
-        # Roundness and surface of the beads are in it too, so that no handbook narrows it.
-        modulus_rel_sigma=MODULUS_REL_SIGMA if named is None else named,
+        modulus_rel_sigma=record.taken_modulus_rel_sigma(record.specimen.first.surface.name),
         diameter=record.specimen.diameters,
         record=record,
         catalogue=informed.held(present),
