@@ -67,9 +67,11 @@ CONTACT_LAWS = (
     "contact-exponent",
     "coating-thickness",
     "plastic-contact",
+    "linear-dashpot",
     "hunt-crossley",
     "kuwabara-kono",
     "tsuji",
+    "velocity-power",
     "relaxing-contact",
 )
 
