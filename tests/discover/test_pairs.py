@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from linear_models import screened
 from made_records import BEADS, made
 
 from sonicvacuum.discover import policy, session
@@ -18,21 +19,16 @@ from sonicvacuum.discover.search.directions import Direction
 from sonicvacuum.effects import effect
 
 
-def screened(columns, data, two_sided):
-    """What a screen of these columns says, nothing to project out."""
-    length = np.linalg.norm(columns, axis=1)
-    return SimpleNamespace(
-        directions=tuple(Direction(f"e{k}", "s", two_sided=t) for k, t in enumerate(two_sided)),
-        projected=(columns @ data, columns @ columns.T),
-        length=length,
-        correlation=columns @ columns.T / np.outer(length, length),
-    )
+def seen(columns, data, two_sided):
+    """What a screen of these columns says, each of an effect of its own."""
+    directions = tuple(Direction(f"e{k}", "s", two_sided=t) for k, t in enumerate(two_sided))
+    return screened(columns, data, directions)
 
 
 def test_the_joint_gain_of_two_directions_is_that_of_least_squares():
     rng = np.random.default_rng(np.random.SeedSequence(7))
     columns, data = rng.normal(size=(4, 30)), rng.normal(size=30)
-    gain, strength = planes._planes(screened(columns, data, [True] * 4), np.arange(4))
+    gain, strength = planes._planes(seen(columns, data, [True] * 4), np.arange(4))
     for i in range(4):
         for j in range(i + 1, 4):
             both = columns[[i, j]].T
@@ -44,14 +40,14 @@ def test_the_joint_gain_of_two_directions_is_that_of_least_squares():
 
 def test_a_one_sided_direction_of_the_wrong_sign_makes_no_pair():
     columns = np.eye(3)[:2]
-    gain, _ = planes._planes(screened(columns, np.array([1.0, -1.0, 0.0]), [True, False]), np.arange(2))
+    gain, _ = planes._planes(seen(columns, np.array([1.0, -1.0, 0.0]), [True, False]), np.arange(2))
     assert gain[0, 1] == -np.inf
 
 
 def test_what_pairs_promise_is_the_best_joint_gain():
     rng = np.random.default_rng(np.random.SeedSequence(8))
     columns, data = rng.normal(size=(5, 30)), rng.normal(size=30)
-    scores = screened(columns, data, [True] * 5)
+    scores = seen(columns, data, [True] * 5)
     scores.length[4] = 0.0  # one that nuisances take up altogether counts for nothing
     pairs_of = [columns[[i, j]].T for i in range(4) for j in range(i)]
     left = [np.linalg.lstsq(both, data, rcond=None)[1][0] for both in pairs_of]

@@ -1,24 +1,13 @@
 """What is left along groups of shapes: p that noise keeps to, one direction among many that stands out."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
+from linear_models import screened
 
 from sonicvacuum.discover.search import unknown
+from sonicvacuum.discover.search.directions import Direction
 
-DIRECTIONS, DATA = 40, 300
-
-
-def screened(columns, data):
-    """What a screen of these columns says, nothing to project out."""
-    length, products = np.linalg.norm(columns, axis=1), columns @ columns.T
-    return SimpleNamespace(
-        length=length,
-        products=products[None],
-        projected=(columns @ data, products),
-        correlation=products / np.outer(length, length),
-    )
+DIRECTIONS, DATA, SHAPE = 40, 300, Direction("mass-defect", "mass_ratio")
 
 
 @pytest.fixture(scope="module")
@@ -30,7 +19,7 @@ def columns():
 
 
 def left_along(columns, data):
-    return unknown.test(screened(columns, data), np.arange(len(columns)))
+    return unknown.test(screened(columns, data, (SHAPE,) * len(columns)), np.arange(len(columns)))
 
 
 def test_noise_is_told_as_often_as_is_said(columns):
