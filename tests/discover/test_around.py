@@ -12,20 +12,20 @@ from sonicvacuum.discover.fit.refit import fit
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, variants
 from sonicvacuum.discover.model.problem import experiment
-from sonicvacuum.discover.search import around
+from sonicvacuum.discover.search import around, planes
 from sonicvacuum.discover.search.starts import setup_of
 from sonicvacuum.effects import effect
 
 
 def found(hidden, name, strength, place, seed=3):
-    """A predictor, its nominal fit, and the fit of one effect that begins at a strength and a place."""
+    """A predictor, and the fit of one effect that begins at a strength and a place."""
     forward = Forward(experiment(made(hidden, seed=seed)[0]))
     null, setup = wide.nominal(forward), setup_of(forward)
     free = variants(effect(name), setup)[0]
     hypothesis = Hypothesis((Component(effect(name), free),))
     u = np.array([[c.inverse(strength) for c in free]])
     where = None if place is None else np.array([[place]])
-    return forward, null, fit(forward, hypothesis, u, null.nu[None], where), setup
+    return forward, fit(forward, hypothesis, u, null.nu[None], where), setup
 
 
 @pytest.mark.parametrize(
@@ -40,8 +40,8 @@ def found(hidden, name, strength, place, seed=3):
 )
 def test_a_narrow_minimum_at_another_place_is_found(name, key, hidden, place, start, beside):
     strength = effect(name).parameters[0].name
-    forward, null, one, setup = found([(name, {strength: hidden, key: place})], name, start, beside)
-    better = around.refined(forward, null, one, setup)
+    forward, one, setup = found([(name, {strength: hidden, key: place})], name, start, beside)
+    better = around.refined(forward, one, setup)
     assert better.objective < one.objective - 10.0  # beyond what noise makes of one parameter
     assert better.hypothesis.components[0].place == place
     value = better.hypothesis.values(better.u)[name][strength]
@@ -49,16 +49,36 @@ def test_a_narrow_minimum_at_another_place_is_found(name, key, hidden, place, st
     assert abs(value - hidden) < 4.0 * slope  # four standard errors
 
 
+def test_a_gap_beside_another_effect_is_found_where_it_is():
+    """Beside a gauge of another gain it had come to rest at the next contact, a third as wide."""
+    gained = ("sensor-gain", {"gain_ratio": 1.2, "sensor": 1})
+    hidden = ("contact-gap", {"gap_um": 0.9, "contact": 5})
+    forward = Forward(experiment(made([gained, hidden], seed=3)[0]))
+    null, setup = wide.nominal(forward), setup_of(forward)
+    gain, gap = (
+        Component(effect(name), variants(effect(name), setup)[0], place=place)
+        for name, place in (("sensor-gain", 1), ("contact-gap", 6))
+    )
+    both = planes.joined(Hypothesis((gain,)), gap, setup)
+    u = np.array([[c.inverse(value) for c, value in zip(both.coordinates, (1.2, 0.3), strict=True)]])
+    one = fit(forward, both, u, null.nu[None])
+    better = around.refined(forward, one, setup)
+    assert [c.place for c in better.hypothesis.components] == [1, 5]
+    assert better.objective < one.objective - 10.0  # beyond what noise makes of one parameter
+    width, error = both.coordinates[1].value(better.u[1]), better.sigma[1]
+    assert abs(np.log(width / 0.9)) < 4.0 * error  # four standard errors of its logarithm
+
+
 def test_a_fit_at_its_minimum_stays_as_it_is():
     hidden = [("mass-defect", {"mass_ratio": 1.06, "bead": 5})]
-    forward, null, one, setup = found(hidden, "mass-defect", 1.06, 5)
-    assert around.refined(forward, null, one, setup) is one
+    forward, one, setup = found(hidden, "mass-defect", 1.06, 5)
+    assert around.refined(forward, one, setup) is one
 
 
 def test_what_has_no_place_is_not_tried():
-    forward, null, one, setup = found([("viscous-drag", {"rate_per_s": 150.0})], "viscous-drag", 150.0, None)
+    forward, one, setup = found([("viscous-drag", {"rate_per_s": 150.0})], "viscous-drag", 150.0, None)
     before = forward.simulations
-    assert around.refined(forward, null, one, setup) is one
+    assert around.refined(forward, one, setup) is one
     assert forward.simulations == before
 
 
@@ -80,7 +100,7 @@ def test_all_with_a_place_are_looked_for_where_one_leads(monkeypatch, gains, ask
     monkeypatch.setattr(
         rounds.places, "settled", lambda forward, fit, setup: followed.append(fit.name) or fit
     )
-    monkeypatch.setattr(rounds.around, "refined", lambda forward, null, fit, setup: fit)
+    monkeypatch.setattr(rounds.around, "refined", lambda forward, fit, setup: fit)
     monkeypatch.setattr(rounds.enough, "first", lambda forward, found: found)
     monkeypatch.setattr(rounds.evidence, "ranked", lambda found, odds: found)
     found = [SimpleNamespace(effect=name, gain=gain, fit=fits[name]) for name, gain in gains.items()]

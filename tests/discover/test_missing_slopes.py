@@ -42,7 +42,8 @@ def test_places_of_an_effect_beside_none_are_indices(setup, monkeypatch):
     monkeypatch.setattr(pairs.secants, "search", lambda *rest, **options: [])
     monkeypatch.setattr(pairs, "starts_of", lambda *rest: starts)
     monkeypatch.setattr(pairs.abreast, "each", lambda f, work, items, calls: [work(f, i) for i in items])
-    (start,) = pairs.beside(None, nothing, nothing, setup, scores)
+    monkeypatch.setattr(pairs, "screened", lambda *rest: scores)
+    (start,) = pairs.beside(None, nothing, nothing, setup)
     assert np.arange(3)[start.places].tolist() == [[1]]
 
 

@@ -14,8 +14,9 @@ from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, variants
 from sonicvacuum.discover.model.problem import experiment
 from sonicvacuum.discover.rounds import investigate
-from sonicvacuum.discover.search import pairs, planes, singles
+from sonicvacuum.discover.search import pairs, planes, secants, singles
 from sonicvacuum.discover.search.directions import Direction
+from sonicvacuum.discover.search.starts import setup_of
 from sonicvacuum.effects import effect
 
 
@@ -54,6 +55,49 @@ def test_what_pairs_promise_is_the_best_joint_gain():
     assert planes.promised(scores) == pytest.approx(data @ data - min(left), rel=1e-9)  # rounding only
     scores.length[1:] = 0.0
     assert planes.promised(scores) == -np.inf
+
+
+def beside_a_gain(hidden):
+    """Predictor, nominal fit and the fit of a gauge's gain alone, where more is hidden beside it."""
+    gained = ("sensor-gain", {"gain_ratio": 1.2, "sensor": 1})
+    forward = Forward(experiment(made([gained, *hidden], seed=4)[0]))
+    null, setup = wide.nominal(forward), setup_of(forward)
+    gain = effect("sensor-gain")
+    hypothesis = Hypothesis((Component(gain, variants(gain, setup)[0], place=1),))
+    u = np.array([[c.inverse(1.2) for c in hypothesis.coordinates]])
+    return forward, null, refit.fit(forward, hypothesis, u, null.nu[None]), setup
+
+
+def test_pairs_by_algebra_begin_beside_what_was_fitted():
+    """Two effects more; the one there keeps its place, and its strength as it follows."""
+    hidden = [("wall-compliance", {"stiffness_ratio": 0.6}), ("contact-gap", {"gap_um": 0.9, "contact": 5})]
+    forward, _, one, setup = beside_a_gain(hidden)
+    starts = planes.linear(pairs.screened(forward, one, setup), setup)
+    assert all(s.hypothesis.ids[0] == "sensor-gain" and len(set(s.hypothesis.ids)) == 3 for s in starts)
+    assert [s.gain for s in starts] == sorted((s.gain for s in starts), reverse=True)
+    for s in starts:
+        assert s.u.shape == (1, len(s.hypothesis.coordinates)) and s.places[0, 0] == 1
+        assert np.array_equal(s.hypothesis.inside(s.u), s.u)
+    assert any("wall-compliance" in s.effects for s in starts)
+    best = pairs.fitted(forward, starts[0])
+    assert best.objective < one.objective - 0.5 * starts[0].gain  # slopes err where gaps open
+
+
+def test_trials_all_over_the_range_promise_what_slopes_do_not():
+    """To first order a slow gauge is a late one; of what its width tells slopes promise a seventh."""
+    forward, null, one, setup = beside_a_gain([("sensor-lowpass", {"tau_us": 12.0})])
+    fine = pairs.everywhere(forward, null, one, setup, sizes=secants.finely)
+    by_slopes, by_trials = (
+        max((s for s in starts if "sensor-lowpass" in s.effects), key=lambda s: s.gain)
+        for starts in (pairs.beside(forward, null, one, setup), fine)
+    )
+    before = null.objective - one.objective
+    more = one.objective - pairs.fitted(forward, by_trials).objective
+    assert by_slopes.gain - before < 0.3 * more
+    # Strengths tried are 1.7 times apart.
+    assert 0.8 * more < by_trials.gain - before <= more
+    assert all(s.u.shape[1] == len(s.hypothesis.coordinates) for s in fine)
+    assert not any("gravity" in s.effects for s in pairs.everywhere(forward, null, one, setup, ("gravity",)))
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ import pytest
 
 from sonicvacuum.discover import policy
 from sonicvacuum.discover.fit import heldout
-from sonicvacuum.discover.search import pairs, several
+from sonicvacuum.discover.search import pairs, planes, several
 
 # Log evidence of every set that could be fitted.
 EVIDENCE = {"bd": 40.0, "bcd": 50.0, "abcd": 52.0, "be": 49.0, "bce": 60.0, "ab": 30.0, "bc": 45.0}
@@ -32,6 +32,7 @@ def turns(monkeypatch):
         return [(*one.hypothesis.ids, x) for x in "abcde" if x not in one.hypothesis.ids]
 
     monkeypatch.setattr(pairs, "beside", beside)
+    monkeypatch.setattr(pairs, "everywhere", lambda *rest, **sizes: [])
     monkeypatch.setattr(found, "_less", lambda one, k: fitted(np.delete(list(one.hypothesis.ids), k)))
     monkeypatch.setattr(found, "_evidence", lambda one: -0.5 * one.objective)
     monkeypatch.setattr(
@@ -52,6 +53,59 @@ def test_a_set_that_is_likelier_than_any_with_one_effect_less_stays(turns, effec
     found, asked = turns
     assert found._one_for_two(fitted(effects)) is None
     assert len(asked) == (3 if len(effects) == 3 else 0)
+
+
+def test_a_move_that_leads_nowhere_is_not_made_again(turns):
+    found, _ = turns
+    made = []
+
+    def move(name, to):
+        found.__dict__[name] = lambda one: made.append(name) or to
+        return found.__dict__[name]
+
+    moves = [move("_exchanged", None), move("_again", fitted("bcd")), move("_one_for_two", fitted("bce"))]
+    assert found._elsewhere(fitted("bd"), moves).hypothesis.ids == tuple("bcd")
+    assert found._elsewhere(fitted("bd"), moves).hypothesis.ids == tuple("bce")
+    assert found._elsewhere(fitted("bd"), moves) is None
+    # One for two leads to a set whose members have not been exchanged.
+    assert made == ["_exchanged", "_again", "_one_for_two", "_exchanged"]
+
+
+def test_large_sets_are_only_started_again(turns):
+    found, _ = turns
+    found._again, found._two = lambda one: None, lambda one: pytest.fail("a large set was searched")
+    moves = [found._again, found._two]
+    assert found._elsewhere(fitted("abcde"), moves) is None
+    assert moves == [found._two]
+
+
+@pytest.mark.parametrize(("gain", "found_there"), [(90.0, "abe"), (85.0, None)])
+def test_two_effects_take_the_place_of_one(turns, monkeypatch, gain, found_there):
+    """A gap stood for preload and a coating, which alone do little and nearly cancel."""
+    found, _ = turns
+    asked = []
+
+    def start(effects, promise):
+        return planes.Start(promise, fitted(effects).hypothesis, *np.zeros((3, 1, len(effects))))
+
+    def linear(scores, setup):
+        return [start("abe", gain)] if scores == "b" else []
+
+    monkeypatch.setattr(pairs, "screened", lambda forward, one, setup: "".join(one.hypothesis.ids))
+    monkeypatch.setattr(planes, "linear", linear)
+    monkeypatch.setattr(found, "_each_less", lambda one, which: [fitted("b"), fitted("d")])
+    monkeypatch.setattr(found, "_asked", lambda before: 13.0)
+    monkeypatch.setattr(found, "_earned", lambda before, after: True)
+
+    def ranked(starts, least):
+        asked.append(least)
+        return iter([fitted(s.effects) for s in starts if s.gain > least])
+
+    monkeypatch.setattr(found, "_ranked", ranked)
+    more = found._two(fitted("bd"))
+    # Beside b nothing is gained yet, beside b and d 80.
+    assert asked == [80.0 + several.PROMISE * 13.0]
+    assert (more and "".join(more.hypothesis.ids)) == found_there
 
 
 @pytest.mark.parametrize(("rival", "given_up"), [(79.9, False), (80.1, True)])

@@ -278,7 +278,7 @@ def _along(forward, null, found):
     leads = any(c.gain > least for c, one in zip(found, placed, strict=True) if one)
     for k, c in enumerate(found):
         if leads and placed[k]:
-            better = around.refined(forward, null, places.settled(forward, c.fit, setup), setup)
+            better = around.refined(forward, places.settled(forward, c.fit, setup), setup)
             if better is not c.fit:
                 result[k] = _moved(c, null, better, ((better.hypothesis.components[0].place, 1.0),), c.flags)
     return enough.first(forward, evidence.ranked(result, forward.experiment.prior_odds))

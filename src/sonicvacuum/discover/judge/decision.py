@@ -313,7 +313,7 @@ class Case:
         counted = unknown.shape_test(grown.forward, one) if one.hypothesis.components else None
         if counted is None or not counted.failed:
             return one
-        kept, fit_ = several.irreplaceable(counted, one, needed), one
+        kept, fit_ = unknown.irreplaceable(counted, one, needed), one
         for k in reversed(range(len(one.hypothesis.components))):
             if k not in kept and not self._ahead(fit_, k):
                 name = fit_.hypothesis.ids[k]

@@ -80,43 +80,13 @@ class Pairs:
             fits = [pair.fit for pair in leading]
             for one in abreast.each(self.forward, restarted, fits, "pairs of effects again"):
                 self._note(one)
-            self._refit(_best(self._instead(self.ranked[0].fit), self.found, BESIDE))
+            best = self.ranked[0].fit
+            others = (s for k in range(2) for s in instead(self.forward, self.null, best, k, self.setup))
+            self._refit(_best(others, self.found, BESIDE))
             if self.ranked[0].log_bayes < leading[0].log_bayes + WORTH:
                 break
             self._exchange()
         return self.ranked
-
-    def _instead(self, pair: Fit) -> list[Start]:
-        """Every effect of the catalogue, tried all over its range, in place of either of a pair."""
-        result = []
-        for k in range(2):
-            beside = restart.less(self.forward, pair, k, self.setup)
-            if not np.isfinite(beside.objective):
-                continue
-            left = self.null.objective - restart.promised(beside)
-            known = (*pair.hypothesis.ids, *self.forward.experiment.excluded)
-            for effect in self.setup.catalogue.candidates(self.setup, known):
-                for free in filter(of_one_strength, variants(effect, self.setup)):
-                    result += self._tried(beside, Component(effect, free), left)
-        return result
-
-    def _tried(self, beside: Fit, component: Component, left: float) -> list[Start]:
-        """The start of one effect beside a single one, from its best trials."""
-        sizes = secants.coarsely(component.free[0])
-        trials = secants.tried(self.forward, beside, component, self.setup, TRIALS, sizes)
-        if not trials:
-            return []
-        (own,) = beside.hypothesis.components
-        hypothesis = joined(beside.hypothesis, component, self.setup)
-        return [
-            Start(
-                left + trials[0].gain,
-                hypothesis,
-                hypothesis.inside(np.array([[*t.beside, *t.u] for t in trials])),
-                np.array([t.nu for t in trials]),
-                np.array([[own.place or 0, t.place or 0] for t in trials]),
-            )
-        ]
 
     def _exchange(self):
         """Pairs that share one effect with the best one, as they started and as the best one has it."""
@@ -207,11 +177,9 @@ def screened(forward: Forward, first: Fit, setup: Setup) -> screen.Screen:
     return screen.screen(forward, first, directions.catalogue(setup, present), rough=True)
 
 
-def beside(
-    forward: Forward, null: Fit, first: Fit, setup: Setup, scores: screen.Screen | None = None
-) -> list[Start]:
-    """Every effect beside those of a first fit; `scores` is its screen, where at hand."""
-    scores = scores or screened(forward, first, setup)
+def beside(forward: Forward, null: Fit, first: Fit, setup: Setup) -> list[Start]:
+    """Every effect beside those of a first fit."""
+    scores = screened(forward, first, setup)
     gained = null.objective - first.objective
     own = np.array([c.place or 0 for c in first.hypothesis.components], dtype=int)
 
@@ -233,6 +201,44 @@ def beside(
     return [
         s for s in abreast.each(forward, start, scores.best().items(), calls=abreast.SLOPES) if s is not None
     ]
+
+
+def instead(forward: Forward, null: Fit, one: Fit, k: int, setup: Setup) -> list[Start]:
+    """Every effect of the catalogue, tried all over its range, in place of effect k of a set; all others
+    stand where they are.
+    """
+    beside = restart.less(forward, one, k, setup)
+    return everywhere(forward, null, beside, setup, one.hypothesis.ids)
+
+
+def everywhere(
+    forward: Forward, null: Fit, beside: Fit, setup: Setup, known=(), sizes=secants.coarsely
+) -> list[Start]:
+    """Every effect of the catalogue but those known, tried all over its range beside those of a fit."""
+    if not np.isfinite(beside.objective):
+        return []
+    left = null.objective - restart.promised(beside)
+
+    def start(branch, component):
+        trials = secants.tried(branch, beside, component, setup, TRIALS, sizes(component.free[0]))
+        return _tried(beside, component, trials, left, setup) if trials else None
+
+    present = (*beside.hypothesis.ids, *known, *forward.experiment.excluded)
+    components = [
+        Component(effect, free)
+        for effect in setup.catalogue.candidates(setup, present)
+        for free in filter(of_one_strength, variants(effect, setup))
+    ]
+    return [s for s in abreast.each(forward, start, components) if s is not None]
+
+
+def _tried(beside: Fit, component: Component, trials, left: float, setup: Setup) -> Start:
+    """The start of one effect beside others from its best trials."""
+    hypothesis = joined(beside.hypothesis, component, setup)
+    u = hypothesis.inside(np.array([[*t.beside, *t.u] for t in trials]))
+    own = [c.place or 0 for c in beside.hypothesis.components]
+    places = np.array([[*own, t.place or 0] for t in trials])
+    return Start(left + trials[0].gain, hypothesis, u, np.array([t.nu for t in trials]), places)
 
 
 def followed(forward: Forward, starts: Iterable[Start], least: float = np.inf, stage: str = "") -> list[Fit]:

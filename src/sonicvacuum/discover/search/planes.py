@@ -41,7 +41,9 @@ def promised(scores: screen.Screen) -> float:
 
 
 def linear(scores: screen.Screen, setup: Setup, most: int = 12) -> list[Start]:
-    """Pairs by what they should gain if all effects acted in proportion, best first."""
+    """Pairs by what they should gain beside what is in the screen's model if all effects acted in proportion,
+    best first.
+    """
     at = np.flatnonzero(scores.length > 0.0)
     gain, strength = _planes(scores, at)
     names = np.array([scores.directions[k].effect for k in at])
@@ -75,20 +77,16 @@ def _planes(scores, at):
 
 
 def _from_plane(scores, setup, ks, strengths, gain):
-    """The start at the estimates of two directions."""
-    components, u, places = [], [], []
+    """The start at the estimates of two directions, beside the screen's model as it follows."""
+    hypothesis, (u, nu) = scores.fit.hypothesis, scores.moved(list(ks), np.array(strengths))
+    places = [c.place or 0 for c in hypothesis.components]
     for k, strength in zip(ks, strengths, strict=True):
         d = scores.directions[k]
         free = variant(d, setup)
-        components.append(Component(setup.catalogue.effect(d.effect), free))
-        u += [
-            float(np.clip(x, c.low + 1e-9, c.high - 1e-9))
-            for c, x in zip(free, coordinates(free, d, strength), strict=True)
-        ]
+        hypothesis = joined(hypothesis, Component(setup.catalogue.effect(d.effect), free), setup)
+        u = np.append(u, coordinates(free, d, strength))
         places.append(d.place or 0)
-    nu = scores.moved(list(ks), np.array(strengths))[1]
-    hypothesis = joined(Hypothesis((components[0],)), components[1], setup)
-    return Start(float(gain), hypothesis, np.array([u]), nu[None], np.array([places]))
+    return Start(float(gain), hypothesis, hypothesis.inside(u[None]), nu[None], np.array([places]))
 
 
 def variant(direction, setup):

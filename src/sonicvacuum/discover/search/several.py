@@ -3,14 +3,15 @@
 At each turn the size of the smooth discrepancy is inferred at the model so far and counted as noise
 (`smooth`). An effect is added while it passes the noise of the whole catalogue under that, is ten times
 likelier than without, and predicts unseen runs no worse; one that no longer does is taken away; each is held
-against those that might stand in its place, and so are any two of a set against one. A misfit in one
-direction leaves room for the effect that makes it, one that is spread over many does not: a systematic error
-names nothing.
+against those that might stand in its place, and against two of them, and so are any two of a set against one.
+A misfit in one direction leaves room for the effect that makes it, one that is spread over many does not: a
+systematic error names nothing.
 """
 
 import itertools
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 
@@ -20,18 +21,19 @@ from sonicvacuum.discover.fit.evidence import Combination
 from sonicvacuum.discover.fit.refit import ITERATIONS, Fit, finished, fit
 from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.forward import Forward
-from sonicvacuum.discover.search import pairs, restart
-from sonicvacuum.discover.search.unknown import ShapeTest
+from sonicvacuum.discover.search import around, pairs, planes, restart, secants
 from sonicvacuum.effects import Setup
 
 # Starts that are fitted jointly at each turn, by what they should gain; those of the first effect beside a
-# smooth misfit, where no single fit tells what it is; rounds of exchanges.
-TRIED, FIRST, EXCHANGES = 2, 5, 1
-# Effects of the largest set whose members are exchanged: beside something large from outside the catalogue
+# smooth misfit, where no single fit tells what it is.
+TRIED, FIRST = 2, 5
+# Effects of the largest set that is searched in every way: beside something large from outside the catalogue
 # sets grow as far as they may, and exchanging all of six took eight minutes to no avail.
-EXCHANGED = 4
+FEW = 4
 # What slopes promise may fall short of what a fit gains by this share.
 PROMISE = 0.6
+# Without one effect others are moved along the chain where they still gain this share.
+NEAR = 0.8
 # Once a set is found, all that slopes promise this share of what an effect gains there are fitted in its
 # place, so many of each.
 STANDS, STANDING = 0.7, 6
@@ -92,23 +94,16 @@ class Turns:
 
     def grow(self, null: Fit, start: Fit) -> Grown:
         """From a start to where nothing more is added, taken away, exchanged or found from elsewhere."""
-        plain_null, fit, exchanges, again, fewer = null, start, 0, False, False
+        plain_null, fit = null, start
+        moves = [self._exchanged, self._again, self._two, self._one_for_two]
         for _ in range(TURNS):
             fit = self._counted(plain_null, fit)
             fit = self._pruned(fit)
             more = self._added(fit)
             if more is not None and self._hopeless(fit, more):
                 return self._grown(more)
-            few = len(fit.hypothesis.components) <= EXCHANGED
-            if more is None and few and exchanges < EXCHANGES:
-                exchanges += 1
-                more = self._exchanged(fit)
-            if more is None and not again:
-                again = True
-                more = self._again(fit)
-            if more is None and few and not fewer:
-                fewer, exchanges = True, 0
-                more = self._one_for_two(fit)
+            if more is None:
+                more = self._elsewhere(fit, moves)
             if more is None:
                 before = self.size
                 fit = self._counted(plain_null, fit)
@@ -117,6 +112,20 @@ class Turns:
                 continue  # what was taken away leaves another discrepancy, beside which more may be seen
             fit = more
         return self._grown(self._pruned(self._counted(plain_null, fit)))
+
+    def _elsewhere(self, fit, moves: list) -> Fit | None:
+        """Where the first of some moves leads that leads anywhere; none of them has two turns but exchanges,
+        which are worth another one once a single effect took the place of two.
+        """
+        few = len(fit.hypothesis.components) <= FEW
+        for move in [m for m in moves if few or m == self._again]:
+            moves.remove(move)
+            more = move(fit)
+            if more is not None:
+                if move == self._one_for_two and self._exchanged not in moves:
+                    moves.append(self._exchanged)
+                return more
+        return None
 
     def _grown(self, fit) -> Grown:
         return Grown(self.forward, self.null, self._noted(fit), self.size, self.tried)
@@ -157,7 +166,7 @@ class Turns:
     def _pruned(self, fit):
         """Without effects that do not earn their evidence beside the others."""
         while fit.hypothesis.components:
-            less = self._each_less(fit, range(len(fit.hypothesis.components)))
+            less = self._settled(fit, self._each_less(fit, range(len(fit.hypothesis.components))))
             weakest = min(less, key=lambda one: one.objective)
             if self._earned(weakest, fit):
                 return fit
@@ -175,6 +184,18 @@ class Turns:
             if one is not self.null:
                 self._noted(one)
         return found
+
+    def _settled(self, fit, less: list[Fit]) -> list[Fit]:
+        """Fits without one effect, the others at the places that are best for them alone."""
+        gained = self.null.objective - fit.objective
+        near = [k for k, one in enumerate(less) if self.null.objective - one.objective > NEAR * gained]
+        near = [k for k in near if 2 < len(fit.hypothesis.components) <= FEW and places.placed(less[k])]
+        refined = partial(around.refined, setup=self.setup)
+        moved = abreast.each(self.forward, refined, [less[k] for k in near])
+        for k, one in zip(near, moved, strict=True):
+            less[k] = one
+            self._noted(one)
+        return less
 
     def _less(self, fit, k):
         """The best fit without effect k."""
@@ -218,10 +239,25 @@ class Turns:
         """Fits with one effect more, the likeliest first."""
         if len(fit.hypothesis.components) >= policy.MOST_EFFECTS:
             return
-        scores = pairs.screened(self.forward, fit, self.setup)
-        promised = pairs.beside(self.forward, self.null, fit, self.setup, scores)
-        enough = self.null.objective - fit.objective + PROMISE * self._asked(fit)
-        yield from self._ranked(promised, enough)
+        starts = pairs.beside(self.forward, self.null, fit, self.setup)
+        if len(fit.hypothesis.components) < FEW and not self.size.size:
+            # Slopes promise little of some; strengths all over the range do, as long as nothing hides them.
+            starts += pairs.everywhere(self.forward, self.null, fit, self.setup, sizes=secants.finely)
+        yield from self._ranked(starts, self.null.objective - fit.objective + PROMISE * self._asked(fit))
+
+    def _two(self, fit) -> Fit | None:
+        """The fit with two effects more, or with two in place of one, that only together explain what is
+        left; None where none do.
+        """
+        count = len(fit.hypothesis.components)
+        starts = []
+        for one in [fit, *(self._each_less(fit, range(count)) if count > 1 else ())]:
+            if len(one.hypothesis.components) + 2 <= FEW:
+                gained = self.null.objective - one.objective
+                scores = pairs.screened(self.forward, one, self.setup)
+                starts += [replace(s, gain=s.gain + gained) for s in planes.linear(scores, self.setup)]
+        least = self.null.objective - fit.objective + PROMISE * self._asked(fit)
+        return next((one for one in self._ranked(starts, least) if self._earned(fit, one)), None)
 
     def _further(self, fit, one) -> Fit | None:
         """A fit with two effects more, where the first is worth it but predicts a run worse: while the second
@@ -240,7 +276,8 @@ class Turns:
 
     def _ranked(self, starts, enough) -> Iterator[Fit]:
         """The most promising starts, fitted, likeliest first; what was tried before is not tried again."""
-        chosen = [s for s in starts if s.gain > enough and s.effects not in self.tried]
+        best = {s.effects: s for s in sorted(starts, key=lambda s: s.gain)}
+        chosen = [s for s in best.values() if s.gain > enough and s.effects not in self.tried]
         first = self.size.size and all(len(s.effects) == 1 for s in chosen)
         chosen = sorted(chosen, key=lambda s: -s.gain)[: FIRST if first else TRIED]
         found = pairs.followed(self.forward, chosen)
@@ -262,9 +299,8 @@ class Turns:
         own, count = self._evidence(fit), len(fit.hypothesis.components)
         for k in range(count if count > 1 or self.size.size else 0):
             less = self._less(fit, k)
-            starts = pairs.beside(self.forward, self.null, less, self.setup)
             enough = PROMISE * (self.null.objective - fit.objective)
-            best = self._likeliest(starts, enough)
+            best = self._likeliest(pairs.beside(self.forward, self.null, less, self.setup), enough)
             if best is not None and self._evidence(best) > own + pairs.WORTH:
                 return best
         return None
@@ -313,25 +349,3 @@ class Turns:
             return None
         better = restart.restarted(self.forward, fit, self.setup)
         return better if self._evidence(better) > self._evidence(fit) + pairs.WORTH else None
-
-
-def irreplaceable(shapes: ShapeTest, fit: Fit, needed: float) -> list[int]:
-    """Effects of a fit that are still seen when the shapes that fail their test may take what they like.
-
-    Where a shape outside the catalogue is left beside an effect, the effect may be no more than what comes
-    nearest to it. In the linearised model with those shapes free, its strength has to stand off from zero by
-    as much as an effect needs to be named.
-    """
-    scores, free = shapes.screen, fit.normal.free
-    at = shapes.failing
-    gradient, hessian = (part[0] for part in scores.normal.total())
-    cross, products = scores.cross.sum(axis=0)[:, at], scores.products.sum(axis=0)[np.ix_(at, at)]
-    length = np.sqrt(np.maximum(np.diag(products), 1e-300))
-    cross, products = cross / length, products / np.outer(length, length)
-    whole = np.block([[hessian, cross], [cross.T, products]])
-    whole += 1e-9 * np.diag(np.maximum(np.diag(whole), 1e-9))
-    right = np.concatenate([gradient, scores.score.sum(axis=0)[at] / length])
-    covariance = np.linalg.pinv(whole, rcond=1e-11, hermitian=True)
-    step, error = (covariance @ right)[:free], np.sqrt(np.maximum(np.diag(covariance)[:free], 1e-300))
-    strengths = fit.hypothesis.strengths(fit.u, error, step)
-    return [k for k, strength in enumerate(strengths) if strength**2 > needed]

@@ -300,3 +300,25 @@ def raw(forward: Forward, fit: Fit) -> list[np.ndarray]:
         value[0, : len(e.gauges) * len(run.time)].reshape(len(e.gauges), len(run.time)) * e.sigma[:, None]
         for value, run in zip(found, e.runs, strict=True)
     ]
+
+
+def irreplaceable(shapes: ShapeTest, fit: Fit, needed: float) -> list[int]:
+    """Effects of a fit that are still seen when the shapes that fail their test may take what they like.
+
+    Where a shape outside the catalogue is left beside an effect, the effect may be no more than what comes
+    nearest to it. In the linearised model with those shapes free, its strength has to stand off from zero by
+    as much as an effect needs to be named.
+    """
+    scores, free = shapes.screen, fit.normal.free
+    at = shapes.failing
+    gradient, hessian = (part[0] for part in scores.normal.total())
+    cross, products = scores.cross.sum(axis=0)[:, at], scores.products.sum(axis=0)[np.ix_(at, at)]
+    length = np.sqrt(np.maximum(np.diag(products), 1e-300))
+    cross, products = cross / length, products / np.outer(length, length)
+    whole = np.block([[hessian, cross], [cross.T, products]])
+    whole += 1e-9 * np.diag(np.maximum(np.diag(whole), 1e-9))
+    right = np.concatenate([gradient, scores.score.sum(axis=0)[at] / length])
+    covariance = np.linalg.pinv(whole, rcond=1e-11, hermitian=True)
+    step, error = (covariance @ right)[:free], np.sqrt(np.maximum(np.diag(covariance)[:free], 1e-300))
+    strengths = fit.hypothesis.strengths(fit.u, error, step)
+    return [k for k, strength in enumerate(strengths) if strength**2 > needed]
