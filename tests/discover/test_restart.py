@@ -50,6 +50,39 @@ def test_a_pair_at_its_minimum_stays(stuck):
     assert again.objective == pytest.approx(there.objective, abs=0.02)  # where a fit counts as settled
 
 
+def test_starts_are_the_best_trials_of_each_place(stuck, monkeypatch):
+    """Of a bead 8 % light beside a slow gauge most good trials were at another that had made up for it."""
+    forward, one = stuck
+    setup = singles.setup_of(forward)
+    tried = secants.tried
+
+    def clustered(*what, **how):
+        """All trials of the best place first."""
+        trials = tried(*what, **how)
+        return sorted(trials, key=lambda t: (t.place != trials[0].place, -t.gain))
+
+    monkeypatch.setattr(secants, "tried", clustered)
+    for k, component in enumerate(one.hypothesis.components):
+        rows = list(restart._starts(forward, one, k, setup))
+        assert component.effect.places and len(rows) == restart.FOLLOWED
+        assert len({places[k] for _, _, places in rows}) == len(rows)
+        assert {places[1 - k] for _, _, places in rows} == {one.hypothesis.components[1 - k].place}
+
+
+def test_no_start_is_left_for_what_it_leaves_at_first(stuck, monkeypatch):
+    """Where all others had to follow, the true bead began 3800 in χ² behind and ended 190 ahead."""
+    forward, one = stuck
+    asked = []
+
+    def seen(forward, hypothesis, u, nu, places, keep, iterations):
+        asked.append((len(u), keep))
+        return one
+
+    monkeypatch.setattr(restart, "fit", seen)
+    assert restart.restarted(forward, one, singles.setup_of(forward)) is one
+    assert len(asked) == 2 and all(0 < count <= keep for count, keep in asked)
+
+
 def test_what_a_trial_should_gain_is_what_a_fit_gains_where_data_answer_in_proportion():
     """A gauge's gain is linear: the best trial misses the fit's gain by its distance from the best value."""
     hidden = [("sensor-gain", {"gain_ratio": 1.03, "sensor": 1})]

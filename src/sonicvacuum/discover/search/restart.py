@@ -16,21 +16,23 @@ from sonicvacuum.discover.model.hypothesis import of_one_strength, without
 from sonicvacuum.discover.search import secants
 from sonicvacuum.effects import Setup
 
-# Trials of each effect that the joint fit starts from; starts followed to their minimum, and their steps.
-TRIALS, FOLLOWED, ITERATIONS = 4, 4, 12
+# Trials of an effect; the best ones, one at each place, that the joint fit starts from, and its steps. What a
+# start leaves at first tells nothing: others have to follow an effect that moves far.
+TRIALS, FOLLOWED, ITERATIONS = 60, 3, 12
 # A single effect is fitted anew where a pair leads it to a minimum that is lower by more than this.
 LOWER = 6.0
 
 
 def restarted(forward: Forward, one: Fit, setup: Setup) -> Fit:
     """The better of a fit of several effects and of one from each of them tried all over its range."""
-    rows = [row for k in range(len(one.hypothesis.components)) for row in _starts(forward, one, k, setup)]
-    if not rows:
-        return one
-    u, nu, places = (np.array([row[k] for row in rows]) for k in range(3))
-    u = one.hypothesis.inside(u)
-    other = fit(forward, one.hypothesis, u, nu, places, FOLLOWED, ITERATIONS, reach=one.objective)
-    return min((one, other), key=lambda f: f.objective)
+    found = [one]
+    for k in range(len(one.hypothesis.components)):
+        rows = list(_starts(forward, one, k, setup))
+        if rows:
+            u, nu, places = (np.array([row[k] for row in rows]) for k in range(3))
+            u = one.hypothesis.inside(u)
+            found.append(fit(forward, one.hypothesis, u, nu, places, FOLLOWED, ITERATIONS))
+    return min(found, key=lambda f: f.objective)
 
 
 def _starts(forward, one, k, setup):
@@ -43,7 +45,10 @@ def _starts(forward, one, k, setup):
         return
     others = np.delete(np.arange(len(one.u)), np.arange(len(one.u))[own])
     sizes = secants.finely(component.free[0])
-    for trial in secants.tried(forward, beside, component, setup, TRIALS, sizes):
+    trials = secants.tried(forward, beside, component, setup, TRIALS, sizes)
+    if component.effect.places:
+        trials = sorted({t.place: t for t in reversed(trials)}.values(), key=lambda t: -t.gain)
+    for trial in trials[:FOLLOWED]:
         whole, places = one.u.copy(), [c.place or 0 for c in one.hypothesis.components]
         whole[own], whole[others] = trial.u, trial.beside
         places[k] = trial.place or 0

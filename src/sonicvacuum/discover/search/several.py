@@ -188,14 +188,24 @@ class Turns:
     def _settled(self, fit, less: list[Fit]) -> list[Fit]:
         """Fits without one effect, the others at the places that are best for them alone."""
         gained = self.null.objective - fit.objective
-        near = [k for k, one in enumerate(less) if self.null.objective - one.objective > NEAR * gained]
-        near = [k for k in near if 2 < len(fit.hypothesis.components) <= FEW and places.placed(less[k])]
+        near = [self.null.objective - one.objective > NEAR * gained for one in less]
+        return self._refined(less, near) if len(less) > 2 else less
+
+    def _refined(self, found: list[Fit], near: list[bool]) -> list[Fit]:
+        """Fits with narrow minima looked for in those that are near the best; all are kept."""
+        asked = [
+            k for k, one in enumerate(found) if near[k] and self._thorough(len(one.hypothesis.components))
+        ]
         refined = partial(around.refined, setup=self.setup)
-        moved = abreast.each(self.forward, refined, [less[k] for k in near])
-        for k, one in zip(near, moved, strict=True):
-            less[k] = one
+        found = list(found)
+        for k, one in zip(asked, abreast.each(self.forward, refined, [found[k] for k in asked]), strict=True):
+            found[k] = one
             self._noted(one)
-        return less
+        return found
+
+    def _thorough(self, count: int) -> bool:
+        """Whether sets of so many effects are searched in every way: nothing smooth hides what they do."""
+        return count <= FEW and not self.size.size
 
     def _less(self, fit, k):
         """The best fit without effect k."""
@@ -240,8 +250,8 @@ class Turns:
         if len(fit.hypothesis.components) >= policy.MOST_EFFECTS:
             return
         starts = pairs.beside(self.forward, self.null, fit, self.setup)
-        if len(fit.hypothesis.components) < FEW and not self.size.size:
-            # Slopes promise little of some; strengths all over the range do, as long as nothing hides them.
+        if self._thorough(1 + len(fit.hypothesis.components)):
+            # Slopes promise little of some that strengths all over the range do.
             starts += pairs.everywhere(self.forward, self.null, fit, self.setup, sizes=secants.finely)
         yield from self._ranked(starts, self.null.objective - fit.objective + PROMISE * self._asked(fit))
 
@@ -280,10 +290,11 @@ class Turns:
         chosen = [s for s in best.values() if s.gain > enough and s.effects not in self.tried]
         first = self.size.size and all(len(s.effects) == 1 for s in chosen)
         chosen = sorted(chosen, key=lambda s: -s.gain)[: FIRST if first else TRIED]
-        found = pairs.followed(self.forward, chosen)
-        found = [one for one in found if np.isfinite(one.objective)]
+        found = [one for one in pairs.followed(self.forward, chosen) if np.isfinite(one.objective)]
         for one in found:
             self._noted(one)
+        least = min((one.objective for one in found), default=np.inf)
+        found = self._refined(found, [one.objective < least + pairs.BEHIND for one in found])
         for one in sorted(found, key=self._evidence, reverse=True):
             one = finished(self.forward, one)
             if places.placed(one):
