@@ -169,7 +169,7 @@ def test_beside_what_is_left_the_likelier_is_named_though_another_was_found(monk
         _rivals=lambda _: [other],
         _irreplaceable=lambda _grown, one, _needed, _reasons: one,
     )
-    monkeypatch.setattr(decision.several, "moved", lambda _, one: one)
+    monkeypatch.setattr(decision.restart, "moved", lambda _, one: one)
     left = SimpleNamespace(where="a smooth misfit", p=0.0)
     made = decision.Case._beside(case, grown, 10.0, {}, left, [])
     assert made.named == [*([named] if named else []), "unknown"]

@@ -19,7 +19,7 @@ from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, variants
 from sonicvacuum.discover.model.problem import experiment
 from sonicvacuum.discover.rounds import investigate
-from sonicvacuum.discover.search import several
+from sonicvacuum.discover.search import restart
 from sonicvacuum.discover.search.singles import setup_of
 from sonicvacuum.discover.verdict import Model, nuisances
 from sonicvacuum.effects import CATALOGUE, IDS
@@ -283,7 +283,7 @@ def test_nuisances_relax_as_a_fit_with_wider_noise_finds_them(hidden):
     forward = Forward(experiment(hidden))
     null = nominal(forward)
     wide_view = Forward(replace(forward.experiment, sigma=5.0 * forward.experiment.sigma))
-    there = several.moved(wide_view, null)
+    there = restart.moved(wide_view, null)
     chi2, penalty = weighing._prior(forward, 25.0).relaxed(null)
     # The model bends between the two points: a few per cent of what changes.
     assert chi2 == pytest.approx(25.0 * there.normal.chi2.sum(), rel=0.03)

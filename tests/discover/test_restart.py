@@ -63,10 +63,11 @@ def test_starts_are_the_best_trials_of_each_place(stuck, monkeypatch):
 
     monkeypatch.setattr(secants, "tried", clustered)
     for k, component in enumerate(one.hypothesis.components):
-        rows = list(restart._starts(forward, one, k, setup))
-        assert component.effect.places and len(rows) == restart.FOLLOWED
-        assert len({places[k] for _, _, places in rows}) == len(rows)
-        assert {places[1 - k] for _, _, places in rows} == {one.hypothesis.components[1 - k].place}
+        trials = restart._trials(forward, one, k, setup)
+        assert component.effect.places and len(trials) == restart.FOLLOWED
+        places = restart.put(one, k, trials)[2]
+        assert len(set(places[:, k])) == len(trials)
+        assert set(places[:, 1 - k]) == {one.hypothesis.components[1 - k].place}
 
 
 def test_no_start_is_left_for_what_it_leaves_at_first(stuck, monkeypatch):

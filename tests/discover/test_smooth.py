@@ -17,7 +17,7 @@ from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Hypothesis
 from sonicvacuum.discover.model.problem import experiment
 from sonicvacuum.discover.rounds import investigate
-from sonicvacuum.discover.search import several
+from sonicvacuum.discover.search import restart
 from sonicvacuum.records import Record
 
 
@@ -241,4 +241,4 @@ def test_what_a_misfit_strained_does_not_stand_in_the_way_once_it_counts_as_nois
     nothing = Hypothesis()
     here = Fit(nothing, linearise(forward, nothing, np.zeros((1, 0)), strained[None]))
     assert polish(forward, here).objective > 2.0 * nominal(forward).objective
-    assert several.moved(forward, here).objective == pytest.approx(nominal(forward).objective, abs=0.1)
+    assert restart.moved(forward, here).objective == pytest.approx(nominal(forward).objective, abs=0.1)

@@ -14,7 +14,7 @@ from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.judge import decided, explanations
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.rounds import Investigation
-from sonicvacuum.discover.search import pairs, several
+from sonicvacuum.discover.search import pairs, restart
 from sonicvacuum.discover.search.free_law import FreeLaw, free_law
 from sonicvacuum.discover.search.singles import setup_of
 
@@ -85,7 +85,7 @@ class _Weighed:
     def _surely(self, alone: _Account) -> Investigation:
         """Nothing was named, as which of several effects it is was open: whether the law beats them all."""
         rivals = [one.fit for one in self.found.rivals if one.fit.hypothesis.components]
-        fits = [several.moved(self.found.forward, one) for one in rivals]
+        fits = [restart.moved(self.found.forward, one) for one in rivals]
         surer = alone.worth - max((self._account(one).worth for one in fits), default=math.inf)
         return self._renamed(alone, surer) if surer > policy.LAW_LOG_BAYES else self.found
 
@@ -93,7 +93,7 @@ class _Weighed:
         """The same fit less each of its effects, where there are several."""
         count = len(fit.hypothesis.components)
         forward, null = self.found.forward, self.found.null
-        return [several.less(forward, null, fit, k, self.setup) for k in range(count) if count > 1]
+        return [restart.fewer(forward, null, fit, k, self.setup) for k in range(count) if count > 1]
 
     def _searched(self, base: Fit) -> _Account | None:
         """Some effects with the law beside them, where it earns its place."""

@@ -7,7 +7,7 @@ from sonicvacuum.discover.fit.evidence import Candidate, Combination
 from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.judge.rivals import Rival
 from sonicvacuum.discover.model.forward import Forward
-from sonicvacuum.discover.search import several
+from sonicvacuum.discover.search import restart
 
 
 @dataclass(frozen=True)
@@ -49,5 +49,5 @@ def viewed(
     """The nominal model and a final one with a smooth discrepancy of one size counted as noise."""
     noisy = smooth.with_size(forward.experiment, one.size, known, one.excess, one.kernel)
     counted = Forward(noisy, forward.threads)
-    moved = several.moved(counted, null)
-    return View(counted, moved, moved if final is null else several.moved(counted, final))
+    moved = restart.moved(counted, null)
+    return View(counted, moved, moved if final is null else restart.moved(counted, final))

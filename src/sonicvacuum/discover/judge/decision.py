@@ -93,7 +93,7 @@ class Case:
         reason = f"a smooth misfit of {size:.2g} % of the peak explains more than {best.effect}"
         if not grown.best.effects:
             return self._unknown({"none": without.p, **alarms}, [reason], without)
-        final = several.moved(self.forward, grown.best.fit)
+        final = restart.moved(self.forward, grown.best.fit)
         behind = short(self.null.objective - final.objective, most)
         after = left(self.forward, final, self.known, behind=behind)
         return self._beside(grown, needed, {**alarms, "set": after.p}, after, [])
@@ -186,7 +186,7 @@ class Case:
         turns = several.Turns(self.forward, self.known, needed, self.setup, self.known is not None)
         grown = turns.grow(self.null, start)
         effects = list(grown.best.effects)
-        final = several.moved(self.forward, grown.best.fit) if grown.size.size else grown.best.fit
+        final = restart.moved(self.forward, grown.best.fit) if grown.size.size else grown.best.fit
         if len(effects) == 1 and (lower := restart.led(self.null, final, self.found)):
             return self._anew(lower)
         behind = short(self.null.objective - final.objective, most)
@@ -301,7 +301,7 @@ class Case:
             reasons += explanations.one_of(weights)
         likely = of_weights(weights, [*grown.tried.values(), *rivals])
         weights = whole if named else weights
-        final = several.moved(self.forward, fit_) if named else self.null
+        final = restart.moved(self.forward, fit_) if named else self.null
         view = View(grown.forward, grown.null, fit_) if grown.size.size else None
         size = grown.size.size
         return Decision(
@@ -318,7 +318,7 @@ class Case:
             if k not in kept and not self._ahead(fit_, k):
                 name = fit_.hypothesis.ids[k]
                 reasons.append(f"{name} may be no more than the nearest to what is left in {counted.group}")
-                fit_ = several.less(grown.forward, grown.null, fit_, k, self.setup)
+                fit_ = restart.fewer(grown.forward, grown.null, fit_, k, self.setup)
         return fit_
 
     def _ahead(self, whole: Fit, k: int) -> bool:
@@ -329,10 +329,10 @@ class Case:
         """
         if self.known is None:
             return False
-        with_it = several.moved(self.forward, whole)
+        with_it = restart.moved(self.forward, whole)
         if self.null.objective - with_it.objective < singles.NONLINEAR:
             return False
-        less = several.less(self.forward, self.null, with_it, k, self.setup)
+        less = restart.fewer(self.forward, self.null, with_it, k, self.setup)
         gain = less.objective - with_it.objective
         instead = smooth.infer(self.forward, less, self.known).log_odds
         beside = smooth.infer(self.forward, with_it, self.known).log_odds
@@ -346,5 +346,5 @@ class Case:
         """Single effects that were near the best, with the discrepancy counted as noise."""
         most = max(c.gain for c in self.found)
         near = [c for c in self.found if c.gain > 0.5 * most and frozenset((c.effect,)) not in grown.tried]
-        fits = [several.moved(grown.forward, c.fit) for c in near[:4]]
+        fits = [restart.moved(grown.forward, c.fit) for c in near[:4]]
         return [pairs.combination(grown.null, f, self.setup) for f in fits]

@@ -22,7 +22,7 @@ from sonicvacuum.discover.judge import explanations, rivals, weighing
 from sonicvacuum.discover.judge.rivals import Rival
 from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.forward import Forward
-from sonicvacuum.discover.search import pairs, planes, profiles, screen, several, singles, unknown
+from sonicvacuum.discover.search import pairs, planes, profiles, restart, screen, singles, unknown
 from sonicvacuum.effects import Setup
 
 # Third effects, and further ones, that are fitted beside what stands out.
@@ -214,7 +214,7 @@ def _surely_there(hypothesis, k: int, odds: Mapping[str, float], loss: float) ->
 
 def _less(forward, null, fit: Fit, k: int, ranked, setup) -> Fit:
     """The best fit known without effect k."""
-    here = several.less(forward, null, fit, k, setup)
+    here = restart.fewer(forward, null, fit, k, setup)
     same = [c.fit for c in ranked if set(c.effects) == set(here.hypothesis.ids)]
     return min([here, *same], key=lambda f: f.objective)
 

@@ -40,12 +40,7 @@ def _refined(forward, one, k, setup):
         trials = _trials(forward, one, k, setup)
         if not trials:
             break
-        own = one.hypothesis.columns[k].start
-        u = np.array([np.insert(t.beside, own, t.u) for t in trials])
-        where = np.tile([c.place or 0 for c in one.hypothesis.components], (len(trials), 1))
-        where[:, k] = [t.place for t in trials]
-        nu = np.array([t.nu for t in trials])
-        better = fit(forward, one.hypothesis, one.hypothesis.inside(u), nu, where, FOLLOWED, ITERATIONS)
+        better = fit(forward, one.hypothesis, *restart.put(one, k, trials), FOLLOWED, ITERATIONS)
         if not better.objective < one.objective - places.WORTH:
             break
         one = places.settled(forward, better, setup)
@@ -66,5 +61,4 @@ def _trials(forward, one, k, setup):
     if not np.isfinite(bare.objective):
         return []
     tried = secants.tried(forward, bare, component, setup, TRIALS, np.unique(sizes), near)
-    best = {t.place: t for t in reversed(tried) if t.gain > PROMISE * tried[0].gain}
-    return sorted(best.values(), key=lambda t: -t.gain)[:FOLLOWED]
+    return secants.one_a_place([t for t in tried if t.gain > PROMISE * tried[0].gain])[:FOLLOWED]

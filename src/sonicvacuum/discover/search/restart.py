@@ -5,15 +5,18 @@ leads to the lower one. Here one effect of the set at a time is taken away and t
 the others, as `secants` does it. Single effects start again from pairs, less their other effect.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 
-from sonicvacuum.discover.fit import bounds, evidence
+from sonicvacuum.discover.fit import bounds, evidence, refit
 from sonicvacuum.discover.fit.evidence import Candidate, Combination
 from sonicvacuum.discover.fit.normal import linearise
 from sonicvacuum.discover.fit.refit import Fit, fit, polish
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import of_one_strength, without
 from sonicvacuum.discover.search import secants
+from sonicvacuum.discover.search.secants import Secant
 from sonicvacuum.effects import Setup
 
 # Trials of an effect; the best ones, one at each place, that the joint fit starts from, and its steps. What a
@@ -27,32 +30,51 @@ def restarted(forward: Forward, one: Fit, setup: Setup) -> Fit:
     """The better of a fit of several effects and of one from each of them tried all over its range."""
     found = [one]
     for k in range(len(one.hypothesis.components)):
-        rows = list(_starts(forward, one, k, setup))
-        if rows:
-            u, nu, places = (np.array([row[k] for row in rows]) for k in range(3))
-            u = one.hypothesis.inside(u)
-            found.append(fit(forward, one.hypothesis, u, nu, places, FOLLOWED, ITERATIONS))
+        trials = _trials(forward, one, k, setup)
+        if trials:
+            found.append(fit(forward, one.hypothesis, *put(one, k, trials), FOLLOWED, ITERATIONS))
     return min(found, key=lambda f: f.objective)
 
 
-def _starts(forward, one, k, setup):
-    """Coordinates, nuisances and places with effect k as trials put it, the others as they follow."""
-    component, own = one.hypothesis.components[k], one.hypothesis.columns[k]
+def _trials(forward, one, k, setup):
+    """The best trials of effect k all over its range beside the others as they stand."""
+    component = one.hypothesis.components[k]
     if not of_one_strength(component.free):
-        return
+        return []
     beside = less(forward, one, k, setup)
     if not np.isfinite(beside.objective):
-        return
-    others = np.delete(np.arange(len(one.u)), np.arange(len(one.u))[own])
+        return []
     sizes = secants.finely(component.free[0])
     trials = secants.tried(forward, beside, component, setup, TRIALS, sizes)
-    if component.effect.places:
-        trials = sorted({t.place: t for t in reversed(trials)}.values(), key=lambda t: -t.gain)
-    for trial in trials[:FOLLOWED]:
-        whole, places = one.u.copy(), [c.place or 0 for c in one.hypothesis.components]
-        whole[own], whole[others] = trial.u, trial.beside
-        places[k] = trial.place or 0
-        yield whole, trial.nu, places
+    return (secants.one_a_place(trials) if component.effect.places else trials)[:FOLLOWED]
+
+
+def put(one: Fit, k: int, trials: Sequence[Secant]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(L, p) coordinates, (L, q) nuisances and (L, effects) places of a set with effect k as L trials put it,
+    the others as they follow.
+    """
+    u = np.array([np.insert(t.beside, one.hypothesis.columns[k].start, t.u) for t in trials])
+    places = np.tile([c.place or 0 for c in one.hypothesis.components], (len(trials), 1))
+    places[:, k] = [t.place or 0 for t in trials]
+    return one.hypothesis.inside(u), np.array([t.nu for t in trials]), places
+
+
+def moved(forward: Forward, one: Fit, iterations: int = ITERATIONS) -> Fit:
+    """A fit followed to its minimum in another view of the data, from where nuisances stand and from none.
+
+    A misfit strains them, and strained they stand in the way once it counts as noise.
+    """
+    nu = np.stack([one.nu, 0.0 * one.nu])
+    return fit(forward, one.hypothesis, np.repeat(one.u[None], 2, axis=0), nu, iterations=iterations)
+
+
+def fewer(
+    forward: Forward, null: Fit, one: Fit, k: int, setup: Setup, iterations: int = refit.ITERATIONS
+) -> Fit:
+    """The best fit without effect k, from where a fit stands; `null` where none is left."""
+    if len(one.hypothesis.components) == 1:
+        return null
+    return moved(forward, less(forward, one, k, setup), iterations)
 
 
 def less(forward: Forward, one: Fit, k: int, setup: Setup) -> Fit:

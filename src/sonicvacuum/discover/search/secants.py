@@ -106,6 +106,12 @@ def tried(
     return [Secant(names, *rows[k], float(gain[k]), *seen.moved(k, 1.0)) for k in order]
 
 
+def one_a_place(trials: Sequence[Secant]) -> list[Secant]:
+    """The best trial of each place, best first."""
+    best = {t.place: t for t in sorted(trials, key=lambda t: t.gain)}
+    return sorted(best.values(), key=lambda t: -t.gain)
+
+
 def coarsely(c: Coordinate, sparse: bool = False) -> np.ndarray:
     """Coordinates of a strength at which it is tried."""
     step = 1 + sparse

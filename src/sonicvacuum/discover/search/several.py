@@ -18,7 +18,7 @@ import numpy as np
 from sonicvacuum.discover import policy
 from sonicvacuum.discover.fit import enough, heldout, places, smooth
 from sonicvacuum.discover.fit.evidence import Combination
-from sonicvacuum.discover.fit.refit import ITERATIONS, Fit, finished, fit
+from sonicvacuum.discover.fit.refit import Fit, finished
 from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.search import around, pairs, planes, restart, secants
@@ -61,22 +61,6 @@ class Grown:
     best: Combination
     size: smooth.Size
     tried: dict[frozenset, Combination] = field(default_factory=dict)
-
-
-def moved(forward: Forward, one: Fit, iterations: int = pairs.ITERATIONS) -> Fit:
-    """A fit followed to its minimum in another view of the data, from where nuisances stand and from none.
-
-    A misfit strains them, and strained they stand in the way once it counts as noise.
-    """
-    nu = np.stack([one.nu, 0.0 * one.nu])
-    return fit(forward, one.hypothesis, np.repeat(one.u[None], 2, axis=0), nu, iterations=iterations)
-
-
-def less(forward: Forward, null: Fit, one: Fit, k: int, setup: Setup, iterations: int = ITERATIONS) -> Fit:
-    """The best fit without effect k, from where a fit stands; `null` where none is left."""
-    if len(one.hypothesis.components) == 1:
-        return null
-    return moved(forward, restart.less(forward, one, k, setup), iterations)
 
 
 class Turns:
@@ -148,10 +132,10 @@ class Turns:
                     self.plain.experiment, size.size, self.known, size.excess, size.kernel
                 )
                 self.forward = Forward(counted, self.plain.threads)
-            self.null = moved(self.forward, plain_null) if size.size else plain_null
+            self.null = restart.moved(self.forward, plain_null) if size.size else plain_null
             self.tried = {}
         self.size = size
-        fit = moved(self.forward, fit)
+        fit = restart.moved(self.forward, fit)
         self._noted(fit)
         return fit
 
@@ -177,7 +161,7 @@ class Turns:
         """The best fits without one effect, each of `which` in turn."""
 
         def without(branch, k):
-            return less(branch, self.null, fit, k, self.setup, pairs.ITERATIONS)
+            return restart.fewer(branch, self.null, fit, k, self.setup, pairs.ITERATIONS)
 
         found = abreast.each(self.forward, without, which)
         for one in found:
@@ -260,12 +244,14 @@ class Turns:
         left; None where none do.
         """
         count = len(fit.hypothesis.components)
+        beside = [fit] if count + 2 <= FEW else []
+        if 1 < count < FEW:
+            beside += self._each_less(fit, range(count))
         starts = []
-        for one in [fit, *(self._each_less(fit, range(count)) if count > 1 else ())]:
-            if len(one.hypothesis.components) + 2 <= FEW:
-                gained = self.null.objective - one.objective
-                scores = pairs.screened(self.forward, one, self.setup)
-                starts += [replace(s, gain=s.gain + gained) for s in planes.linear(scores, self.setup)]
+        for one in beside:
+            gained = self.null.objective - one.objective
+            scores = pairs.screened(self.forward, one, self.setup)
+            starts += [replace(s, gain=s.gain + gained) for s in planes.linear(scores, self.setup)]
         least = self.null.objective - fit.objective + PROMISE * self._asked(fit)
         return next((one for one in self._ranked(starts, least) if self._earned(fit, one)), None)
 
