@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 
 from sonicvacuum.discover import policy
 from sonicvacuum.discover.fit.calibration import Calibration
-from sonicvacuum.discover.judge import decision, degenerate, explanations
+from sonicvacuum.discover.judge import beside, degenerate, explanations
+from sonicvacuum.effects import CATALOGUE
 
 
 def single(name, log_bayes):
@@ -109,6 +110,8 @@ def test_names_beside_something_unknown_are_no_surer_than_such_names_came_true()
     found, said = explanations.no_surer(odds, ["tsuji", "unknown"])
     assert "tsuji" in said[0]
     assert found == pytest.approx({"tsuji + unknown": policy.ONE_BESIDE, "unknown": 1.0 - policy.ONE_BESIDE})
+    smooth, _ = explanations.no_surer(odds, ["tsuji", "unknown"], smooth_only=True)
+    assert smooth["tsuji + unknown"] == pytest.approx(policy.SMOOTH_BESIDE)
     less = {"gravity + tsuji + unknown": 0.4, "unknown": 0.6}
     assert explanations.no_surer(less, ["tsuji", "gravity", "unknown"]) == (less, [])
     alone = {"tsuji": 0.99, "unknown": 0.01}
@@ -136,6 +139,30 @@ def test_of_a_set_beside_something_unknown_one_effect_at_a_time_is_exchanged():
     assert found == [["gravity", "static-preload"]]
 
 
+@pytest.mark.parametrize(
+    ("p", "named"),
+    [(1e-6, ["linear-dashpot", "sensor-gain"]), (1e-3, ["linear-dashpot", "mass-defect", "sensor-gain"])],
+)
+def test_no_bead_is_named_beside_a_shape_that_no_smooth_error_has(monkeypatch, p, named):
+    """Of tens of places one is always near to what is unknown; a gauge, of three, is told from it."""
+
+    def fit(ids):
+        return SimpleNamespace(hypothesis=SimpleNamespace(ids=ids, components=ids))
+
+    def fewer(_forward, _null, one, k, _setup):
+        return fit([name for place, name in enumerate(one.hypothesis.ids) if place != k])
+
+    monkeypatch.setattr(beside.restart, "fewer", fewer)
+    monkeypatch.setattr(beside.unknown, "irreplaceable", lambda *_: [0, 1, 2])
+    case = beside.Beside(None, None, [], None, SimpleNamespace(catalogue=CATALOGUE))
+    seen, reasons = SimpleNamespace(failed=True, p=p, group="profile"), []
+    one = fit(["linear-dashpot", "mass-defect", "sensor-gain"])
+    grown = SimpleNamespace(forward=None, null=None)
+    kept = case._irreplaceable(grown, one, seen, 10.0, reasons)
+    assert kept.hypothesis.ids == named
+    assert [r.split()[0] for r in reasons] == (["mass-defect"] if len(named) == 2 else [])
+
+
 def test_what_was_tried_while_a_set_grew_competes_with_it():
     """Gravity for a preload in a set of four: a twentieth of its probability, which had not been counted."""
     pairs = [several(("tsuji", "gravity"), 10.0), several(("tsuji", "static-preload"), 9.0)]
@@ -161,17 +188,21 @@ def test_beside_what_is_left_the_likelier_is_named_though_another_was_found(monk
     own, other = several(("tsuji",), found), several(("kuwabara-kono",), rival)
     own.fit, other.fit = fits["tsuji"], fits["kuwabara-kono"]
     grown = SimpleNamespace(
-        forward=None, null=fits["none"], best=own, size=SimpleNamespace(size=0.01), tried={frozenset(): own}
+        forward=None,
+        null=fits["none"],
+        best=own,
+        size=SimpleNamespace(size=0.01, found=True),
+        tried={frozenset(): own},
     )
     case = SimpleNamespace(
         forward=SimpleNamespace(experiment=SimpleNamespace(prior_odds={})),
         null=None,
         _rivals=lambda _: [other],
-        _irreplaceable=lambda _grown, one, _needed, _reasons: one,
+        _irreplaceable=lambda _grown, one, _seen, _needed, _reasons: one,
     )
-    monkeypatch.setattr(decision.restart, "moved", lambda _, one: one)
+    monkeypatch.setattr(beside.restart, "moved", lambda _, one: one)
     left = SimpleNamespace(where="a smooth misfit", p=0.0)
-    made = decision.Case._beside(case, grown, 10.0, {}, left, [])
+    made = beside.Beside.decide(case, grown, 10.0, {}, left, [])
     assert made.named == [*([named] if named else []), "unknown"]
     assert made.final is (fits[named] if named else None)
     # Each half as likely as both together; none is e^59 times less.

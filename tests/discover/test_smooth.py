@@ -157,8 +157,8 @@ def test_an_effect_is_kept_beside_a_smooth_misfit():
     hidden = made([("viscous-drag", {"rate_per_s": 300.0})], seed=2)[0]
     v = session.discover(with_systematics(hidden, 0.01)).verdict
     assert v.named == ["viscous-drag", "unknown"]
-    # Evidence alone would say nearly 1; no name beside something unknown is held surer than this.
-    assert v.probabilities["viscous-drag + unknown"] == pytest.approx(policy.ONE_BESIDE)
+    # Evidence alone would say nearly 1; no name beside a smooth misfit is held surer than this.
+    assert v.probabilities["viscous-drag + unknown"] == pytest.approx(policy.SMOOTH_BESIDE)
     rate = v.parameters["viscous-drag"]["rate_per_s"]
     assert abs(rate.value - 300.0) < 4.0 * rate.sigma
     assert v.gap.fitted.after < v.gap.fitted.before

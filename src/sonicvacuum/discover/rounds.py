@@ -118,14 +118,15 @@ def investigate(experiment: Experiment, threads: int = 1, null: Fit | None = Non
     alike = explanations.aliases(forward, null, found) if passes else []
     odds, more = _odds(found, decision, alike, prior, tuple(experiment.present))
     if not gross.gross(forward, decision.final, known):
-        odds, held = explanations.no_surer(odds, decision.named)
+        odds, held = explanations.no_surer(odds, decision.named, decision.smooth_only)
         more += held
     reasons = [*decision.reasons, *(few if passes else ()), *more, *experiment.notes]
     rivals = decision.rivals
     if rivals is None:
         rivals = of_odds(odds, null, found, decision.combinations)
     given = {**vars(decision), "reasons": reasons, "rivals": rivals}
-    del given["beside"], given["left"], given["singles"]
+    for own in ("beside", "left", "singles", "smooth_only"):
+        del given[own]
     return Investigation(forward, null, scores, threshold, found, odds, alike=alike, **given)
 
 

@@ -28,6 +28,7 @@ class Decision:
         beside: explanation → log weight with a smooth discrepancy counted as noise.
         singles: single effects, best first, where pairs led some of them to lower minima.
         rivals: probable explanations as they are fitted beside what is left.
+        smooth_only: whether what is unknown beside what is named is smooth, and has no shape beside that.
     """
 
     named: list[str]
@@ -41,6 +42,7 @@ class Decision:
     beside: dict[str, float] | None = None
     singles: list[Candidate] | None = None
     rivals: list[Rival] | None = None
+    smooth_only: bool = False
 
 
 def viewed(

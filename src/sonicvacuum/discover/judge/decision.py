@@ -10,11 +10,11 @@ from sonicvacuum.discover.fit import discrepancy, enough, evidence, heldout, smo
 from sonicvacuum.discover.fit.evidence import Candidate, Combination
 from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.judge import explanations, gross, weighing
+from sonicvacuum.discover.judge.beside import Beside
 from sonicvacuum.discover.judge.decided import Decision, View, viewed
 from sonicvacuum.discover.judge.left import Left, left, short, sure
-from sonicvacuum.discover.judge.rivals import of_weights
 from sonicvacuum.discover.model.forward import Forward
-from sonicvacuum.discover.search import directions, pairs, planes, restart, screen, several, singles, unknown
+from sonicvacuum.discover.search import directions, pairs, planes, restart, screen, several, unknown
 from sonicvacuum.effects import Setup
 
 # Pairs that are asked what they leave.
@@ -284,67 +284,5 @@ class Case:
 
     def _beside(self, grown: several.Grown, needed, alarms, after: Left, tried) -> Decision:
         """What stays named beside something unknown."""
-        reasons = [f"{after.where} is left"]
-        rivals, prior = self._rivals(grown), self.forward.experiment.prior_odds
-        weights = explanations.log_weights((), [*grown.tried.values(), *rivals], prior)
-        # With what is left as noise a rival may be likelier than what the search has found.
-        rival = [c.fit for c in sorted(rivals, key=lambda c: -c.log_bayes)[:1]]
-        for one in (grown.best.fit, *rival, grown.null):
-            fit_ = self._irreplaceable(grown, one, needed, reasons)
-            named = list(fit_.hypothesis.ids)
-            # Of sets only as they are: more beside two may as well be what stands for one unknown thing.
-            whole = weighing.merged(weights, named) if len(named) == 1 else weights
-            if not named or explanations.clear(whole, named):
-                break
-            reasons.append(f"{' + '.join(named)}: not clearly the best beside what is left")
-        if not named:
-            reasons += explanations.one_of(weights)
-        likely = of_weights(weights, [*grown.tried.values(), *rivals])
-        weights = whole if named else weights
-        final = restart.moved(self.forward, fit_) if named else self.null
-        view = View(grown.forward, grown.null, fit_) if grown.size.size else None
-        size = grown.size.size
-        return Decision(
-            [*named, UNKNOWN], final, alarms, reasons, after.p, tried, size, view, weights, rivals=likely
-        )
-
-    def _irreplaceable(self, grown: several.Grown, one: Fit, needed, reasons: list[str]) -> Fit:
-        """A fit less the effects for which a shape outside the catalogue would do; said in `reasons`."""
-        counted = unknown.shape_test(grown.forward, one) if one.hypothesis.components else None
-        if counted is None or not counted.failed:
-            return one
-        kept, fit_ = unknown.irreplaceable(counted, one, needed), one
-        for k in reversed(range(len(one.hypothesis.components))):
-            if k not in kept and not self._ahead(fit_, k):
-                name = fit_.hypothesis.ids[k]
-                reasons.append(f"{name} may be no more than the nearest to what is left in {counted.group}")
-                fit_ = restart.fewer(grown.forward, grown.null, fit_, k, self.setup)
-        return fit_
-
-    def _ahead(self, whole: Fit, k: int) -> bool:
-        """Whether effect k gains clearly more than any one shape outside the catalogue would in its place,
-        noise as it is, and is likelier than more of a discrepancy instead.
-
-        Only far from the data, where slopes of sixty shapes together promise to replace anything.
-        """
-        if self.known is None:
-            return False
-        with_it = restart.moved(self.forward, whole)
-        if self.null.objective - with_it.objective < singles.NONLINEAR:
-            return False
-        less = restart.fewer(self.forward, self.null, with_it, k, self.setup)
-        gain = less.objective - with_it.objective
-        instead = smooth.infer(self.forward, less, self.known).log_odds
-        beside = smooth.infer(self.forward, with_it, self.known).log_odds
-        price = evidence.occam(with_it, gain) - evidence.occam(less, gain)
-        earned = 0.5 * gain + price + beside - instead
-        if earned < policy.LEAST_LOG10_BAYES * np.log(10.0):
-            return False
-        return gain > (1.0 + policy.SHARE) * unknown.simplest(self.forward, less)[1] + policy.MARGIN
-
-    def _rivals(self, grown: several.Grown) -> list[Combination]:
-        """Single effects that were near the best, with the discrepancy counted as noise."""
-        most = max(c.gain for c in self.found)
-        near = [c for c in self.found if c.gain > 0.5 * most and frozenset((c.effect,)) not in grown.tried]
-        fits = [restart.moved(grown.forward, c.fit) for c in near[:4]]
-        return [pairs.combination(grown.null, f, self.setup) for f in fits]
+        beside = Beside(self.forward, self.null, self.found, self.known, self.setup)
+        return beside.decide(grown, needed, alarms, after, tried)

@@ -145,7 +145,9 @@ def doubted(found: Mapping[str, float], named: Iterable[str], most: float) -> di
     return {**found, own: found.get(own, 0.0) - excess, UNKNOWN: found.get(UNKNOWN, 0.0) + excess}
 
 
-def no_surer(found: Mapping[str, float], named: Iterable[str]) -> tuple[dict[str, float], list[str]]:
+def no_surer(
+    found: Mapping[str, float], named: Iterable[str], smooth_only: bool = False
+) -> tuple[dict[str, float], list[str]]:
     """Probabilities in which effects named beside something unknown are no surer than such names came true,
     and what is said of it.
 
@@ -155,7 +157,8 @@ def no_surer(found: Mapping[str, float], named: Iterable[str]) -> tuple[dict[str
     known = [name for name in named if name != UNKNOWN]
     if not known or UNKNOWN not in named:
         return dict(found), []
-    most = policy.ONE_BESIDE if len(known) == 1 else policy.SET_BESIDE
+    one = policy.SMOOTH_BESIDE if smooth_only else policy.ONE_BESIDE
+    most = one if len(known) == 1 else policy.SET_BESIDE
     if found.get(key(named), 0.0) <= most:
         return dict(found), []
     reason = f"{' + '.join(known)} may be part of what is unknown: held no surer than such names came true"
