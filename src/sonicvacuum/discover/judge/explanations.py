@@ -151,8 +151,8 @@ def no_surer(
     """Probabilities in which effects named beside something unknown are no surer than such names came true,
     and what is said of it.
 
-    What is unknown is no noise of any kernel: evidence cannot say that it is not, by itself, what seems to be
-    an effect and something besides.
+    Unless it is smooth (`smooth_only`), what is unknown is no noise of any kernel: evidence cannot say that
+    it is not, by itself, what seems to be an effect and something besides.
     """
     known = [name for name in named if name != UNKNOWN]
     if not known or UNKNOWN not in named:
