@@ -96,7 +96,7 @@ crash: env  ## disturb 60 runs of a small pipeline and let `make` recover; table
 interrupt: env  ## interrupt every verb at several moments, on the finished run in results/; table in results/interrupt.csv
 	$(BIN)/python workflow/scripts/interrupt.py --out results/interrupt.csv
 
-slurm: .venv/clustered  ## a small pipeline and RECORDS of the full study (2052: all) on a Slurm of one node, started here, against a local run
+slurm: .venv/clustered  ## a small pipeline and RECORDS of the full study (4270: all) on a Slurm of one node, started here, against a local run
 	$(BIN)/python workflow/scripts/cluster.py --records $(RECORDS) --local $(LOCAL) $(if $(PLACE),--place $(PLACE)) \
 		--out results/slurm.csv
 
@@ -116,7 +116,7 @@ bench: .venv/benched  ## measure the engine against other codes, on one core
 nested: .venv/benched  ## evidence by nested sampling beside that of the search; takes an hour
 	$(START) --cores 1 results/nested.csv
 
-study: .venv/studied  ## the full blind study with its baselines and further runs; takes an hour or two
+study: .venv/studied  ## the full blind study with its baselines and further runs; takes three or four hours on two cores
 	$(BIN)/pytest workflow/study
 	$(START) --cores $(CORES) blind_full blind_resolved blind_fresh
 

@@ -71,8 +71,8 @@ def test_all_records_are_the_study_as_it_is_made():
     told = (ROOT / "workflow/rules/blind_common.smk").read_text()
     assert int(re.search(r'"full_batches", (\d+)', told)[1]) == cluster_study.BATCHES
     whole = cluster_study.whole()
-    assert cluster_study.size(whole, whole)[1:3] == ("full_batches=48", "full_taken=48")
-    assert cluster_study.size(whole, 43)[1:3] == ("full_batches=48", "full_taken=1")
+    assert cluster_study.size(whole, whole)[1:3] == ("full_batches=100", "full_taken=100")
+    assert cluster_study.size(whole, 43)[1:3] == ("full_batches=100", "full_taken=1")
     assert cluster_study.size(4, 4)[1:3] == (f"full_batches={whole // 2}", "full_taken=2")
 
 

@@ -10,12 +10,12 @@ BATCHES = {
     "beside": 6,
     "beside-training": 6,
     "again": 48,
-    "full": int(config.get("full_batches", 48)),
+    "full": int(config.get("full_batches", 100)),
 }
 TAKEN = BATCHES | {"again": 7, "full": int(config.get("full_taken", BATCHES["full"]))}
 # Study → of how many batches ambiguous records get one more run, which takes two joint verdicts for every such record.
 # Effects take turns among the cases, so that a batch holds every second one: an even number of batches holds all alike.
-FOLLOWED = dict.fromkeys(BATCHES, 4) | {"nulls": 1, "again": 6, "full": 16}
+FOLLOWED = dict.fromkeys(BATCHES, 4) | {"nulls": 1, "again": 6, "full": 32}
 BLIND = "results/blind/{study}"
 # Asked only for the priors that a record may state, which hidden data never do: they stay when an effect changes.
 CATALOGUE = ("sonicvacuum.effects",)

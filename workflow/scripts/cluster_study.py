@@ -20,7 +20,7 @@ from reproduce import equal
 from sonicvacuum_blind import study
 
 # As in workflow/rules/blind_common.smk.
-BATCHES = 48
+BATCHES = 100
 STUDY = "results/blind/full"
 TARGET = f"{STUDY}/score.csv"
 COLUMNS = (
