@@ -34,8 +34,7 @@ _DAMAGED = (
     AttributeError,
     EOFError,
     LookupError,
-    NotImplementedError,  # zipfile raises it at an unknown compression: a damaged history
-    RecursionError,
+    RuntimeError,  # of zipfile at an encrypted member or an unknown compression; of deep nesting
     TypeError,
     ValueError,
     csv.Error,

@@ -1,6 +1,7 @@
 """The command: every verb explains itself, and bad input ends in one line and exit code 2."""
 
 import hashlib
+import io
 import json
 import os
 import shutil
@@ -193,9 +194,28 @@ def test_a_file_that_is_no_card_is_named(monkeypatch, capsys, tmp_path):
     assert "x.json: not a card" in failing(monkeypatch, capsys, "simulate", path, "--out", tmp_path / "h.npz")
 
 
-def test_a_file_that_is_no_history_is_named(monkeypatch, capsys, card, tmp_path):
+def packed(**header):
+    """An archive of one array, with what its directory and the member itself say of it overwritten."""
+    stream = io.BytesIO()
+    np.savez(stream, time_s=np.zeros(3))
+    archive = bytearray(stream.getvalue())
+    # Offsets of two-byte fields in a member's header and in the directory (APPNOTE.TXT, 4.3.7 and 4.3.12).
+    for field, value in header.items():
+        for start, at in (
+            (b"PK\x03\x04", {"flags": 6, "method": 8}),
+            (b"PK\x01\x02", {"flags": 8, "method": 10}),
+        ):
+            place = archive.index(start) + at[field]
+            archive[place : place + 2] = value.to_bytes(2, "little")
+    return bytes(archive)
+
+
+@pytest.mark.parametrize(
+    "content", [b"nothing", packed(flags=1), packed(method=99)], ids=["text", "encrypted", "packed"]
+)
+def test_a_file_that_is_no_history_is_named(monkeypatch, capsys, card, tmp_path, content):
     history = tmp_path / "h.npz"
-    history.write_text("nothing")
+    history.write_bytes(content)
     outputs = ("--signals", tmp_path / "s.csv", "--metrics", tmp_path / "m.csv")
     shown = failing(monkeypatch, capsys, "paper", "observe", card, history, *outputs)
     assert "h.npz: damaged, or not what is read here" in shown
