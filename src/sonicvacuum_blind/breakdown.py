@@ -127,9 +127,11 @@ def label_of_verdict(row: Row) -> str:
 
 
 def confusion(rows: Iterable[Row]) -> list[Confusion]:
-    """All combinations of what is hidden (22 effects, none, unknown) with what is named (and several)."""
+    """All combinations of what is hidden (22 effects, none, unknown) with what is named (and several), in the
+    main list.
+    """
     hidden = [*(e.id for e in catalogue.ENTRIES), NONE, UNKNOWN]
-    chosen = [r for r in rows if r.kind not in ("pair", "set", "beside")]
+    chosen = [r for r in rows if r.kind not in ("pair", "set", "beside") and not r.added]
     counts = Counter((label_of_truth(r), label_of_verdict(r)) for r in chosen)
     total = Counter(label_of_truth(r) for r in chosen)
     return [
@@ -165,10 +167,11 @@ def ideal_share(rows: Iterable[Row]) -> float:
 
 
 def reliability(rows: Iterable[Row]) -> list[Bin]:
-    """Ten bins of the probability of the name given."""
+    """Ten bins of the probability of the name given, of the main list."""
     bins = [[] for _ in range(BINS)]
     for row in rows:
-        bins[min(int(row.stated * BINS), BINS - 1)].append((row.stated, row.exact))
+        if not row.added:
+            bins[min(int(row.stated * BINS), BINS - 1)].append((row.stated, row.exact))
     return [_bin(k, members) for k, members in enumerate(bins)]
 
 
@@ -213,8 +216,8 @@ def _by_effect(parameters):
 
 
 def seconds(rows: Iterable[Row]) -> list[Seconds]:
-    """By kind of case."""
-    rows = list(rows)
+    """By kind of case, of the main list."""
+    rows = [r for r in rows if not r.added]
     found = []
     for kind in KINDS:
         times = [r.seconds for r in rows if r.kind == kind and not math.isnan(r.seconds)]

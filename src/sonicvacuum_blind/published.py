@@ -76,11 +76,23 @@ def provenance(score: pd.DataFrame) -> str:
         "after that; all verdicts are of that commit, each made once. Studies of seeds "
         f"{', '.join(map(str, study.BEFORE))} came before (tables of the last: commit "
         f"{study.KEPT_BEFORE}); what was found in them was mended. "
-        f"Records: {part}{kinds}.{ideal} Verdicts took "
+        f"Records: {part}{kinds}.{_added(score)}{ideal} Verdicts took "
         f"{hours:.1f} hours, one thread each. Made with `snakemake --cores 2 publish_study`, in batches that "
         f"can be resumed, on one machine or a cluster. Of each record [score.csv](../{TABLES}/score.csv) has "
         f"what was found, of each stated interval [parameters.csv](../{TABLES}/parameters.csv); the tables "
         f"follow from these: `sonicvacuum blind tables {TABLES} --out tables`."
+    )
+
+
+def _added(score):
+    """What of a study is besides its main list, a sentence or nothing."""
+    count = int(score["added"].astype(int).sum()) if "added" in score else 0
+    if not count:
+        return ""
+    return (
+        f" {count} of these, empty or of strong effects, are besides the list of the studies before, so that "
+        "it can be told whether goals are met: they count by design and d′, by noise and in intervals, "
+        "not where all records are added up."
     )
 
 

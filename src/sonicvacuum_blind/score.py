@@ -1,12 +1,12 @@
 """Verdicts against truths: one row for each case; tables made of the rows: `summary` and `breakdown`."""
 
 import math
-from dataclasses import asdict, dataclass, fields
+from dataclasses import MISSING, asdict, dataclass, fields
 from pathlib import Path
 
 from sonicvacuum.files import InputError, reading
 from sonicvacuum.tables import read_csv, write_csv
-from sonicvacuum_blind import TRUTH, stated
+from sonicvacuum_blind import TRUTH, stated, study
 from sonicvacuum_blind.stated import load
 
 CONFIDENT = 0.9
@@ -48,6 +48,8 @@ class Row:
         cells_right, cells_wrong, cells_seen, cells_large: cells (run and gauge) of the map of disagreement
             found where something is left and where nothing is; of those where much is, found and all.
         seconds, simulations: what it cost.
+        added: the case is one that the study has besides its main list, of a kind of which that has few: it
+            counts among its like, and not where all cases are added up.
     """
 
     id: str
@@ -88,6 +90,7 @@ class Row:
     cells_large: int
     seconds: float
     simulations: int
+    added: int = 0
 
 
 def score(truth_folder, verdict_folder, ideal_paths=()) -> list[Row]:
@@ -211,6 +214,7 @@ def _row(truth, verdict, folder, ideal):
         cells_large=cells[3],
         seconds=_number((verdict.get("timing_s") or {}).get("total")),
         simulations=int(verdict.get("simulations") or 0),
+        added=int(truth.get("place") in study.added(truth.get("seed"))),
     )
 
 
@@ -281,8 +285,14 @@ def write_table(lines: list, kind: type, path) -> None:
 
 
 def read_table(kind: type, path) -> list:
-    """Lines of a table that `write_table` wrote, as that dataclass; InputError where it is none."""
+    """Lines of a table that `write_table` wrote, as that dataclass; columns with a default may be missing.
+
+    Raises:
+        InputError: where it is no such table.
+    """
     names = {f.name: f.type for f in fields(kind)}
     with reading(path, "make it with sonicvacuum blind score"):
-        rows = read_csv(path, columns=names)
-        return [kind(**{name: type(row[name]) for name, type in names.items()}) for row in rows]
+        rows = read_csv(path, columns=[f.name for f in fields(kind) if f.default is MISSING])
+        return [
+            kind(**{name: type(row[name]) for name, type in names.items() if name in row}) for row in rows
+        ]

@@ -19,35 +19,43 @@ STRONG, LEFTOVER = 9.0, 7.5
 OF_IDEAL = ">= 0.97 of ideal"
 # Kind of record that only a study of its own holds.
 BESIDE = "beside"
+ADDED = "with the records added"
 
 
 def summary(rows: Iterable[Row], parameters: Iterable[Parameter] = ()) -> list[Line]:
-    """The table, a line for each goal and some without."""
+    """The table, a line for each goal and some without.
+
+    What is added up over unlike records is so over the main list alone, whose shares are fixed; records that
+    a study has besides count among their like: by design and d′, and by kind of noise. Stated intervals are
+    all counted, since they should hold at any strength.
+    """
     rows, parameters = list(rows), list(parameters)
-    of = {kind: [r for r in rows if r.kind == kind] for kind in (*KINDS, BESIDE)}
+    main = [r for r in rows if not r.added]
+    of = {kind: [r for r in main if r.kind == kind] for kind in (*KINDS, BESIDE)}
+    every = {kind: [r for r in rows if r.kind == kind] for kind in KINDS}
     return [
-        *_exact("exact name", of["single"], OF_IDEAL),
-        *_exact("exact pair", of["pair"], OF_IDEAL),
-        *_exact("exact set of three", of["set"], ""),
-        *_places(rows),
+        *_exact("exact name", of["single"], every["single"], OF_IDEAL),
+        *_exact("exact pair", of["pair"], every["pair"], OF_IDEAL),
+        *_exact("exact set of three", of["set"], every["set"], ""),
+        *_places(main),
         *_classes(of),
-        *_nulls(of["null"]),
+        *_nulls(every["null"]),
         *_outside(of["foreign"]),
         *_beside(of[BESIDE]),
         *_wrong(of),
-        *_probabilities(rows),
-        *_intervals(rows, parameters),
-        *_located(rows),
-        *_errors(rows),
+        *_probabilities(main, rows),
+        *_intervals(main, parameters),
+        *_located(main),
+        *_errors(main),
         *_gaps([r for r in of["single"] if r.reached >= STRONG and r.exact]),
         *_gaps_together([r for r in of["single"] if r.design == "traces" and r.noise == "white" and r.exact]),
         *_seconds(of),
     ]
 
 
-def _exact(measure, rows, goal):
-    """All, then by design and d′."""
-    yield from _judged(measure, "all", rows, "")
+def _exact(measure, main, rows, goal):
+    """All of the main list, then all rows by design and d′."""
+    yield from _judged(measure, "all", main, "")
     for kind in design.KINDS:
         for strength in (0.0, *STRENGTHS):
             chosen = [r for r in rows if r.design == kind and strength_bin(r) == strength]
@@ -121,10 +129,12 @@ def _wrong(of):
         yield _share("slip named where none is", kind, of[kind], "slip")
 
 
-def _probabilities(rows):
+def _probabilities(rows, with_added):
     yield Line("calibration error (ECE)", "all", *ece(rows), goal="<= 0.02")
     below = [r for r in rows if r.stated < 0.9]
     yield Line("calibration error (ECE)", "stated below 0.9", *ece(below), goal="<= 0.05")
+    if len(with_added) > len(rows):
+        yield Line("calibration error (ECE)", ADDED, *ece(with_added))
     for name, rates in BASE_RATES.items():
         chosen = [r for r in rows if r.kind in rates]
         yield Line("calibration error (ECE)", f"base rates: {name}", *ece(chosen, rates))

@@ -1,6 +1,7 @@
 """Records with hidden effects: valid, reproducible, and silent about what is in them."""
 
 import json
+from collections import Counter
 from dataclasses import replace
 from pathlib import Path
 
@@ -169,6 +170,21 @@ def test_studies_cover_what_is_asked(tmp_path):
     assert study.read_cases(tmp_path / "cases.csv") == full
     parts = [study.batch(small, k, 5) for k in range(5)]
     assert sorted((s for p in parts for s in p), key=lambda s: s.id) == small
+
+
+def test_what_a_study_has_besides_its_main_list_is_known_by_seed_and_place():
+    """The main list has the shares of the studies before."""
+    added = study.added(study.SEEDS["full"])
+    main = [s for s in study.cases("full") if s.place not in added]
+    besides = [s for s in study.cases("full") if s.place in added]
+    again = study.cases("again")
+    assert Counter((s.kind, s.design, s.noise) for s in main) == Counter(
+        (s.kind, s.design, s.noise) for s in again
+    )
+    assert len(besides) == len(added)
+    assert {s.kind for s in besides} == {"null", "single", "pair"}
+    assert min(s.d_prime for s in besides if s.kind != "null") >= 40.0
+    assert study.added(study.SEEDS["again"]) == study.added(None) == frozenset()
 
 
 def test_records_of_the_small_study_keep_their_numbers():

@@ -3,6 +3,7 @@
 import csv
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from scipy import stats
 from sonicvacuum.cli import cli
 from sonicvacuum.files import InputError
 from sonicvacuum_blind import breakdown
-from sonicvacuum_blind.score import Row, row, score
+from sonicvacuum_blind.score import Row, read_table, row, score, write_table
 from sonicvacuum_blind.shares import quantile, wilson
 from sonicvacuum_blind.stated import parameters
 from sonicvacuum_blind.summary import summary
@@ -162,6 +163,28 @@ def test_calibration_counts_how_often_the_top_is_right():
     assert (last.stated, last.value, last.count) == pytest.approx((0.98, 0.9, 10))
     line = next(one for one in summary(rows) if one.measure.startswith("calibration"))
     assert line.value == pytest.approx(0.08)
+
+
+def test_records_that_a_study_has_besides_count_among_their_like_alone():
+    rows = [row(truth(str(k), d_prime=50.0), verdict()) for k in range(4)]
+    rows = [replace(one, added=1, exact=0) for one in rows[:2]] + rows[2:]
+    found = {(one.measure, one.group): one for one in summary(rows)}
+    assert (found["exact name", "all"].count, found["exact name", "all"].value) == (2, 1.0)
+    like = found["exact name", "traces, d' 50"]
+    assert (like.count, like.value) == (4, 0.5)
+    stated = "calibration error (ECE)"
+    assert (found[stated, "all"].count, found[stated, "with the records added"].count) == (2, 4)
+    assert sum(one.count for one in breakdown.reliability(rows)) == 2
+    assert {one.count for one in breakdown.accuracy(rows)} == {4}
+
+
+def test_scores_of_a_study_without_such_records_can_be_read(tmp_path):
+    """As studies before kept them: without the column."""
+    write_table([row(truth(), verdict())], Row, tmp_path / "score.csv")
+    lines = (tmp_path / "score.csv").read_text().splitlines()
+    (tmp_path / "before.csv").write_text("".join(f"{line.rpartition(',')[0]}\n" for line in lines))
+    then, now = (read_table(Row, tmp_path / name) for name in ("before.csv", "score.csv"))
+    assert [str(one) for one in then] == [str(one) for one in now]  # as text: what does not apply is NaN
 
 
 def test_gaps_are_added_up_where_one_is_lost_in_noise():

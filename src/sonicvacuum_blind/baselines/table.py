@@ -39,14 +39,16 @@ def lines(rule: str, names: Mapping[str, str], cases: Iterable[Case], note: str 
 
 
 def _groups(rows: list[Row]) -> Iterable[tuple[str, str, list[Row], Callable[[Row, str], bool]]]:
+    """Measure, group, its rows, and what is right there; over all strengths, of the main list alone."""
     singles = [r for r in rows if r.kind == "single"]
+    main = [r for r in singles if not r.added]
     for strength in STRENGTHS:
         chosen = [r for r in singles if r.design == "traces" and strength_bin(r) == strength]
         yield EXACT, f"traces, d' {strength:g}", chosen, _exact
     for kind in design.KINDS:
         if kind != "traces":
-            yield EXACT, kind, [r for r in singles if r.design == kind], _exact
-    yield EXACT, SINGLES, singles, _exact
+            yield EXACT, kind, [r for r in main if r.design == kind], _exact
+    yield EXACT, SINGLES, main, _exact
     yield ALARM, NULLS, [r for r in rows if r.kind == "null"], _named
     outside = [r for r in rows if r.kind == "foreign" and r.leftover >= LEFTOVER]
     yield WRONG, OUTSIDE, outside, _named
