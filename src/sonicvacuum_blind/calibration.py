@@ -40,6 +40,22 @@ def ece(rows: Iterable[Row], rates: Mapping[str, float] | None = None) -> tuple[
     return len(rows), *resampled(error, len(rows))
 
 
+def honest(rows: Iterable[Row]) -> tuple[int, float, float, float]:
+    """(count, error, low, high): the mean of `ece`, and 95 % of its values, if every probability of a name
+    given came true as stated: what chance alone makes of so many records.
+    """
+    rows, random = list(rows), np.random.default_rng(np.random.SeedSequence(20061))
+    if not rows:
+        return 0, math.nan, math.nan, math.nan
+    stated = np.array([r.stated for r in rows])
+    bins, place = np.zeros((RESAMPLES, BINS)), np.minimum((stated * BINS).astype(int), BINS - 1)
+    off = stated - (random.random((RESAMPLES, len(rows))) < stated)
+    for k in range(BINS):
+        bins[:, k] = off[:, place == k].sum(axis=1)
+    errors = np.abs(bins).sum(axis=1) / len(rows)
+    return len(rows), float(errors.mean()), *map(float, np.quantile(errors, [0.025, 0.975]))
+
+
 def resampled(statistic: Callable[[np.ndarray], float], count: int) -> tuple[float, float, float]:
     """A statistic of records (by their places), which is not negative, with its 95 % interval from resampled
     records, shifted so that their mean is the statistic: resampling alone makes errors without sign larger.

@@ -8,7 +8,7 @@ import numpy as np
 
 from sonicvacuum_blind import design
 from sonicvacuum_blind.breakdown import KINDS, coverage, ideal_share, pit
-from sonicvacuum_blind.calibration import BASE_RATES, ece, resampled
+from sonicvacuum_blind.calibration import BASE_RATES, ece, honest, resampled
 from sonicvacuum_blind.score import UNKNOWN, Line, Row
 from sonicvacuum_blind.shares import counted, quantile, ratio_of_sums, share, strength_bin
 from sonicvacuum_blind.stated import CREDIBLE, Parameter
@@ -19,7 +19,7 @@ STRONG, LEFTOVER = 9.0, 7.5
 OF_IDEAL = ">= 0.97 of ideal"
 # Kind of record that only a study of its own holds.
 BESIDE = "beside"
-ADDED = "with the records added"
+ADDED, HONEST = "with the records added", "right probabilities"
 
 
 def summary(rows: Iterable[Row], parameters: Iterable[Parameter] = ()) -> list[Line]:
@@ -133,6 +133,8 @@ def _probabilities(rows, with_added):
     yield Line("calibration error (ECE)", "all", *ece(rows), goal="<= 0.02")
     below = [r for r in rows if r.stated < 0.9]
     yield Line("calibration error (ECE)", "stated below 0.9", *ece(below), goal="<= 0.05")
+    for group, chosen in (("all", rows), ("stated below 0.9", below)):
+        yield Line("calibration error (ECE)", f"{group}, {HONEST}", *honest(chosen))
     if len(with_added) > len(rows):
         yield Line("calibration error (ECE)", ADDED, *ece(with_added))
     for name, rates in BASE_RATES.items():

@@ -54,6 +54,7 @@ GROUPS = {
     "leftover d' 8 and more": "the best of the catalogue leaves d′ 8 or more",
     "stated below 0.9": "those stated below 0.9",
     "with the records added": "with the empty records and strong effects that were added to the list",
+    "right probabilities": "what right probabilities would show in as many records",
     "base rates: half empty": "if half of all records hid nothing",
     "base rates: nine in ten empty": "if nine in ten hid nothing",
     "base rates: a third foreign": "if a third hid what the catalogue lacks",

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from sonicvacuum_blind.calibration import BASE_RATES, band, distance, ece
+from sonicvacuum_blind.calibration import BASE_RATES, band, distance, ece, honest
 from sonicvacuum_blind.stated import brier, credible_set
 
 
@@ -43,6 +43,15 @@ def test_honest_probabilities_have_a_small_calibration_error():
     assert count == 4000
     assert error < 0.02  # seven bins of standard error 0.02, whose signs are lost
     assert low < error < high
+
+
+def test_so_few_records_show_an_error_of_right_probabilities_too():
+    """One bin of n probabilities p: the mean of |error| is √(2 p (1 − p)/(π n)), of a normal number."""
+    count, error, low, high = honest(rows([0.75] * 400, [True] * 400))
+    assert count == 400
+    assert error == pytest.approx(np.sqrt(2.0 * 0.75 * 0.25 / (np.pi * 400)), rel=0.1)  # 500 draws: 3.4 %
+    assert 0.0 <= low < error < high
+    assert np.isnan(honest([])[1])
 
 
 def test_calibration_error_follows_the_base_rates():
