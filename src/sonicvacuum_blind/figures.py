@@ -109,6 +109,10 @@ def _grid(axes, rows, columns):
     axes.axvline(columns - 3.5, color="black", lw=0.8)
 
 
+# Records of a bin that is shown beside a fuller one.
+FILLED = 20
+
+
 def accuracy(table: pandas.DataFrame) -> Figure:
     """Shares of right names against d′, from accuracy.csv."""
     with style.context():
@@ -128,11 +132,19 @@ def accuracy(table: pandas.DataFrame) -> Figure:
         others = _others(table)
         side = style.panel(figure, (116.0, 22.0, 55.0, 47.0))
         style.title(figure, 116.0, "(b) Other records")
-        _shares(side, np.arange(len(others), dtype=float), others, None)
-        words = [DESIGNS.get(d, d).replace(" ", "\n") for d in others.design]
-        names = [f"{w}\nd′ {d:.2g}" for w, d in zip(words, others.d_prime, strict=True)]
-        side.set_xticks(range(len(others)), names)
-        side.set_xlim(-0.5, max(len(others), 1) - 0.5)
+        designs = list(dict.fromkeys(others.design))
+        beside = others.groupby("design").cumcount() - 0.5 * (
+            others.groupby("design").design.transform("size") - 1
+        )
+        places = others.design.map(designs.index) + 0.44 * beside
+        _shares(side, places.to_numpy(float), others, None)
+        side.set_xticks(places, [f"{d:.2g}" for d in others.d_prime])
+        for k, one in enumerate(designs):
+            words = DESIGNS.get(one, one).replace(" ", "\n")
+            side.annotate(
+                words, (k, 0), (0, -18), ("data", "axes fraction"), "offset points", ha="center", va="top"
+            )
+        side.set_xlim(-0.5, max(len(designs), 1) - 0.5)
         bottom = min(0.4, *table.exact_low.astype(float) - 0.05)
         for one in (axes, side):
             one.set_ylim(max(bottom, 0.0), 1.02)
@@ -142,19 +154,21 @@ def accuracy(table: pandas.DataFrame) -> Figure:
 
 
 def _others(table):
-    """The fullest bin of each other design."""
-    rest = table[table.design != "traces"].sort_values("count", ascending=False, kind="stable")
-    rest = rest.drop_duplicates("design")
+    """The two fullest bins of each other design, by strength; one that is hardly filled is left out."""
+    rest = table[table.design != "traces"]
+    places = rest["count"].rank(method="first", ascending=False).groupby(rest.design).rank()
+    chosen = rest[(places == 1) | ((places == 2) & (rest["count"] >= FILLED))]
+    order = [*dict.fromkeys([*DESIGNS, *table.design])]
     return (
-        rest.set_index("design")
-        .reindex([d for d in dict.fromkeys([*DESIGNS, *table.design]) if d in set(rest.design)])
-        .reset_index()
+        chosen.assign(at=chosen.design.map(order.index))
+        .sort_values(["at", "strength"])
+        .reset_index(drop=True)
     )
 
 
 def _shares(axes, x, rows, factor):
     """Exact and class-level shares with intervals, side by side, and the ceiling."""
-    aside = (lambda k: x * factor**k) if factor else (lambda k: x + 0.09 * k)
+    aside = (lambda k: x * factor**k) if factor else (lambda k: x + 0.06 * k)
     looks = (
         (-1, "exact", "exact", style.BLUE, "o", style.BLUE, "exact name"),
         (1, "class_level", "class", style.GREEN, "s", "white", "class level"),
@@ -170,7 +184,7 @@ def _shares(axes, x, rows, factor):
     if factor:
         axes.plot(x, ceiling, color="black", lw=0.9, ls=dashes, label="ideal rule")
     else:
-        axes.hlines(ceiling, x - 0.3, x + 0.3, color="black", lw=0.9, ls=dashes)
+        axes.hlines(ceiling, x - 0.17, x + 0.17, color="black", lw=0.9, ls=dashes)
     axes.grid(axis="y", color=style.BAND, lw=0.4)
 
 

@@ -1,12 +1,13 @@
 """Verdicts against truths: one row for each case; tables made of the rows: `summary` and `breakdown`."""
 
 import math
-from dataclasses import MISSING, asdict, dataclass, fields
+from collections.abc import Callable, Container
+from dataclasses import MISSING, asdict, dataclass, fields, replace
 from pathlib import Path
 
 from sonicvacuum.files import InputError, reading
 from sonicvacuum.tables import read_csv, write_csv
-from sonicvacuum_blind import TRUTH, stated, study
+from sonicvacuum_blind import TRUTH, stated
 from sonicvacuum_blind.stated import load
 
 CONFIDENT = 0.9
@@ -93,20 +94,28 @@ class Row:
     added: int = 0
 
 
-def score(truth_folder, verdict_folder, ideal_paths=()) -> list[Row]:
+def score(
+    truth_folder,
+    verdict_folder,
+    ideal_paths=(),
+    added: Callable[[int], Container[int]] = lambda seed: (),
+) -> list[Row]:
     """Rows of all cases below a folder of truths, by id.
 
     Folders may be nested; a case is found by the name of the folder that holds its file. What an ideal rule
-    makes of a case, and where the case shows, stands in tables of `sonicvacuum blind ideal`.
+    makes of a case, and where the case shows, stands in tables of `sonicvacuum blind ideal`. Places of the
+    cases that the study of a seed has besides its main list come from `added`.
 
     Raises:
         InputError: where a case has no verdict, or a file is not what it should be.
     """
     known = {line["id"]: line for path in ideal_paths for line in read_csv(path, columns=IDEAL)}
-    return [
-        row(load(truth), load(path), f"{path} (truth: {truth})", path.parent, known.get(truth.parent.name))
-        for truth, path in cases(truth_folder, verdict_folder)
-    ]
+    rows = []
+    for where, path in cases(truth_folder, verdict_folder):
+        truth, ideal = load(where), known.get(where.parent.name)
+        found = row(truth, load(path), f"{path} (truth: {where})", path.parent, ideal)
+        rows.append(replace(found, added=int(truth.get("place") in added(truth.get("seed")))))
+    return rows
 
 
 def intervals(truth_folder, verdict_folder) -> list[stated.Parameter]:
@@ -214,7 +223,6 @@ def _row(truth, verdict, folder, ideal):
         cells_large=cells[3],
         seconds=_number((verdict.get("timing_s") or {}).get("total")),
         simulations=int(verdict.get("simulations") or 0),
-        added=int(truth.get("place") in study.added(truth.get("seed"))),
     )
 
 

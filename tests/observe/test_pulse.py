@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pulse_shapes import SHAPES
 
-from sonicvacuum.observe.pulse import main_pulse, pulses
+from sonicvacuum.observe.pulse import PROMINENCE, main_pulse, pulses
 from sonicvacuum.observe.shape import (
     asymmetry,
     duration,
@@ -17,7 +17,7 @@ from sonicvacuum.observe.shape import (
     onset,
     valley_depth,
 )
-from sonicvacuum.observe.trace import Trace
+from sonicvacuum.observe.trace import TIE, Trace
 
 COS4 = SHAPES["cos4"]
 INTERVAL = 0.02
@@ -53,6 +53,32 @@ def test_two_equal_pulses_have_the_valley_of_their_sum(gap):
         assert duration(trace, main, above).known
     else:
         assert duration(trace, main, 0.001).known
+
+
+@pytest.mark.parametrize("gap", [1.09, 1.12, 1.15, 1.2])
+@pytest.mark.parametrize("higher", [-0.004, 0.0, 0.004, 0.05])
+def test_of_two_humps_as_high_as_each_other_the_first_is_the_peak(gap, higher):
+    """A gauge inside a bead adds its two contacts: which hump of a short wave is higher, a trifle says."""
+    trace = train((0.0, 1.0), (gap, 1.0 + higher))
+    fine = np.linspace(-0.5, gap + 0.5, 200_001)
+    force = COS4.force(fine) + (1.0 + higher) * COS4.force(fine - gap)
+    left = fine < gap / 2.0
+    dip = 1.0 - force[np.abs(fine - gap / 2.0) < 0.1].min() / force[left].max()
+    # Beyond the tie the higher one, unless the first is a peak of its own.
+    side = left if higher < TIE or dip > PROMINENCE else ~left
+    time = fine[side][force[side].argmax()]
+    # The fit of one hump up to its dip by a polynomial of degree 6; a single hump is fitted to 5e-5.
+    assert main_pulse(trace).time == pytest.approx(time, abs=2e-3)
+    assert main_pulse(trace).force == pytest.approx(force[side].max(), rel=2e-4)
+
+
+def test_the_peak_of_two_humps_moves_with_them():
+    """Neither jumps to the other hump, nor with the samples that meet it."""
+    shifts = np.linspace(0.0, 3.0 * INTERVAL, 40)
+    trains = [train((t, 1.0), (t + 1.12, 1.0 + 1e-4 * math.sin(9.0 * k))) for k, t in enumerate(shifts)]
+    times = np.array([main_pulse(one).time for one in trains])
+    # As above, and what heights 1e-4 apart move.
+    np.testing.assert_allclose(times - times[0], shifts, atol=4e-3)
 
 
 def test_unequal_pulses_compare_the_valley_with_the_lower_one():

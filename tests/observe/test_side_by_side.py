@@ -56,6 +56,14 @@ def pulse(middle, width, height):
     return height / np.cosh(np.clip((TIME - middle) / width, -50.0, 50.0)) ** 4
 
 
+@pytest.mark.parametrize("gap", [1.6e-5, 1.8e-5, 2.2e-5])
+def test_two_humps_as_high_as_each_other_are_found_side_by_side(gap):
+    signals = np.array([[pulse(1.2e-4, 1.5e-5, 1.0) + pulse(1.2e-4 + gap, 1.5e-5, 1.001)] * 3])
+    compare(signals)
+    (run,) = runs_of(signals, TIME, GEOMETRY)
+    assert run.first("g").time < 1.2e-4 + 0.5 * gap
+
+
 def test_what_is_usual_is_found_side_by_side():
     rows = [
         [pulse(1e-4 + k * 1e-6, 2e-5, 1.0 + k), pulse(1.6e-4, 2e-5, 2.0), pulse(2.2e-4, 1.5e-5, 3.0)]

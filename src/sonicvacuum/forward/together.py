@@ -110,10 +110,13 @@ class Together:
     def _summits(self, s, known):
         """(L,) times in s and heights in N of pulses whose tops are known."""
         lanes = np.flatnonzero(known[:, _USUAL])
-        left, right = known[lanes, _LEFT], known[lanes, _RIGHT]
+        tops = known[lanes][:, [_LEFT, _RIGHT]]
         coefficients, bounds = np.empty((len(lanes), DEGREE + 1)), np.empty((len(lanes), 3))
-        for k, (lane, *top) in enumerate(zip(lanes.tolist(), left.tolist(), right.tolist(), strict=True)):
-            coefficients[k], *bounds[k] = summit(self._signals[lane, s], *top)
+        for k, (lane, top, peak) in enumerate(
+            zip(lanes.tolist(), tops.tolist(), known[lanes, _PEAK].tolist(), strict=True)
+        ):
+            coefficients[k], *bounds[k], tops[k, 0], tops[k, 1] = summit(self._signals[lane, s], *top, peak)
+        left, right = tops.T
         climbed = np.empty(len(lanes))
         _climb_all(coefficients, bounds, climbed)
         start, interval = self.grid

@@ -7,6 +7,8 @@ the wave's own tail add small ones. Rules, so that a count means something:
   not be the largest sample: reflections that meet later pulses rise higher.
 * Two peaks are *separate* when the force between them falls below the lower one by more than `PROMINENCE` ×
   the main peak, and by more than 8 standard deviations of the noise.
+* Of two humps of one pulse that are as high as each other but for `TIE`, the first is its peak, where there
+  is no noise: where two contacts share a gauge and the wave is short, which is the higher is chance.
 * A pulse that the record does not show is absent; one whose rise or fall the record cuts off is truncated;
   one that does not fall to a level before the next separate pulse is merged at that level. Values are then
   NaN, with the reason.
@@ -145,7 +147,8 @@ def _no_pulse(reason):
 def _fitted(trace, peak, seen, height):
     first, last = top_of(trace, peak, height)
     trace.settled(last)
-    place, force = maximum(trace.force, first, last)
+    # Noise makes humps of its own.
+    place, force = maximum(trace.force, first, last, None if trace.noise > 0.0 else peak)
     return Pulse(trace.time(place), force, peak, seen, last - first + 1)
 
 

@@ -9,6 +9,7 @@ half of the peak (1.5 ns). With 1/10: 2e-5, 6e-6 and 7e-4.
 
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import pairwise
 
 import numpy as np
 
@@ -18,6 +19,9 @@ DEGREE = 6
 TOP = 0.2
 NOISY_TOP = 0.5
 _NOISY_DIP = 6.0
+# Of two humps of a top that are as high as each other but for so much, the first is the peak. Where a wave is
+# hardly longer than a bead, a gauge inside one shows both of its contacts, and which is the higher is chance.
+TIE = 0.01
 # What is told of a beginning has ended so many samples before it does: crossings and filters look ahead.
 AHEAD = 3
 
@@ -135,21 +139,48 @@ def top_of(trace: Trace, peak: int, height: float) -> tuple[int, int]:
     return max(0, peak - max(before, 3)), min(len(force) - 1, peak + max(after, 3))
 
 
-def maximum(force: np.ndarray, first: int, last: int) -> tuple[float, float]:
-    """Place (in samples) and value of the maximum of the polynomial fitted to samples `first` to `last`."""
-    c, start, lower, upper = summit(force, first, last)
+def maximum(force: np.ndarray, first: int, last: int, peak: int | None = None) -> tuple[float, float]:
+    """Place (in samples) and value of the maximum of the polynomial fitted to samples `first` to `last`;
+    `peak` as in `summit`.
+    """
+    c, start, lower, upper, first, last = summit(force, first, last, peak)
     place = newton(c, start, lower, upper)
     return first + 0.5 * (place + 1.0) * (last - first), value_at(c, place)
 
 
-def summit(force: np.ndarray, first: int, last: int) -> tuple[list[float], float, float, float]:
+def summit(
+    force: np.ndarray, first: int, last: int, peak: int | None = None
+) -> tuple[list[float], float, float, float, int, int]:
     """The polynomial fitted to samples `first` to `last`, lowest power first, over [−1, 1]; where its largest
-    value at a sample is, and the samples beside it.
+    value at a sample is, and the samples beside it; and the first and last sample of the fit.
+
+    Where the top has several humps and the sample `peak` is given, the one that this belongs to is fitted
+    alone, from dip to dip, or the first before it that is as high but for `TIE`.
     """
     x, powers, fit = _polynomial(last - first + 1)
     coefficients = fit @ force[first : last + 1]
-    best = int((powers @ coefficients).argmax())
-    return coefficients.tolist(), x[best], x[max(best - 1, 0)], x[min(best + 1, len(x) - 1)]
+    values = powers @ coefficients
+    if peak is not None:
+        left, right = _hump(values, peak - first)
+        if DEGREE <= right - left < last - first:
+            return summit(force, first + left, first + right)
+    best = int(values.argmax())
+    return coefficients.tolist(), x[best], x[max(best - 1, 0)], x[min(best + 1, len(x) - 1)], first, last
+
+
+def _hump(values, at):
+    """First and last of the places of a hump, dips to its sides or ends: of that which holds place `at`, or
+    of the first before it that is as high but for `TIE`.
+    """
+    rises = values[1:] > values[:-1]
+    if np.count_nonzero(rises[:-1] > rises[1:]) < 2:
+        return 0, len(values) - 1
+    dips = 1 + np.flatnonzero(rises[:-1] < rises[1:])
+    bounds = [0, *dips.tolist(), len(values) - 1]
+    humps = list(pairwise(bounds))
+    heights = np.array([values[low : high + 1].max() for low, high in humps])
+    own = next(k for k, (_, high) in enumerate(humps) if at <= high)
+    return humps[int((heights[: own + 1] >= (1.0 - TIE) * heights[own]).argmax())]
 
 
 def crossing(force: np.ndarray, before: int, level: float) -> float:

@@ -8,6 +8,7 @@ from sonicvacuum.files import InputError
 from sonicvacuum.tables import read_csv
 from sonicvacuum_blind import TRUTH, score
 from sonicvacuum_blind.score import Row
+from sonicvacuum_blind.study import added
 
 
 @dataclass(frozen=True)
@@ -61,7 +62,7 @@ def read(records, truths, verdicts, ideal=()) -> list[Case]:
     Raises:
         InputError: where a case lacks its record, its verdict or one of the verdict's tables.
     """
-    rows = score.score(truths, verdicts, ideal)
+    rows = score.score(truths, verdicts, ideal, added)
     found = {p.parent.name: p.parent for p in Path(records).rglob("record.yaml")}
     told = {p.parent.name: p.parent for p in Path(verdicts).rglob("verdict.json")}
     known = {p.parent.name: p for p in Path(truths).rglob(TRUTH)}

@@ -24,9 +24,10 @@ DETAILS = "confusion, accuracy, reliability, seconds, parameters, coverage, pit 
 def score(truth, verdicts, out, summary, ideal, tables):
     """Compare verdicts with the truth: one row for each case, and a table with 95 % intervals."""
     from sonicvacuum_blind import score as scoring
+    from sonicvacuum_blind.study import added
 
     check_apart([out, summary, *_paths(tables).values()], [truth, verdicts, *ideal])
-    scoring.write_table(scoring.score(truth, verdicts, ideal), scoring.Row, out)
+    scoring.write_table(scoring.score(truth, verdicts, ideal, added), scoring.Row, out)
     # The tables are of what is written, digit by digit, so that they can be made of it again.
     rows = scoring.read_table(scoring.Row, out)
     _tabulate(rows, scoring.intervals(truth, verdicts), summary, tables)
