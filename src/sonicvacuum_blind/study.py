@@ -18,10 +18,8 @@ from sonicvacuum_blind.hide import Spec
 # The seed of the full study was drawn after its method was fixed: git tag and commit. Seeds of the studies
 # before, and the commit that keeps the tables of the last of them.
 TAG, METHOD = "study-9", "bd3052c"
-BEFORE, KEPT_BEFORE = (
-    (20_062, 88_822_325, 21_976_860, 16_372_354, 4_176_103, 95_641_188, 77_886_124),
-    "bd3052c",
-)
+BEFORE = (20_062, 88_822_325, 21_976_860, 16_372_354, 4_176_103, 95_641_188, 77_886_124)
+KEPT_BEFORE = "bd3052c"
 # The list once more, "again", of which commit 92f947a searched a part: drawn after that commit.
 # Empty records alone, "nulls": drawn after commit a00f2f7, which searched them (docs/study.md); effects
 # beside something from outside the catalogue, "beside": after d211601, which knew such records from
