@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sonicvacuum_blind import catalogue, design
-from sonicvacuum_blind.calibration import BINS, band, distance
+from sonicvacuum_blind.calibration import BINS, band, bin_of, distance
 from sonicvacuum_blind.score import NONE, UNKNOWN, Row
 from sonicvacuum_blind.shares import quantile, share, strength_bin
 from sonicvacuum_blind.stated import Parameter
@@ -171,7 +171,7 @@ def reliability(rows: Iterable[Row]) -> list[Bin]:
     bins = [[] for _ in range(BINS)]
     for row in rows:
         if not row.added:
-            bins[min(int(row.stated * BINS), BINS - 1)].append((row.stated, row.exact))
+            bins[bin_of(row)].append((row.stated, row.exact))
     return [_bin(k, members) for k, members in enumerate(bins)]
 
 

@@ -18,6 +18,11 @@ BASE_RATES: Mapping[str, Mapping[str, float]] = {
 }
 
 
+def bin_of(row: Row) -> int:
+    """Which of the bins the probability of the name given falls in."""
+    return min(int(row.stated * BINS), BINS - 1)
+
+
 def ece(rows: Iterable[Row], rates: Mapping[str, float] | None = None) -> tuple[int, float, float, float]:
     """(count, error, low, high): mean distance of stated probabilities of names given from shares right.
 
@@ -30,7 +35,7 @@ def ece(rows: Iterable[Row], rates: Mapping[str, float] | None = None) -> tuple[
         return 0, math.nan, math.nan, math.nan
     sizes = {kind: sum(r.kind == kind for r in rows) for kind in {r.kind for r in rows}}
     weight = np.array([rates[r.kind] / sizes[r.kind] if rates else 1.0 for r in rows])
-    place = np.array([min(int(r.stated * BINS), BINS - 1) for r in rows])
+    place = np.array([bin_of(r) for r in rows])
     off = np.array([r.stated - r.exact for r in rows])
 
     def error(index):
@@ -47,12 +52,9 @@ def honest(rows: Iterable[Row]) -> tuple[int, float, float, float]:
     rows, random = list(rows), np.random.default_rng(np.random.SeedSequence(20061))
     if not rows:
         return 0, math.nan, math.nan, math.nan
-    stated = np.array([r.stated for r in rows])
-    bins, place = np.zeros((RESAMPLES, BINS)), np.minimum((stated * BINS).astype(int), BINS - 1)
+    stated, place = np.array([(r.stated, bin_of(r)) for r in rows]).T
     off = stated - (random.random((RESAMPLES, len(rows))) < stated)
-    for k in range(BINS):
-        bins[:, k] = off[:, place == k].sum(axis=1)
-    errors = np.abs(bins).sum(axis=1) / len(rows)
+    errors = sum(np.abs(off[:, place == k].sum(axis=1)) for k in range(BINS)) / len(rows)
     return len(rows), float(errors.mean()), *map(float, np.quantile(errors, [0.025, 0.975]))
 
 

@@ -155,9 +155,9 @@ def accuracy(table: pandas.DataFrame) -> Figure:
 
 def _others(table):
     """The two fullest bins of each other design, by strength; one that is hardly filled is left out."""
-    rest = table[table.design != "traces"]
-    places = rest["count"].rank(method="first", ascending=False).groupby(rest.design).rank()
-    chosen = rest[(places == 1) | ((places == 2) & (rest["count"] >= FILLED))]
+    rest = table[table.design != "traces"].sort_values("count", ascending=False, kind="stable")
+    fuller = rest.groupby("design").cumcount()
+    chosen = rest[(fuller == 0) | ((fuller == 1) & (rest["count"] >= FILLED))]
     order = [*dict.fromkeys([*DESIGNS, *table.design])]
     return (
         chosen.assign(at=chosen.design.map(order.index))
