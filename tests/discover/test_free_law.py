@@ -1,13 +1,17 @@
 """The free-form contact law: closes gaps that no name explains, on runs it has not seen, and nothing else."""
 
+from dataclasses import replace
+
 import deep_damping
 import numpy as np
 import pytest
 from made_records import made
+from msgspec import structs
 
 from sonicvacuum.discover import law as telling
 from sonicvacuum.discover import policy, verdict
 from sonicvacuum.discover.compare import compare, read_model
+from sonicvacuum.discover.fit.reach import reach
 from sonicvacuum.discover.fit.wide import nominal
 from sonicvacuum.discover.judge.law import formula, surface
 from sonicvacuum.discover.model.forward import Forward
@@ -16,10 +20,13 @@ from sonicvacuum.discover.model.problem import experiment
 from sonicvacuum.discover.search import free_law as module
 from sonicvacuum.discover.search.free_law import free_law
 from sonicvacuum.effects import CATALOGUE, Setup
+from sonicvacuum.effects.free_form import free_force
 from sonicvacuum.figures import force_law
 from sonicvacuum.figures.drawing import Curve, Text
+from sonicvacuum.physics.run import simulate
 from sonicvacuum.tables import read_csv
 
+SPEEDS = 0.3, 0.5, 0.9  # m/s
 DAMPING = 2e5  # kg/(s m): the law outside the catalogue is F = K δ^1.5 + b δ v
 
 
@@ -30,25 +37,71 @@ def hidden(seed, speeds):
 
 @pytest.fixture(scope="module")
 def found():
-    forward = Forward(experiment(hidden(3, (0.3, 0.5, 0.9))))
+    forward = Forward(experiment(hidden(3, SPEEDS)))
     return free_law(forward, nominal(forward))
+
+
+def model_of(parameters):
+    return verdict.Model(
+        record="made",
+        effects={"free-form": parameters},
+        speed_ratio={},
+        trigger_us={},
+        gain={},
+        modulus_ratio=1.0,
+    )
 
 
 def test_it_closes_the_gap_on_runs_it_has_not_seen(found, tmp_path):
     size = sum(found.forward.experiment.size(k) for k in range(3))
     left, before = found.held_out.sum() - size, found.held_out_before.sum() - size
     assert left < 0.2 * before  # what is asked of it; about 1 % is left
-    model = verdict.Model(
-        record="made",
-        effects={"free-form": found.parameters},
-        speed_ratio={},
-        trigger_us={},
-        gain={},
-        modulus_ratio=1.0,
-    )
-    verdict.write_json(model, tmp_path / "model.json")
+    verdict.write_json(model_of(found.parameters), tmp_path / "model.json")
     score = compare(read_model(tmp_path / "model.json"), hidden(9, (0.4, 0.8)))
     assert score.gap.closed > 0.8
+    assert not score.warnings
+
+
+def test_it_is_held_beyond_the_data_it_was_fitted_to(found):
+    """A polynomial may take all of a force away, or double it, where nothing was measured."""
+    depth, rate = found.reach.depth, found.reach.rate
+    end = found.component.effect.apply(
+        Setup(experiment(hidden(3, (0.3,))).batches[0].chain), **found.parameters
+    ).chain.actions[-1]
+    own = [float(np.ravel(c)[0]) for c in end.table(None, np.ones(1), np.ones(1))[0]]
+    assert free_force(4 * depth, 4 * rate, 1.0, *own) == free_force(depth, rate, 1.0, *own)
+    assert free_force(0.5 * depth, 4 * rate, 1.0, *own) == free_force(0.5 * depth, rate, 1.0, *own)
+    assert free_force(4 * depth, -0.5 * rate, 1.0, *own) == free_force(depth, -0.5 * rate, 1.0, *own)
+    assert free_force(0.9 * depth, 0.5 * rate, 1.0, *own) != free_force(depth, 0.5 * rate, 1.0, *own)
+
+
+def test_reach_is_that_of_the_impact_and_of_the_largest_force(empty):
+    """Rates are highest as the striker hits, compressions (integrated rates) go with the largest force."""
+    forward = Forward(experiment(empty))
+    reached = reach(forward, nominal(forward))
+    (batch,) = forward.experiment.batches
+    assert reached.rate == pytest.approx(batch.chain.speed.max(), rel=0.05)  # fitted speeds differ by 2 %
+    contacts = range(batch.chain.beads + 1)
+    forces = simulate(batch.chain, contacts, batch.duration, batch.interval).force.max(axis=0)
+    depths = [batch.chain.depth_at(k, f[None]) for k, f in enumerate(forces)]
+    assert reached.depth == pytest.approx(np.max(depths), rel=0.05)  # as above
+
+
+def test_reach_counts_the_compression_at_rest(empty):
+    pressed = structs.replace(empty.block.chain, static_force_N=50.0)
+    loaded = Forward(experiment(replace(empty, block=structs.replace(empty.block, chain=pressed))))
+    forward = Forward(experiment(empty))
+    one = nominal(forward)
+    chain = loaded.experiment.batches[0].chain
+    at_rest = chain.depth_at(0, chain.static_forces(1)[0][None]).max()
+    assert reach(loaded, one).depth > max(at_rest, reach(forward, one).depth)
+
+
+def test_a_record_of_faster_impacts_is_told_to_go_beyond_it(found):
+    score = compare(model_of(found.parameters), hidden(9, (0.4, 4.0)))
+    (line,) = score.warnings
+    assert "free-form law" in line
+    assert f"{found.reach}" in line
 
 
 def test_its_surface_is_the_hidden_law_where_contacts_have_been(found):

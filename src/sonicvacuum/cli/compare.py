@@ -34,4 +34,6 @@ def compare(record, model, path, threads, own):
 
     score = scoring.compare(found, measured, threads or available_threads(), known)
     write_json(score, Path(path))
+    for told in score.warnings:
+        click.echo(f"Warning: {in_one_line(record)}: {told}", err=True)
     click.echo(f"{in_one_line(record)}: {score.gap.before:.3g} before, {score.gap.after:.3g} after, floor 1")

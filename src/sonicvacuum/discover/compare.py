@@ -10,14 +10,19 @@ from msgspec import Struct
 
 from sonicvacuum.blas import one_thread
 from sonicvacuum.discover.fit import wide
+from sonicvacuum.discover.fit.reach import Reach, reach
+from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.model import window
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis
 from sonicvacuum.discover.model.problem import experiment
 from sonicvacuum.discover.verdict import Gap, Model, Sources, gap
-from sonicvacuum.effects import CATALOGUE, Catalogue
+from sonicvacuum.effects import CATALOGUE, Catalogue, free_form
 from sonicvacuum.files import InputError, reading
 from sonicvacuum.records import Record
+
+# Contacts that go farther than known by less than this part are not told of: runs alike differ by as much.
+FURTHER = 0.05
 
 
 class Comparison(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -28,6 +33,7 @@ class Comparison(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
         gap: χ² per datum of the nominal model (before) and of this one (after).
         chi2, data: of this model.
         runs: run → gap.
+        warnings: where the record goes beyond what the model was made of.
     """
 
     format: int = 1
@@ -38,6 +44,7 @@ class Comparison(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     chi2: float
     data: int
     runs: dict[str, Gap]
+    warnings: list[str] = []
 
 
 def read_model(path, catalogue: Catalogue = CATALOGUE) -> Model:
@@ -133,7 +140,22 @@ def compare(model: Model, record: Record, threads: int = 1, catalogue: Catalogue
         chi2=float(after.sum()),
         data=int(sizes.sum()),
         runs=runs,
+        warnings=_beyond(model.effects.get(free_form.EFFECT.id, {}), forward, extended),
     )
+
+
+def _beyond(law: dict[str, float], forward: Forward, one: Fit) -> list[str]:
+    """Whether contacts go farther than those of the data that a free-form law was fitted to."""
+    known = Reach.of(law)
+    if known is None:
+        return []
+    seen = reach(forward, one)
+    if not seen.exceeds(known, FURTHER):
+        return []
+    return [
+        f"contacts reach {seen}, those of the data that the free-form law was fitted to {known}; "
+        "beyond, the law stays what it is there"
+    ]
 
 
 def _fit(forward, one):

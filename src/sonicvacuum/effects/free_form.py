@@ -5,8 +5,12 @@ fits it where something is left that has no name, and a model that holds it is r
 like any other.
 """
 
+import math
+
+import numpy as np
+
 from sonicvacuum.effects.base import MICRO, Effect, Parameter, Setup, add_term
-from sonicvacuum.physics.lanes import root
+from sonicvacuum.physics.lanes import absolute, root, select
 from sonicvacuum.physics.laws import Term
 
 # What each coefficient multiplies; r = √(δ/depth), w = rate/speed. The first nine times the Hertz force.
@@ -15,10 +19,18 @@ SHAPES += ("|w|½", "r |w|½", "|w|½ sgn w", "r |w|½ sgn w")
 COEFFICIENTS = tuple(f"a{k}" for k in range(len(SHAPES)))
 
 
-def free_force(delta, rate, elastic, depth, pace, load, a, b, c, d, e, f, g, h, i, j, k, m, n, o, p):
-    """Force in N beside the elastic one; depth (1/m), pace (s/m), load (N) scale its arguments to order 1."""
+def free_force(
+    delta, rate, elastic, depth, pace, load, deep, fast, a, b, c, d, e, f, g, h, i, j, k, m, n, o, p
+):
+    """Force in N beside the elastic one; depth (1/m), pace (s/m), load (N) scale its arguments to order 1.
+
+    Beyond r = deep and |w| = fast its shape stays what it is there: a polynomial means nothing outside the
+    data that it was fitted to.
+    """
     r = root(delta * depth)
+    r = select(deep - r, r, deep)
     w = rate * pace
+    w = select(fast - absolute(w), w, select(w, fast, -fast))
     # |w| and its root, rounded off.
     far = root(w * w + SOFT * SOFT)
     s = w * w / far
@@ -32,22 +44,30 @@ def free_force(delta, rate, elastic, depth, pace, load, a, b, c, d, e, f, g, h, 
 # noise asks for.
 SOFT = 0.05
 
-TERM = Term("free-form", "force", free_force, 3 + len(COEFFICIENTS))
+TERM = Term("free-form", "force", free_force, 5 + len(COEFFICIENTS))
 
 
-def coefficients(chain, stiffness, mass, depth, speed, force, **a):
-    """Scales of the arguments, then the coefficients."""
-    return [1.0 / depth, 1.0 / speed, force, *(a[name] for name in COEFFICIENTS)]
+def coefficients(chain, stiffness, mass, depth, speed, force, deepest, fastest, **a):
+    """Scales of the arguments and how far they reach, then the coefficients."""
+    reach = [np.sqrt(deepest / depth), fastest / speed]
+    return [1.0 / depth, 1.0 / speed, force, *reach, *(a[name] for name in COEFFICIENTS)]
 
 
-def change(setup: Setup, depth_um, speed_m_s, force_N, **a) -> Setup:
+def change(
+    setup: Setup, depth_um, speed_m_s, force_N, deepest_um=math.inf, fastest_m_s=math.inf, **a
+) -> Setup:
     """Add the force to all contacts."""
     scales = {"depth": depth_um * MICRO, "speed": speed_m_s, "force": force_N}
-    return add_term(setup, TERM, coefficients, **scales, **a)
+    reach = {"deepest": deepest_um * MICRO, "fastest": fastest_m_s}
+    return add_term(setup, TERM, coefficients, **scales, **reach, **a)
 
 
 def _scale(name, unit, typical, help):
     return Parameter(name, unit, None, 1e-9, 1e12, "log-uniform", typical, help, least=1e-12)
+
+
+def _reach(name, unit, help):
+    return Parameter(name, unit, math.inf, 1e-9, 1e12, "log-uniform", 1.0, help, least=1e-12)
 
 
 EFFECT = Effect(
@@ -56,7 +76,7 @@ EFFECT = Effect(
     missing="a contact law that no effect of the catalogue describes",
     equation="F = K delta^{3/2} (1 + sum_ij a_ij r^i {1, w, |w|}_j + sum_ij b_ij r^i {|w|^{1/2}, "
     "|w|^{1/2} sgn w}_j) + force w (a9 + a10 r), r = (delta/depth)^{1/2}, w = v/speed, cut at zero, "
-    "|w| rounded off below 0.05",
+    "|w| rounded off below 0.05; beyond deepest and fastest the braces stay what they are there",
     energy="stores and takes what its coefficients say",
     reference="chosen here: a polynomial in the roots of compression and rate, up to the first power of the "
     "latter",
@@ -64,6 +84,8 @@ EFFECT = Effect(
         _scale("depth_um", "um", 1.0, "compression at which r is 1"),
         _scale("speed_m_s", "m/s", 1.0, "rate at which w is 1"),
         _scale("force_N", "N", 1.0, "scale of the forces that do not vanish with compression"),
+        _reach("deepest_um", "um", "compression beyond which the shape stays what it is there"),
+        _reach("fastest_m_s", "m/s", "rate beyond which the shape stays what it is there"),
         *(
             Parameter(name, "1", 0.0, -5.0, 5.0, "uniform", 0.1, f"coefficient of {shape}")
             for name, shape in zip(COEFFICIENTS, SHAPES, strict=True)

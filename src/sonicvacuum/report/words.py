@@ -165,7 +165,11 @@ def law(verdict: Verdict, catalogue: Catalogue = CATALOGUE) -> str:
     if not found:
         return ""
     near = [f"{plain(n.effect, catalogue)} ({n.distance:.2f})" for n in found.nearest[:3]]
-    text = f"What is left is described by a contact law without a name: {found.formula}."
+    far = f"{found.depth_um[-1]:.3g} µm and {found.speed_m_s[-1]:.3g} m/s"
+    text = (
+        f"What is left is described by a contact law without a name: {found.formula}. Contacts went as far "
+        f"as {far}; beyond, what it adds to Hertz stays what it is there."
+    )
     if near:
         scale = "with their distance from it (0: the same, 1: no nearer than Hertz)"
         text += f" The nearest named laws, {scale}: {joined(near)}."

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sonicvacuum.discover.fit.evidence import Candidate
+from sonicvacuum.discover.fit.reach import TOUCHING, approaches
 from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import is_law
@@ -17,8 +18,6 @@ from sonicvacuum.effects.free_form import COEFFICIENTS, free_force
 DEPTHS, RATES = 21, 21
 # So many contacts from the striker on tell where contacts have been; the first of them see the most.
 CONTACTS = 20
-# A contact touches where it is compressed by more than this share of the largest compression.
-TOUCHING = 0.02
 # Powers from which formulas start.
 _POWERS = (0.25, 0.5, 1.0, 1.5, 2.0, 3.0)
 # Terms of formulas: elastic, stiffening with the rate, lossy.
@@ -53,7 +52,7 @@ class Surface:
 def surface(law: FreeLaw) -> Surface:
     """The law over what the recorded contacts went through."""
     stiffness = _stiffness(law.forward)
-    depths, rates = _visited(law.forward, law.fit)
+    depths, rates = _visited(law)
     grid = np.linspace(0.0, depths.max(), DEPTHS)
     rate = np.linspace(-1.0, 1.0, RATES) * np.abs(rates).max()
     basis = _basis(law, grid, rate, stiffness)
@@ -76,21 +75,13 @@ def _stiffness(forward):
     return float(np.ravel(chain.stiffness if chain.beads else chain.striker_stiffness)[0])
 
 
-def _visited(forward: Forward, fit: Fit):
-    """Compressions in m and rates in m/s of the first contacts while they touch, in all runs."""
-    from scipy.integrate import cumulative_trapezoid
-
-    from sonicvacuum.physics.run import simulate
-
+def _visited(law: FreeLaw):
+    """Compressions in m and rates in m/s, of all runs, of the first contacts of beads while they touch."""
     depths, rates = [], []
-    for batch in forward.experiment.batches:
-        nominal = forward.nominal(batch, fit.nu[None])
-        chain = fit.hypothesis.change(fit.u[None])(nominal, np.zeros(len(batch.runs), dtype=int)).chain
-        first = min(1, max(chain.beads - 1, 0))
-        bodies = range(first, min(chain.beads, CONTACTS) + 1)
-        seen = simulate(chain, (), batch.duration, batch.interval, bodies=bodies, threads=forward.threads)
-        rate = -np.diff(seen.velocity, axis=1) if chain.beads else seen.velocity
-        depth = cumulative_trapezoid(rate, dx=batch.interval, axis=0, initial=0.0)
+    for depth, rate in approaches(law.forward, law.fit):
+        beads = depth.shape[1] - 1
+        shown = slice(min(1, max(beads - 1, 0)), max(min(beads, CONTACTS), 1))
+        depth, rate = depth[:, shown], rate[:, shown]
         touching = depth > TOUCHING * depth.max()
         depths.append(depth[touching])
         rates.append(rate[touching])
@@ -102,11 +93,10 @@ def _basis(law: FreeLaw, depth, rate, stiffness):
     elastic = stiffness * depth[:, None] ** 1.5
     scales = law.scales
     result = []
+    own = 1.0 / scales.depth, 1.0 / scales.speed, scales.force
     for name in law.names:
         one = [float(name == other) for other in COEFFICIENTS]
-        force = free_force(
-            depth[:, None], rate[None], elastic, 1.0 / scales.depth, 1.0 / scales.speed, scales.force, *one
-        )
+        force = free_force(depth[:, None], rate[None], elastic, *own, np.inf, np.inf, *one)
         result.append(np.broadcast_to(force, (len(depth), len(rate))))
     return np.stack(result, axis=-1)
 

@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sonicvacuum.discover import policy
+from sonicvacuum.discover.fit.reach import Reach, reach
 from sonicvacuum.discover.fit.refit import Fit, fit
 from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.experiment import Experiment
@@ -51,6 +52,7 @@ class FreeLaw:
         log_bayes: log evidence against the model without the law.
         held_out: (R,) χ² of every run, the law fitted to the others; NaN where there is only one run.
         held_out_before: (R,) the same without the law.
+        reach: how far contacts went in the data; None until the law is kept.
     """
 
     forward: Forward
@@ -61,6 +63,7 @@ class FreeLaw:
     log_bayes: float
     held_out: np.ndarray
     held_out_before: np.ndarray
+    reach: Reach | None = None
 
     @property
     def coefficients(self) -> np.ndarray:
@@ -80,8 +83,9 @@ class FreeLaw:
 
     @property
     def parameters(self) -> dict[str, float]:
-        """Parameters of the effect."""
-        return self.scales.parameters | dict(zip(self.names, map(float, self.coefficients), strict=True))
+        """Parameters of the effect; once kept, it stays what it is at the end of its reach beyond that."""
+        own = self.scales.parameters | (self.reach.parameters if self.reach else {})
+        return own | dict(zip(self.names, map(float, self.coefficients), strict=True))
 
     @property
     def component(self) -> Component:
@@ -107,7 +111,7 @@ def free_law(forward: Forward, base: Fit) -> FreeLaw | None:
             size = sum(e.size(k) for k in range(len(e.runs)))
             after, before = (float(part.sum()) - size for part in (one.held_out, one.held_out_before))
             if len(e.runs) < 2 or _closes(after, before):
-                return one
+                return replace(one, reach=reach(one.forward, one.fit))
     return None
 
 
