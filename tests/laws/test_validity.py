@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from engine_cases import DURATION, coated
 
-from sonicvacuum.effects import Setup, effect
+from sonicvacuum.effects import CATALOGUE, Setup, effect
 from sonicvacuum.physics import validity
 from sonicvacuum.physics.bodies import Body, Elastic
 from sonicvacuum.physics.run import simulate
@@ -58,6 +58,20 @@ def test_yielding_is_told_unless_the_law_yields():
 def test_a_coating_pressed_through_is_told():
     thin = Body(Elastic("coating", 1e8, 0.388), 0.44e-3, 2.43e-3, coating=1e-6)
     assert any("coatings of 1 um" in w for w in told(coated(modulus=1e8, bodies=thin), duration=2e-3))
+
+
+@pytest.mark.parametrize(
+    ("reach", "warned"),
+    [
+        ({}, False),
+        ({"deepest_um": 1e3, "fastest_m_s": 1e2}, False),
+        ({"deepest_um": 1e-3, "fastest_m_s": 1e2}, True),
+        ({"deepest_um": 1e3, "fastest_m_s": 1e-2}, True),
+    ],
+)
+def test_a_fitted_law_is_told_of_beyond_its_data(reach, warned):
+    chain = CATALOGUE.effect("free-form").apply(Setup(coated()), a0=0.01, **reach).chain
+    assert any("free-form was fitted to data of up to" in w for w in told(chain)) is warned
 
 
 def test_a_window_that_ends_too_soon_is_told():

@@ -21,6 +21,8 @@ STEP = 1.0
 ENERGY = 1e-3
 # Fully plastic contacts bear 4.5 yield strengths at their centre (Johnson, Sec. 6.3: 3 in the mean).
 YIELD = 2.0 * 4.5
+# A law that was fitted to data is warned of from so many times their largest compression and rate on.
+FURTHER = 1.2
 # A gauge that reads less than this part of the largest force has seen nothing yet.
 SILENT = 1e-3
 _MICRO = 1e-6
@@ -48,6 +50,7 @@ def warnings(chain: Chain, history: History, yields: Mapping[str, float | None] 
     depth = np.stack([chain.depth_at(c, force[k][None])[0] for k, c in enumerate(history.contacts)])
     found = [overlap(chain, history, depth), layer(chain, depth), coarse_step(chain, history, force, depth)]
     found += [energy(chain, history), pressure(chain, history, force, depth, yields or {})]
+    found += [extrapolation(chain, depth)]
     return [told for told in found if told]
 
 
@@ -100,6 +103,24 @@ def layer(chain: Chain, depth: np.ndarray) -> str:
         f"a contact is pressed by {worst / _MICRO:.3g} um, more than its coatings of {thinnest / _MICRO:.3g} "
         "um each are thick: what lies under them bears the load"
     )
+
+
+def extrapolation(chain: Chain, depth: np.ndarray) -> str:
+    """A law fitted to data (parameters `deepest` in m, `fastest` in m/s) where contacts go farther than these
+    did, (contacts, lanes) in m.
+
+    Compressions are those of the loading curve: a force that has damping in it passes for a deeper contact.
+    """
+    worst, speed = float(depth.max()), float(chain.speed.max())
+    for action in chain.actions:
+        known = [float(np.min(action.parameters.get(name, np.inf))) for name in ("deepest", "fastest")]
+        if worst > FURTHER * known[0] or speed > FURTHER * known[1]:
+            return (
+                f"contacts are pressed by {worst / _MICRO:.3g} um at impacts of {speed:.3g} m/s; the law "
+                f"{action.term.name} was fitted to data of up to {known[0] / _MICRO:.3g} um and "
+                f"{known[1]:.3g} m/s, and stays what it is there beyond"
+            )
+    return ""
 
 
 def coarse_step(chain: Chain, history: History, force: np.ndarray, depth: np.ndarray) -> str:
