@@ -20,7 +20,7 @@ from sonicvacuum.discover.model.problem import experiment
 from sonicvacuum.discover.search import free_law as module
 from sonicvacuum.discover.search.free_law import free_law
 from sonicvacuum.effects import CATALOGUE, Setup
-from sonicvacuum.effects.free_form import free_force
+from sonicvacuum.effects.free_form import held_force
 from sonicvacuum.figures import force_law
 from sonicvacuum.figures.drawing import Curve, Text
 from sonicvacuum.physics.run import simulate
@@ -69,10 +69,10 @@ def test_it_is_held_beyond_the_data_it_was_fitted_to(found):
         Setup(experiment(hidden(3, (0.3,))).batches[0].chain), **found.parameters
     ).chain.actions[-1]
     own = [float(np.ravel(c)[0]) for c in end.table(None, np.ones(1), np.ones(1))[0]]
-    assert free_force(4 * depth, 4 * rate, 1.0, *own) == free_force(depth, rate, 1.0, *own)
-    assert free_force(0.5 * depth, 4 * rate, 1.0, *own) == free_force(0.5 * depth, rate, 1.0, *own)
-    assert free_force(4 * depth, -0.5 * rate, 1.0, *own) == free_force(depth, -0.5 * rate, 1.0, *own)
-    assert free_force(0.9 * depth, 0.5 * rate, 1.0, *own) != free_force(depth, 0.5 * rate, 1.0, *own)
+    assert held_force(4 * depth, 4 * rate, 1.0, *own) == held_force(depth, rate, 1.0, *own)
+    assert held_force(0.5 * depth, 4 * rate, 1.0, *own) == held_force(0.5 * depth, rate, 1.0, *own)
+    assert held_force(4 * depth, -0.5 * rate, 1.0, *own) == held_force(depth, -0.5 * rate, 1.0, *own)
+    assert held_force(0.9 * depth, 0.5 * rate, 1.0, *own) != held_force(depth, 0.5 * rate, 1.0, *own)
 
 
 def test_reach_is_that_of_the_impact_and_of_the_largest_force(empty):
@@ -183,3 +183,16 @@ def test_it_is_drawn_where_contacts_have_been(found, tmp_path):
         assert any(np.array_equal(shown, column) for column in seen.visited.T)
     assert any("m/s" in m.words for m in page.marks if isinstance(m, Text))
     assert force_law.law([]) is None
+
+
+def test_the_law_that_is_held_is_the_law_within_its_data(found):
+    """Compiled and stepped, far from where it is held: the same numbers but for rounding."""
+    chain = experiment(hidden(3, (0.3,))).batches[0].chain
+    wide = {"deepest_um": 1e6, "fastest_m_s": 1e6}
+    free, held = (
+        found.component.effect.apply(Setup(chain), **found.parameters | reach).chain
+        for reach in ({"deepest_um": np.inf, "fastest_m_s": np.inf}, wide)
+    )
+    forces = [simulate(one, (0, 5), 2e-4, 1e-6).force for one in (free, held)]
+    assert np.abs(forces[0]).max() > 1.0
+    np.testing.assert_allclose(*forces, rtol=0, atol=1e-9)  # N: another kernel rounds otherwise

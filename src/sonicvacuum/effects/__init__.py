@@ -19,7 +19,7 @@ F = K delta^{3/2} + b delta v. Write `deep_damping.py`:
     from sonicvacuum.effects.base import Effect, Parameter, add_term
     from sonicvacuum.physics.laws import Term
 
-    def deep_force(delta, rate, elastic, damping):       # ordinary arithmetic and physics.lanes functions
+    def deep_force(delta, rate, elastic, damping):       # arithmetic, physics.lanes, functions made of these
         return damping * delta * rate
 
     TERM = Term("deep-damping", "force", deep_force, 1)  # slots and their arguments: physics.laws

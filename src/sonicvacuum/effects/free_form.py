@@ -19,18 +19,10 @@ SHAPES += ("|w|½", "r |w|½", "|w|½ sgn w", "r |w|½ sgn w")
 COEFFICIENTS = tuple(f"a{k}" for k in range(len(SHAPES)))
 
 
-def free_force(
-    delta, rate, elastic, depth, pace, load, deep, fast, a, b, c, d, e, f, g, h, i, j, k, m, n, o, p
-):
-    """Force in N beside the elastic one; depth (1/m), pace (s/m), load (N) scale its arguments to order 1.
-
-    Beyond r = deep and |w| = fast its shape stays what it is there: a polynomial means nothing outside the
-    data that it was fitted to.
-    """
+def free_force(delta, rate, elastic, depth, pace, load, a, b, c, d, e, f, g, h, i, j, k, m, n, o, p):
+    """Force in N beside the elastic one; depth (1/m), pace (s/m), load (N) scale its arguments to order 1."""
     r = root(delta * depth)
-    r = select(deep - r, r, deep)
     w = rate * pace
-    w = select(fast - absolute(w), w, select(w, fast, -fast))
     # |w| and its root, rounded off.
     far = root(w * w + SOFT * SOFT)
     s = w * w / far
@@ -44,22 +36,42 @@ def free_force(
 # noise asks for.
 SOFT = 0.05
 
-TERM = Term("free-form", "force", free_force, 5 + len(COEFFICIENTS))
+TERM = Term("free-form", "force", free_force, 3 + len(COEFFICIENTS))
 
 
-def coefficients(chain, stiffness, mass, depth, speed, force, deepest, fastest, **a):
-    """Scales of the arguments and how far they reach, then the coefficients."""
-    reach = [np.sqrt(deepest / depth), fastest / speed]
-    return [1.0 / depth, 1.0 / speed, force, *reach, *(a[name] for name in COEFFICIENTS)]
+def held_force(
+    delta, rate, elastic, deepest, fastest, depth, pace, load, a, b, c, d, e, f, g, h, i, j, k, m, n, o, p
+):
+    """The same, but from the compression `deepest` in m and the rate `fastest` in m/s on its share of the
+    elastic force stays what it is there: a polynomial means nothing outside the data it was fitted to.
+    """
+    near = select(deepest - delta, delta, deepest)
+    slow = select(fastest - absolute(rate), rate, select(rate, fastest, -fastest))
+    return free_force(near, slow, elastic, depth, pace, load, a, b, c, d, e, f, g, h, i, j, k, m, n, o, p)
+
+
+HELD = Term("free-form", "force", held_force, 5 + len(COEFFICIENTS))
+
+
+def coefficients(chain, stiffness, mass, depth, speed, force, **a):
+    """Scales of the arguments, then the coefficients."""
+    return [1.0 / depth, 1.0 / speed, force, *(a[name] for name in COEFFICIENTS)]
+
+
+def held_coefficients(chain, stiffness, mass, deepest, fastest, **others):
+    """How far the data reach, then as of the law that is not held."""
+    return [deepest, fastest, *coefficients(chain, stiffness, mass, **others)]
 
 
 def change(
     setup: Setup, depth_um, speed_m_s, force_N, deepest_um=math.inf, fastest_m_s=math.inf, **a
 ) -> Setup:
     """Add the force to all contacts."""
-    scales = {"depth": depth_um * MICRO, "speed": speed_m_s, "force": force_N}
+    given = {"depth": depth_um * MICRO, "speed": speed_m_s, "force": force_N, **a}
+    if np.all(np.isinf(deepest_um) & np.isinf(fastest_m_s)):
+        return add_term(setup, TERM, coefficients, **given)
     reach = {"deepest": deepest_um * MICRO, "fastest": fastest_m_s}
-    return add_term(setup, TERM, coefficients, **scales, **reach, **a)
+    return add_term(setup, HELD, held_coefficients, **reach, **given)
 
 
 def _scale(name, unit, typical, help):

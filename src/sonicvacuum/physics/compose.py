@@ -6,6 +6,7 @@ the terms and nothing else, with which `linking` goes on.
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from types import FunctionType
 
 import numpy as np
 from numba import njit, types
@@ -22,7 +23,17 @@ _NODES, _WEIGHTS = (0.5 * (_X + 1.0)).tolist(), (0.5 * _W).tolist()
 
 
 def _compiled(function):
+    """A formula, with the functions that it calls; those of `lanes` Numba is taught."""
+    known = function.__globals__
+    called = {name: known[name] for name in function.__code__.co_names if _is_formula(known.get(name))}
+    if called:
+        own = known | {name: _compiled(one) for name, one in called.items()}
+        function = FunctionType(function.__code__, own, function.__name__, function.__defaults__)
     return njit(**INLINED)(function)
+
+
+def _is_formula(value):
+    return isinstance(value, FunctionType) and value.__module__ != lanes.__name__
 
 
 @_compiled

@@ -96,7 +96,7 @@ def _basis(law: FreeLaw, depth, rate, stiffness):
     own = 1.0 / scales.depth, 1.0 / scales.speed, scales.force
     for name in law.names:
         one = [float(name == other) for other in COEFFICIENTS]
-        force = free_force(depth[:, None], rate[None], elastic, *own, np.inf, np.inf, *one)
+        force = free_force(depth[:, None], rate[None], elastic, *own, *one)
         result.append(np.broadcast_to(force, (len(depth), len(rate))))
     return np.stack(result, axis=-1)
 

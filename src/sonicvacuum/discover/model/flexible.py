@@ -5,8 +5,6 @@ F_Hertz (1 + Σ a_ij B_i(δ) C_j(v)) with B = 1, √δ, δ and C = 1, v, |v|, tw
 law can close.
 """
 
-import math
-
 import numpy as np
 
 from sonicvacuum.effects import Setup
@@ -27,7 +25,7 @@ def flexible_drag(velocity, pace, a, b, c):
 
 
 CONTACT_TERM = Term(
-    "flexible-contact", "force", free_force, CONTACT + 5, strengths=tuple(range(5, CONTACT + 5))
+    "flexible-contact", "force", free_force, CONTACT + 3, strengths=tuple(range(3, CONTACT + 3))
 )
 DRAG_TERM = Term("flexible-drag", "body", flexible_drag, DRAG + 1, strengths=tuple(range(1, DRAG + 1)))
 _NAMES = COEFFICIENTS
@@ -37,7 +35,7 @@ _DRAGS = tuple(f"b{n}" for n in range(DRAG))
 def _contact(chain, stiffness, mass, **a):
     """Scales of the impact, then the coefficients."""
     depth, pace, load = scales(chain)
-    return [1.0 / depth, pace, load, math.inf, math.inf, *(a[n] for n in _NAMES)]
+    return [1.0 / depth, pace, load, *(a[n] for n in _NAMES)]
 
 
 def _drag(chain, stiffness, mass, **b):
