@@ -34,9 +34,10 @@ What ten steel beads of 20 mm will show, before they are bought:
 
 Everything below is loaded when it is first used; importing the package loads nothing else.
 
->>> import sonicvacuum as sv
->>> round(float(sv.theory.speed_from_force(1.0, 193e9, 0.3, 4.76e-3, 0.44e-3)))  # Eq. (6), steel, 1 N
-344
+Examples:
+    >>> import sonicvacuum as sv
+    >>> round(float(sv.theory.speed_from_force(1.0, 193e9, 0.3, 4.76e-3, 0.44e-3)))  # Eq. (6), steel, 1 N
+    344
 """
 
 from importlib import import_module

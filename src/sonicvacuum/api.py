@@ -28,7 +28,7 @@ def read(folder: Path) -> Record:
         folder: its path.
 
     Returns:
-        `Record`: laboratory, gauges and runs in SI; `signals` run → traces, (samples,) for each gauge, in the
+        Record: laboratory, gauges and runs in SI; `signals` run → traces, (samples,) for each gauge, in the
         gauge's unit over `time_us`.
 
     Raises:
@@ -61,20 +61,21 @@ def simulate(card: Card) -> Simulation:
         card: from `sv.case` or `sv.read_case`.
 
     Returns:
-        `Simulation`: `time` (samples,) in s, `force` (samples, contacts, runs) in N, `readings()` gauge →
+        Simulation: `time` (samples,) in s, `force` (samples, contacts, runs) in N, `readings()` gauge →
         (samples, runs) in the gauge's unit without the static part; runs in the order of the speeds.
 
     Raises:
         InputError: for an effect that does not exist, or an aim that no speed reaches.
 
-    >>> import sonicvacuum as sv
-    >>> big, small = (sv.bead(diameter_mm=d, material="bearing-steel") for d in (20.0, 10.0))
-    >>> dimer = sv.chain(pattern=[big, small], beads=20)
-    >>> vibrometer = sv.gauge("velocity", bead=15)
-    >>> card = sv.case(dimer, sv.striker(big, speed_m_s=0.5), [vibrometer], duration_us=800)
-    >>> seen = sv.simulate(card)
-    >>> seen.readings()["velocity-15"].shape  # samples, runs; m/s
-    (1601, 1)
+    Examples:
+        >>> import sonicvacuum as sv
+        >>> big, small = (sv.bead(diameter_mm=d, material="bearing-steel") for d in (20.0, 10.0))
+        >>> dimer = sv.chain(pattern=[big, small], beads=20)
+        >>> vibrometer = sv.gauge("velocity", bead=15)
+        >>> card = sv.case(dimer, sv.striker(big, speed_m_s=0.5), [vibrometer], duration_us=800)
+        >>> seen = sv.simulate(card)
+        >>> seen.readings()["velocity-15"].shape  # samples, runs; m/s
+        (1601, 1)
     """
     return simulation.simulate(card)
 
@@ -88,7 +89,7 @@ def compare(model: Model | Path, record: Record, threads: int | None = None) -> 
         threads: as in `discover`.
 
     Returns:
-        `Comparison`: misfit over the noise before and after (`gap`), and the record's own nuisances.
+        Comparison: misfit over the noise before and after (`gap`), run by run too, and `warnings`.
 
     Raises:
         InputError: for a file that holds no model, or a model that does not fit the record.

@@ -51,7 +51,8 @@ def bead(
         diameter_mm: outer diameter.
         material: what touches, a name of the table of materials or of the case's own `materials`.
         mass_g: from diameter and density where it is not given.
-        coating_um, core: thickness of a coating and the material below it.
+        coating_um: thickness of a coating.
+        core: material below it.
         faces: `flat` for a body with ground faces, which balls touch; its mass has to be given.
 
     Returns:
@@ -60,9 +61,10 @@ def bead(
     Raises:
         InputError: naming key, value and cure.
 
-    >>> import sonicvacuum as sv
-    >>> round(sv.bead(diameter_mm=20.0, material="bearing-steel").mass_g, 2)
-    32.71
+    Examples:
+        >>> import sonicvacuum as sv
+        >>> round(sv.bead(diameter_mm=20.0, material="bearing-steel").mass_g, 2)
+        32.71
     """
     given = {"diameter_mm": diameter_mm, "material": material, "coating_um": coating_um, "core": core}
     return _ball(BeadBlock, "bead", mass_g, given | {"faces": faces})
@@ -95,11 +97,12 @@ def chain(
     Raises:
         InputError: naming key, value and cure.
 
-    >>> import sonicvacuum as sv
-    >>> balls = [sv.bead(diameter_mm=10 * 0.9**k, material="glass") for k in range(6)]
-    >>> tapered = sv.chain(pattern=balls)
-    >>> tapered.beads, tapered.wall.material
-    (6, 'glass')
+    Examples:
+        >>> import sonicvacuum as sv
+        >>> balls = [sv.bead(diameter_mm=10 * 0.9**k, material="glass") for k in range(6)]
+        >>> tapered = sv.chain(pattern=balls)
+        >>> tapered.beads, tapered.wall.material
+        (6, 'glass')
     """
     first = bead or (pattern[0] if pattern else None)
     if not isinstance(first, BeadBlock):
@@ -148,9 +151,10 @@ def striker(
     Raises:
         InputError: naming key, value and cure.
 
-    >>> import sonicvacuum as sv
-    >>> sv.striker(sv.bead(diameter_mm=5.0, material="glass"), speed_m_s=[0.1, 0.2]).speed_m_s
-    [0.1, 0.2]
+    Examples:
+        >>> import sonicvacuum as sv
+        >>> sv.striker(sv.bead(diameter_mm=5.0, material="glass"), speed_m_s=[0.1, 0.2]).speed_m_s
+        [0.1, 0.2]
     """
     if ball is not None:
         material = material or ball.material
@@ -184,9 +188,10 @@ def gauge(
     Raises:
         InputError: naming key, value and cure.
 
-    >>> import sonicvacuum as sv
-    >>> sv.gauge("velocity", bead=15).id
-    'velocity-15'
+    Examples:
+        >>> import sonicvacuum as sv
+        >>> sv.gauge("velocity", bead=15).id
+        'velocity-15'
     """
     keys = {"id": id or (kind if bead is None else f"{kind}-{bead}"), "kind": kind, "bead": bead}
     return _block(SensorBlock, "gauge", keys | {"droop_us": droop_us, "lowpass_us": lowpass_us})
@@ -206,7 +211,9 @@ def case(
     """A case of one's own, resolved into SI: what the blocks of `config.yaml` hold, built or as mappings.
 
     Args:
-        chain, striker, sensors: from `sv.chain`, `sv.striker` and `sv.gauge`, or mappings with their keys.
+        chain: from `sv.chain`, or a mapping with its keys.
+        striker: likewise from `sv.striker`.
+        sensors: from `sv.gauge`, or mappings with its keys.
         duration_us: simulated from the moment of impact.
         sample_us: time between samples.
         materials: name → `modulus_GPa`, `poisson`, `density_kg_m3`, `yield_MPa` that override the table.
@@ -219,12 +226,14 @@ def case(
     Raises:
         InputError: for an unknown key, a value out of range, a gauge outside the chain and the like.
 
-    >>> import sonicvacuum as sv
-    >>> ball = sv.bead(diameter_mm=5.0, material="bearing-steel")
-    >>> wall = sv.gauge("wall")
-    >>> card = sv.case(sv.chain(bead=ball, beads=8), sv.striker(ball, speed_m_s=0.5), [wall], duration_us=200)
-    >>> card.beads, round(card.bead.mass_kg * 1e3, 3)
-    (8, 0.511)
+    Examples:
+        >>> import sonicvacuum as sv
+        >>> ball = sv.bead(diameter_mm=5.0, material="bearing-steel")
+        >>> wall = sv.gauge("wall")
+        >>> chain, striker = sv.chain(bead=ball, beads=8), sv.striker(ball, speed_m_s=0.5)
+        >>> card = sv.case(chain, striker, [wall], duration_us=200)
+        >>> card.beads, round(card.bead.mass_kg * 1e3, 3)
+        (8, 0.511)
     """
     parts = {"chain": chain, "striker": striker, "sensors": sensors, "duration_us": duration_us}
     more = {"sample_us": sample_us, "materials": materials, "effects": effects, "title": title}

@@ -41,7 +41,8 @@ class Simulation:
         contacts: recorded contacts.
         force: (samples, contacts, runs) dynamic contact forces in N.
         refined: the same with half the step.
-        energy, momentum: (entries, runs) balance, see `History`.
+        energy: (entries, runs) in J, see `History`.
+        momentum: (entries, runs) in N s, likewise.
         bodies: recorded bodies, none where every gauge reads a force.
         motion: (2, 2, samples, bodies, runs) velocity in m/s and acceleration in m/s² of those bodies, with
             the chosen step and with half of it.

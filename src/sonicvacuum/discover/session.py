@@ -44,7 +44,8 @@ class Result:
         given: the records as they were given.
         notes: what was done to their traces before anything else.
         found: the search.
-        places, after: disagreements of the nominal and of the extended model.
+        places: disagreements of the nominal model with the data.
+        after: those of the extended model.
         limits: of all effects that were not named.
         verdict: what is written.
         law: the free-form law, where one was needed.

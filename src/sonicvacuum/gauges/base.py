@@ -91,8 +91,8 @@ class Gauge:
         sigma: white noise of one sample in the kind's unit; 0: not stated.
         gain_rel_sigma: standard error of the gain, relative, one gain for all runs; infinite: uncalibrated.
         delay_sigma_s: standard error of the delay of its channel in s.
-        baseline_sigma, drift_sigma: standard errors of a constant offset and of a slow drift over the record,
-            in the kind's unit.
+        baseline_sigma: standard error of a constant offset in the kind's unit.
+        drift_sigma: that of a slow drift over the record.
 
     Droop, bandwidth, offset and gain may be arrays (lanes,): the same gauge on chains that are read side by
     side.
@@ -237,7 +237,8 @@ class Recorded:
     Attributes:
         time: (S,) s.
         force: contact → (S, ...) N.
-        velocity, acceleration: body → (S, ...) m/s and m/s².
+        velocity: body → (S, ...) m/s.
+        acceleration: body → (S, ...) m/s².
     """
 
     time: np.ndarray

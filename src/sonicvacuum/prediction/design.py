@@ -118,11 +118,12 @@ def design(
     Raises:
         InputError: naming the argument, its value and the cure.
 
-    >>> import sonicvacuum as sv
-    >>> steel = {"beads": 8, "diameter": "5mm", "material": "bearing-steel"}
-    >>> found = sv.design(effects="wall-compliance", **steel, speed=0.5, echo=False)
-    >>> max(found.single, key=found.single.get)
-    '7'
+    Examples:
+        >>> import sonicvacuum as sv
+        >>> steel = {"beads": 8, "diameter": "5mm", "material": "bearing-steel"}
+        >>> found = sv.design(effects="wall-compliance", **steel, speed=0.5, echo=False)
+        >>> max(found.single, key=found.single.get)
+        '7'
     """
     _check(most, strength, noise)
     places = _places(beads) if gauges is None else gauges

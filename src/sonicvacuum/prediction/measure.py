@@ -67,7 +67,8 @@ class ChainPrediction:
 
     Attributes:
         beads: their number.
-        bead_mass_g, striker_mass_g: as given, or from the density.
+        bead_mass_g: as given, or from the density.
+        striker_mass_g: likewise.
         striker_speed_m_s: as given, or the one at which the gauge reads what was aimed at.
         wave_speed_m_s: between the two gauges `speed_from` and `speed_to`, peak to peak.
         gauges: in the order asked for.
@@ -143,10 +144,11 @@ def predict(
     Raises:
         InputError: naming the argument, its value and the cure.
 
-    >>> import sonicvacuum as sv
-    >>> seen = sv.predict(beads=10, diameter="20mm", material="bearing-steel", speed=0.5)
-    >>> round(seen.bead_mass_g, 1), round(seen.wave_speed_m_s, -1)
-    (32.7, 580.0)
+    Examples:
+        >>> import sonicvacuum as sv
+        >>> seen = sv.predict(beads=10, diameter="20mm", material="bearing-steel", speed=0.5)
+        >>> round(seen.bead_mass_g, 1), round(seen.wave_speed_m_s, -1)
+        (32.7, 580.0)
     """
     card = card_of(**locals())
     check_extent(card)

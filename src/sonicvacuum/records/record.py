@@ -47,7 +47,8 @@ class Observable:
 
     Attributes:
         quantity: key of `observe.quantities.QUANTITIES`.
-        value, sigma: with its standard error; an amplitude in the unit of its gauge.
+        value: what was measured; an amplitude in the unit of its gauge.
+        sigma: its standard error.
         options: what the quantity needs or takes: from, to, sensor, level, threshold, amplitude (N).
         bound: `at_most` or `at_least`; None where the value is one.
         shared: source → relative standard error in common with others that name it.
