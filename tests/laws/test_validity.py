@@ -74,6 +74,13 @@ def test_a_fitted_law_is_told_of_beyond_its_data(reach, warned):
     assert any("free-form was fitted to data of up to" in w for w in told(chain)) is warned
 
 
+def test_energy_that_a_law_stores_uncounted_is_no_error():
+    """A law of no form is stiffer by a share here: the energy of that is in no balance."""
+    chain = CATALOGUE.effect("free-form").apply(Setup(coated()), a0=0.05).chain
+    assert not simulate(chain, ALL, DURATION, 1e-6, audit=True).energy.size
+    assert told(chain) == []
+
+
 def test_a_window_that_ends_too_soon_is_told():
     rise = np.linspace(0.0, 1.0, 50)[:, None]
     assert "before the pulse has passed g" in validity.unseen("g", rise, 1e-6)

@@ -36,7 +36,7 @@ def free_force(delta, rate, elastic, depth, pace, load, a, b, c, d, e, f, g, h, 
 # noise asks for.
 SOFT = 0.05
 
-TERM = Term("free-form", "force", free_force, 3 + len(COEFFICIENTS))
+TERM = Term("free-form", "force", free_force, 3 + len(COEFFICIENTS), stores=True)
 
 
 def held_force(
@@ -50,7 +50,7 @@ def held_force(
     return free_force(near, slow, elastic, depth, pace, load, a, b, c, d, e, f, g, h, i, j, k, m, n, o, p)
 
 
-HELD = Term("free-form", "force", held_force, 5 + len(COEFFICIENTS))
+HELD = Term("free-form", "force", held_force, 5 + len(COEFFICIENTS), stores=True)
 
 
 def coefficients(chain, stiffness, mass, depth, speed, force, **a):

@@ -50,6 +50,7 @@ class Term:
             stores none.
         strengths: slots `path`, `force` and `body`: which coefficients are all zero where the term does
             nothing, so that it is passed over there; None: it is always worked out.
+        stores: slot `force`: whether it may store energy, nobody knows how much, and not only take it.
     """
 
     name: str
@@ -60,6 +61,7 @@ class Term:
     start: Callable | None = None
     energy: Callable | None = None
     strengths: tuple[int, ...] | None = None
+    stores: bool = False
 
     def __post_init__(self):
         if self.slot not in SLOTS:
@@ -156,9 +158,9 @@ class LawSet:
 
     @property
     def stores_energy(self) -> bool:
-        """Whether the energy of the loading curve is known; it counts even where the unloading differs."""
+        """Whether the energy stored is known: that of the loading curve, even where the unloading differs."""
         (base,) = self.in_slot("elastic")
-        return base.energy is not None
+        return base.energy is not None and not any(term.stores for term in self.terms)
 
     @cached_property
     def first_coefficient(self) -> dict[str, int]:
