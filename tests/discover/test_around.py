@@ -1,5 +1,6 @@
 """One effect with a place, tried around where it was found: the narrow minimum next door, and what stays."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -12,7 +13,7 @@ from sonicvacuum.discover.fit.refit import fit
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, variants
 from sonicvacuum.discover.model.problem import experiment
-from sonicvacuum.discover.search import around, planes
+from sonicvacuum.discover.search import around, pairs, planes
 from sonicvacuum.discover.search.starts import setup_of
 from sonicvacuum.effects import effect
 
@@ -49,8 +50,11 @@ def test_a_narrow_minimum_at_another_place_is_found(name, key, hidden, place, st
     assert abs(value - hidden) < 4.0 * slope  # four standard errors
 
 
-def test_a_gap_beside_another_effect_is_found_where_it_is():
-    """Beside a gauge of another gain it had come to rest at the next contact, a third as wide."""
+@pytest.fixture(scope="module")
+def one_contact_on():
+    """A predictor, the nominal fit, and a gap beside a gauge of another gain where its fit came to rest:
+    at the next contact, a third as wide.
+    """
     gained = ("sensor-gain", {"gain_ratio": 1.2, "sensor": 1})
     hidden = ("contact-gap", {"gap_um": 0.9, "contact": 5})
     forward = Forward(experiment(made([gained, hidden], seed=3)[0]))
@@ -61,12 +65,32 @@ def test_a_gap_beside_another_effect_is_found_where_it_is():
     )
     both = planes.joined(Hypothesis((gain,)), gap, setup)
     u = np.array([[c.inverse(value) for c, value in zip(both.coordinates, (1.2, 0.3), strict=True)]])
-    one = fit(forward, both, u, null.nu[None])
-    better = around.refined(forward, one, setup)
+    return forward, null, fit(forward, both, u, null.nu[None])
+
+
+def test_a_gap_beside_another_effect_is_found_where_it_is(one_contact_on):
+    forward, _, one = one_contact_on
+    better = around.refined(forward, one, setup_of(forward))
     assert [c.place for c in better.hypothesis.components] == [1, 5]
     assert better.objective < one.objective - 10.0  # beyond what noise makes of one parameter
-    width, error = both.coordinates[1].value(better.u[1]), better.sigma[1]
+    width, error = one.hypothesis.coordinates[1].value(better.u[1]), better.sigma[1]
     assert abs(np.log(width / 0.9)) < 4.0 * error  # four standard errors of its logarithm
+
+
+@pytest.mark.parametrize(("behind", "asked"), [(0.0, True), (pairs.NEAR + 1.0, False)])
+def test_narrow_minima_are_looked_for_in_pairs_near_the_best(one_contact_on, monkeypatch, behind, asked):
+    """A gap and a droop of d′ 50 stood one contact on, a third short of what they gain: all was unknown."""
+    forward, null, one = one_contact_on
+    own = pairs.Pairs.__new__(pairs.Pairs)
+    own.forward, own.null, own.setup, own.found = forward, null, setup_of(forward), {}
+    own._note(one)
+    (before,) = own.ranked
+    monkeypatch.setattr(pairs.places, "placed", lambda fit: fit is one)
+    best = replace(before, effects=("sensor-gain", "gravity"), fit=None, log_bayes=before.log_bayes + behind)
+    own.found[frozenset(best.effects)] = best
+    own._refine()
+    after = own.found[frozenset(one.hypothesis.ids)]
+    assert (after.gain > before.gain + 10.0) is asked  # beyond what noise makes of one parameter
 
 
 def test_a_fit_at_its_minimum_stays_as_it_is():

@@ -18,7 +18,7 @@ from sonicvacuum.discover.fit.refit import Fit, finished, fit, polish
 from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, of_one_strength, variants
-from sonicvacuum.discover.search import directions, restart, screen, secants
+from sonicvacuum.discover.search import around, directions, restart, screen, secants
 from sonicvacuum.discover.search.planes import Start, joined, linear, variant
 from sonicvacuum.discover.search.starts import setup_of, starts_of
 from sonicvacuum.effects import Setup
@@ -35,6 +35,8 @@ TRIALS = 3
 # taken: these gain some hundredths, or some units with laws of several parameters.
 BEHIND = 30.0
 ITERATIONS = 12
+# Pairs of which narrow minima are looked for, those at most this far behind the best one in log evidence.
+REFINED, NEAR = 3, 10.0
 
 
 class Pairs:
@@ -66,6 +68,7 @@ class Pairs:
         self._refit(_best(self.asked, self.found, BESIDE))
         self._refit(_best(self.seen, self.found, LINEAR))
         self._exchange()
+        self._refine()
         return self.ranked
 
     def again(self) -> list[Combination]:
@@ -102,6 +105,14 @@ class Pairs:
             self._refit(chosen)
             if self.ranked[0] is best:
                 return
+
+    def _refine(self):
+        """Look for narrow minima of effects with a place in the leading pairs, see `around`."""
+        leading = self.ranked[:REFINED]
+        near = [p.fit for p in leading if places.placed(p.fit) and p.log_bayes > leading[0].log_bayes - NEAR]
+        refined = partial(around.refined, setup=self.setup)
+        for one in abreast.each(self.forward, refined, near, "places of pairs"):
+            self._note(one)
 
     def _refit(self, starts: list[Start]):
         """Fit pairs and note them."""
