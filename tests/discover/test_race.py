@@ -1,5 +1,7 @@
 """Far from the data single effects race: once one explains them, those far behind are only glanced at."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from made_records import made
@@ -47,3 +49,49 @@ def test_where_none_explains_them_all_are_followed(monkeypatch):
     found, glanced, size = raced([DRAG, GAIN], monkeypatch)
     assert not glanced
     assert found[0].fit.objective > size + singles.EXPLAINED * np.sqrt(2.0 * size)
+
+
+@pytest.mark.parametrize(
+    ("gained", "place", "followed"),
+    [
+        # Foreseen but for a fifth: what is promised half as much stays behind.
+        (190.0, None, ["relaxing-contact"]),
+        # Twice what slopes said: the others may gain more than they said, too.
+        (330.0, None, ["relaxing-contact", "kuwabara-kono", "hunt-crossley"]),
+        # A bead's own strength says nothing of others.
+        (330.0, "bead", ["relaxing-contact"]),
+    ],
+)
+def test_what_slopes_did_not_foresee_asks_the_others_too(monkeypatch, gained, place, followed):
+    """Hunt-Crossley damping of d′ 20 promised 92 and gained 336, a relaxing contact 163 and 327: the second
+    was named with 0.95, and the first never fitted.
+    """
+    promised = {"relaxing-contact": 163.0, "kuwabara-kono": 105.0, "hunt-crossley": 92.0, "gravity": 20.0}
+    names = list(promised)
+    asked = []
+
+    def candidate(branch, null, scores, effect, effort):
+        asked.append(effect.id)
+        component = SimpleNamespace(effect=SimpleNamespace(places=place))
+        fit = SimpleNamespace(hypothesis=SimpleNamespace(components=[component]))
+        return SimpleNamespace(effect=effect.id, gain=gained, fit=fit)
+
+    catalogue = SimpleNamespace(candidates=lambda setup, excluded: [SimpleNamespace(id=n) for n in names])
+    monkeypatch.setattr(singles, "setup_of", lambda forward: SimpleNamespace(catalogue=catalogue))
+    monkeypatch.setattr(singles, "_strained", lambda forward, null: False)
+    monkeypatch.setattr(singles.wide, "leaves_much", lambda forward, objective: False)
+    monkeypatch.setattr(singles.secants, "applies", lambda effect: False)
+    monkeypatch.setattr(
+        singles.abreast, "each", lambda forward, do, parts, stage: [do(forward, p) for p in parts]
+    )
+    monkeypatch.setattr(singles, "candidate", candidate)
+    monkeypatch.setattr(singles, "ranked", lambda found, odds: found)
+    scores = SimpleNamespace(
+        best=lambda: {name: k for k, name in enumerate(names)},
+        z=np.sqrt(list(promised.values())),
+        strength=np.zeros(len(names)),
+    )
+    run = SimpleNamespace(has_signals=True)
+    forward = SimpleNamespace(experiment=SimpleNamespace(runs=[run], excluded=(), prior_odds={}))
+    singles.fit_all(forward, SimpleNamespace(objective=1000.0), scores)
+    assert asked == followed

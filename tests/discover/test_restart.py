@@ -1,5 +1,7 @@
 """Minima that no slope leads to: pairs started again, single effects that slopes put far behind."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from made_records import made
@@ -8,6 +10,7 @@ from sonicvacuum.discover.fit import wide
 from sonicvacuum.discover.fit.evidence import Candidate
 from sonicvacuum.discover.fit.normal import linearise
 from sonicvacuum.discover.fit.refit import Fit, fit, polish
+from sonicvacuum.discover.judge import decision
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, variants
 from sonicvacuum.discover.model.problem import experiment
@@ -185,3 +188,19 @@ def test_a_single_effect_that_sets_come_down_to_is_known_by_its_lower_minimum():
     assert led[0].log_bayes == pytest.approx(-5.0 + 0.5 * (led[0].gain - own.gain))
     assert restart.led(null, there, led) is None
     assert [c.effect for c in restart.led(null, there, [other])] == ["viscous-drag", "sensor-gain"]
+
+
+def test_single_effects_are_led_lower_by_pairs_that_are_found_late_too(monkeypatch):
+    """A power of velocity stood at a bound, and was named beside a second law that did nothing: only pairs
+    that are started again had found its other power.
+    """
+    early, late = [SimpleNamespace(name="early")], [SimpleNamespace(name="late")]
+    of_two = SimpleNamespace(search=lambda: early, again=lambda: late)
+    monkeypatch.setattr(decision.pairs, "Pairs", lambda *_: of_two)
+    monkeypatch.setattr(decision.gross, "gross", lambda *_: False)
+    lower = {"early": None, "late": ["the other power"]}
+    monkeypatch.setattr(decision.restart, "lower", lambda forward, null, found, *_: lower[found[0].name])
+    monkeypatch.setattr(decision.Case, "_passing", lambda *_: (None, None, None))
+    monkeypatch.setattr(decision.Case, "_anew", lambda self, better: better)
+    case = decision.Case(None, None, None, [], None, None)
+    assert case._more(12.0, 0.0, None, {}, None) == ["the other power"]

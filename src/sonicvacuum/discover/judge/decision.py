@@ -109,6 +109,9 @@ class Case:
         if passed is None and not gross.gross(self.forward, start, self.known):
             asked, tried = tried[:ASKED], of_two.again()
             if [id(pair) for pair in tried[:ASKED]] != [id(pair) for pair in asked]:
+                lower = restart.lower(self.forward, self.null, tried[:ASKED], self.found, self.setup)
+                if lower is not None:
+                    return self._anew(lower)
                 passed, start, lowest = self._passing(tried, needed, most, alarms, seen)
         return passed or self._set(needed, most, shape, alarms, start, lowest, tried)
 

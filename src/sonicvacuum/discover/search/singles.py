@@ -25,7 +25,7 @@ NONLINEAR = 1500.0
 # Effects whose predicted gain is this far behind the best, beyond the share by which slopes err, are not
 # refitted while slopes can be trusted.
 HOPELESS, ERR = 20.0, 0.2
-# That share where all that were refitted leave much.
+# That share where all that were refitted leave much, or slopes did not foresee what the best one gains.
 ERR_FAR = 0.75
 # A nominal fit whose nuisances stand so many standard errors off does the work of what is missing with them.
 STRAINED = 5.0
@@ -84,14 +84,26 @@ def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
         chosen = [e for e in left if e in always or gains.get(e.id, 0.0 if loose else -np.inf) > enough]
         found += abreast.each(forward, follow, chosen, "single effects")
         left = [e for e in left if e not in chosen]
-        achieved = max((c.gain for c in found if c is not None), default=0.0)
+        leading = max((c for c in found if c is not None), key=lambda c: c.gain, default=None)
+        achieved = leading.gain if leading else 0.0
         if chosen and achieved < best_gain:
             best_gain = achieved
         elif err == ERR and not loose and wide.leaves_much(forward, null.objective - achieved):
             err = ERR_FAR
+        elif err == ERR and not loose and _unforeseen(leading, gains):
+            best_gain, err = achieved, ERR_FAR
         else:
             break
     return ranked([c for c in found if c is not None], forward.experiment.prior_odds)
+
+
+def _unforeseen(leading: Candidate | None, gains: dict[str, float]) -> bool:
+    """Whether the leading effect gains more than slopes foresee, by more than they err: those of others err,
+    too. Of one at a bead or contact that says nothing of others.
+    """
+    if leading is None or leading.fit.hypothesis.components[0].effect.places:
+        return False
+    return (1.0 - ERR) * leading.gain > gains.get(leading.effect, leading.gain)
 
 
 def _raced(forward, null, scores, gains, effects, effort) -> list[Candidate]:
