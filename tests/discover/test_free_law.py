@@ -11,6 +11,7 @@ from msgspec import structs
 from sonicvacuum.discover import law as telling
 from sonicvacuum.discover import policy, verdict
 from sonicvacuum.discover.compare import compare, read_model
+from sonicvacuum.discover.fit import reach as far
 from sonicvacuum.discover.fit.reach import reach
 from sonicvacuum.discover.fit.wide import nominal
 from sonicvacuum.discover.judge.law import formula, surface
@@ -95,6 +96,16 @@ def test_reach_counts_the_compression_at_rest(empty):
     chain = loaded.experiment.batches[0].chain
     at_rest = chain.depth_at(0, chain.static_forces(1)[0][None]).max()
     assert reach(loaded, one).depth > max(at_rest, reach(forward, one).depth)
+
+
+def test_reach_of_a_long_chain_is_seen_in_its_first_contacts_and_the_wall(empty, monkeypatch):
+    forward = Forward(experiment(empty))
+    one = nominal(forward)
+    whole = reach(forward, one)
+    monkeypatch.setattr(far, "CONTACTS", 2)
+    ((depth, rate),) = far.approaches(forward, one)
+    assert depth.shape == rate.shape == (len(depth), 3, len(empty.runs))
+    assert reach(forward, one) == whole
 
 
 def test_a_record_of_faster_impacts_is_told_to_go_beyond_it(found):

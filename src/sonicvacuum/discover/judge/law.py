@@ -16,8 +16,6 @@ from sonicvacuum.effects.free_form import COEFFICIENTS, free_force
 
 # Knots of the surface along compression and along rate; odd, so that rest is among the latter.
 DEPTHS, RATES = 21, 21
-# So many contacts from the striker on tell where contacts have been; the first of them see the most.
-CONTACTS = 20
 # Powers from which formulas start.
 _POWERS = (0.25, 0.5, 1.0, 1.5, 2.0, 3.0)
 # Terms of formulas: elastic, stiffening with the rate, lossy.
@@ -79,8 +77,8 @@ def _visited(law: FreeLaw):
     """Compressions in m and rates in m/s, of all runs, of the first contacts of beads while they touch."""
     depths, rates = [], []
     for depth, rate in approaches(law.forward, law.fit):
-        beads = depth.shape[1] - 1
-        shown = slice(min(1, max(beads - 1, 0)), max(min(beads, CONTACTS), 1))
+        last = depth.shape[1] - 1
+        shown = slice(min(1, max(last - 1, 0)), max(last, 1))
         depth, rate = depth[:, shown], rate[:, shown]
         touching = depth > TOUCHING * depth.max()
         depths.append(depth[touching])
