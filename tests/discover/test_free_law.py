@@ -1,5 +1,6 @@
 """The free-form contact law: closes gaps that no name explains, on runs it has not seen, and nothing else."""
 
+import pickle
 from dataclasses import replace
 
 import deep_damping
@@ -207,3 +208,15 @@ def test_the_law_that_is_held_is_the_law_within_its_data(found):
     forces = [simulate(one, (0, 5), 2e-4, 1e-6).force for one in (free, held)]
     assert np.abs(forces[0]).max() > 1.0
     np.testing.assert_allclose(*forces, rtol=0, atol=1e-9)  # N: another kernel rounds otherwise
+
+
+def test_a_law_that_comes_back_from_a_copy_of_the_process_is_the_same(found):
+    """Its term was known by being the same object, which it is in one process only: on two processors the law
+    had no strength beside rivals, and names that it beat were others.
+    """
+    other = pickle.loads(pickle.dumps(found))
+    here, there = (
+        law.forward.sampled(law.fit.hypothesis, law.fit.u[None], law.fit.nu[None]) for law in (found, other)
+    )
+    for own, copied in zip(here, there, strict=True):
+        np.testing.assert_array_equal(own, copied)

@@ -88,7 +88,7 @@ def _thicker(chain, _, ratio):
     """The layer that acts in the contacts; a coating that does not act as one has no thickness to a chain."""
     own = [
         replace(a, parameters={name: value * ratio for name, value in a.parameters.items()})
-        if a.term is LAYER
+        if a.term == LAYER
         else a
         for a in chain.actions
     ]
@@ -98,9 +98,9 @@ def _thicker(chain, _, ratio):
 def _shaped(chain, name, ratio):
     """One coefficient of the free-form law; as a nuisance, that is a logarithm."""
     own = [
-        replace(a, parameters={**a.parameters, name: np.log(ratio)}) for a in chain.actions if a.term is TERM
+        replace(a, parameters={**a.parameters, name: np.log(ratio)}) for a in chain.actions if a.term == TERM
     ]
-    return replace(chain, actions=(*(a for a in chain.actions if a.term is not TERM), *own))
+    return replace(chain, actions=(*(a for a in chain.actions if a.term != TERM), *own))
 
 
 # Kind → (chains, material, ratio (lanes,)) → chains, for those that act on the chain itself.
@@ -207,7 +207,7 @@ def shared(record: Record, chain: Chain) -> tuple[Shared, ...]:
     found = [
         *(Shared("modulus", sigma, name) for name, sigma in _moduli(record, chain).items()),
         *(Shared(kind, tolerance(kind.replace("-", "_") + "_rel")) for kind in _BODIES),
-        *(Shared("coating", tolerance("coating_rel")) for a in chain.actions if a.term is LAYER),
+        *(Shared("coating", tolerance("coating_rel")) for a in chain.actions if a.term == LAYER),
         Shared("speed-common", tolerance("speed_common_rel")),
         Shared("gain-common", tolerance("gain_common_rel")),
         Shared("clock", record.clock_rel_sigma),
