@@ -167,8 +167,8 @@ def law(verdict: Verdict, catalogue: Catalogue = CATALOGUE) -> str:
     near = [f"{plain(n.effect, catalogue)} ({n.distance:.2f})" for n in found.nearest[:3]]
     far = f"{found.depth_um[-1]:.3g} µm and {found.speed_m_s[-1]:.3g} m/s"
     text = (
-        f"What is left is described by a contact law without a name: {found.formula}. Contacts went as far "
-        f"as {far}; beyond, what it adds to Hertz stays what it is there."
+        f"What is left is described by a contact law without a name: {found.formula}. Contacts of beads "
+        f"went as far as {far}; beyond what all contacts went through, what it adds to Hertz stays as it is."
     )
     if near:
         scale = "with their distance from it (0: the same, 1: no nearer than Hertz)"

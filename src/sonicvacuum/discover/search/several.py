@@ -165,7 +165,7 @@ class Turns:
 
         found = abreast.each(self.forward, without, which)
         for one in found:
-            if one is not self.null:
+            if one.hypothesis.components:
                 self._noted(one)
         return found
 
