@@ -55,6 +55,10 @@ class Entry:
             return tuple(g.id for g in plan.gauges if g.kind in self.gauges)
         return tuple(range(1, plan.beads + 1)) if self.places else (None,)
 
+    def acts(self, plan: Plan, coated: bool) -> bool:
+        """Whether it can act there; `coated`: whether the laboratory states a coating of its beads."""
+        return (coated or not self.coated) and self.fits(plan) and bool(self.where(plan))
+
 
 def _law(name, key=None, unit=1.0):
     """`put` of an effect that is one number of the force law."""

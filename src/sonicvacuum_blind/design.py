@@ -76,6 +76,11 @@ class Design:
         return self.runs[len(self.runs) // 2]
 
     @property
+    def coated(self) -> bool:
+        """Whether the record states a coating of its beads."""
+        return self.coating is not None
+
+    @property
     def traced(self) -> int:
         """Samples simulated for each trace, also where only scalars are recorded."""
         return self.samples or SAMPLES

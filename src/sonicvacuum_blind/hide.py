@@ -199,7 +199,7 @@ def _case(spec, random):
     best, reached = None, -1.0
     correlation = float(random.choice(CORRELATIONS)) if spec.noise == "ar1" else 0.0
     drawn = (design.draw(spec.design, random) for _ in range(DRAWS))
-    able = (d for d in drawn if all(_acts(d, _entry(spec, name)) for name in spec.effects))
+    able = (d for d in drawn if all(_entry(spec, name).acts(d.reference, d.coated) for name in spec.effects))
     for made in itertools.islice(able, TRIES):
         try:
             case, least = _with_effects(spec, made, correlation, random)
@@ -242,12 +242,6 @@ def _with_effects(spec, made, correlation, random):
 
 def _entry(spec, name):
     return (foreign.BY_ID if name in spec.outside else catalogue.BY_ID)[name]
-
-
-def _acts(made: Design, entry):
-    if entry.coated and made.coating is None:
-        return False
-    return entry.fits(made.reference) and bool(entry.where(made.reference))
 
 
 def _hidden(frame, entry, target, measure, random):

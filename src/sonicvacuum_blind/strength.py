@@ -114,7 +114,7 @@ def rivals(frame: Frame, size: float = 4.0) -> list[Rival]:
     """Directions of all effects, places, shapes and signs, from steps whose d′ is near `size`."""
     reference, found = frame.design.reference, []
     for entry in map(BY_ID.get, STUDIED):
-        if not entry.fits(reference):
+        if not entry.acts(reference, frame.design.coated):
             continue
         strength = min(entry.start, entry.most)
         for shape, sign in itertools.product(entry.shapes(reference), entry.signs):

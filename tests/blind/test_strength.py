@@ -7,8 +7,11 @@ import pytest
 from scipy import stats
 
 from sonicvacuum.discover import policy
-from sonicvacuum_blind import catalogue, design
+from sonicvacuum.discover.model.problem import experiment
+from sonicvacuum.effects import Setup
+from sonicvacuum_blind import catalogue, design, study
 from sonicvacuum_blind.prediction import Errors, predict
+from sonicvacuum_blind.record import as_record
 from sonicvacuum_blind.signature import Frame
 from sonicvacuum_blind.strength import (
     FALSE_ALARM,
@@ -116,6 +119,26 @@ def test_correlated_noise_is_whitened():
     white = frame.whiten.vector(noisy) - frame.base
     assert np.std(white) == pytest.approx(1.0, abs=4.0 / np.sqrt(2 * len(white)))  # 4 standard errors
     assert np.mean(white[1:] * white[:-1]) == pytest.approx(0.0, abs=4.0 / np.sqrt(len(white)))
+
+
+@pytest.mark.parametrize(("kind", "seed"), [("traces", 4), ("traces", 23), ("scalars", 2), ("ball", 6)])
+def test_rivals_are_what_may_be_named(kind, seed):
+    """The rule would be beaten too easily with rivals that no verdict has, a coating of bare beads."""
+    made = design.draw(kind, np.random.default_rng(seed))
+    assert made.coated == (seed == 23)
+    clean = predict(made)
+    known = experiment(as_record(made, clean.traces, clean.scalars, "nothing hidden"))
+    setup = Setup(known.batches[0].chain, known.gauges)
+    asked = {effect.id for effect in known.catalogue.candidates(setup)}
+    named = {r.id for r in rivals(Frame.of(made))}
+    assert ("coating-thickness" in named) == made.coated
+    assert named <= asked
+
+
+def test_one_ball_hides_all_that_acts_on_it():
+    ball = Frame.of(design.draw("ball", np.random.default_rng(1)))
+    hidden = {s.effects[0] for s in study.cases("full") if (s.kind, s.design) == ("single", "ball")}
+    assert {r.id for r in rivals(ball)} == hidden
 
 
 def test_an_effect_explains_itself(frame, scaled):
