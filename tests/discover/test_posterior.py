@@ -10,6 +10,7 @@ from sonicvacuum.blas import one_thread
 from sonicvacuum.discover import draws, posterior
 from sonicvacuum.discover.draws import Draws
 from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.verdict import parameters as told_of
 
 
 def test_weights_of_equal_draws_are_all_worth_one():
@@ -43,6 +44,19 @@ def test_quantiles_of_weighted_draws_are_those_of_what_they_stand_for():
     one = Draws("a", "b", draws.SAMPLED, value[::-1], np.exp(-0.5 * value**2) / np.exp(-0.5 * value**2).sum())
     for share in (0.05, 0.5, 0.95):
         assert one.quantile(share) == pytest.approx(ndtri(share), abs=0.006)  # the draws' distance
+    assert one.error == pytest.approx(1.0, abs=0.006)
+
+
+@pytest.mark.parametrize(("width", "told"), [(1.2, 1.0), (4.0, 4.0)])
+def test_where_the_posterior_is_much_wider_than_its_gaussian_the_error_is_too(verdict, width, told):
+    """Along a valley that bends, ± 0.003 stood beside 90 % that reach from -0.054 to +0.003."""
+    fit = verdict.found.final
+    ((effect, own),) = told_of(fit).items()
+    (parameter, gaussian) = next(iter(own.items()))
+    values = gaussian.value + width * gaussian.sigma * ndtri((np.arange(2000) + 0.5) / 2000)
+    one = Draws(effect, parameter, draws.SAMPLED, values, np.full(2000, 1.0 / 2000))
+    error = told_of(fit, (), [one])[effect][parameter].sigma
+    assert error == pytest.approx(told * gaussian.sigma, rel=0.01)  # 2000 quantiles
 
 
 def test_draws_are_of_the_distribution_that_they_claim(verdict):

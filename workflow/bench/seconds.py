@@ -67,6 +67,17 @@ finally:
 """
 
 
+def earlier(commit: str, folder: Path) -> Path:
+    """The sources of a commit, put into a folder."""
+    kept = subprocess.run(
+        ["git", "-C", str(ROOT), "archive", "--format=tar", commit, "src"], check=True, stdout=subprocess.PIPE
+    )
+    with tarfile.open(fileobj=BytesIO(kept.stdout)) as archive:
+        # Pythons before 3.11.4 know no filters; the archive is our own.
+        archive.extractall(folder, **({"filter": "data"} if hasattr(tarfile, "data_filter") else {}))
+    return folder / "src"
+
+
 def verdict(source: Path, record: Path, folder: Path) -> dict:
     """Seconds of one verdict by part, what it named, and the chains that it simulated."""
     out = folder / "out"
@@ -180,16 +191,7 @@ def main() -> None:
     if not (given.records and given.before):
         parser.error("give records and --before COMMIT, or --draw")
     with tempfile.TemporaryDirectory() as folder:
-        earlier = Path(folder) / "earlier"
-        kept = subprocess.run(
-            ["git", "-C", str(ROOT), "archive", "--format=tar", given.before, "src"],
-            check=True,
-            stdout=subprocess.PIPE,
-        )
-        with tarfile.open(fileobj=BytesIO(kept.stdout)) as archive:
-            # Pythons before 3.11.4 know no filters; the archive is our own.
-            archive.extractall(earlier, **({"filter": "data"} if hasattr(tarfile, "data_filter") else {}))
-        sources = {"before": earlier / "src", "now": ROOT / "src"}
+        sources = {"before": earlier(given.before, Path(folder)), "now": ROOT / "src"}
         rows = measured(sources, given.records, given.repeats, min if given.least else statistics.median)
     write_csv(given.out, COLUMNS, ([row[c] for c in COLUMNS] for row in rows))
 

@@ -19,6 +19,8 @@ SAMPLED, PROFILE, LINEAR, AVERAGED = "sampled", "profile", "linearised", "averag
 # Above this the weights have tails too heavy for an average over them (Vehtari et al., J. Mach. Learn. Res.
 # 25(72), 2024, section 3).
 TRUSTED = 0.7
+# Shares of a Gaussian that lie below one standard deviation to either side.
+MIDDLE = (0.158655, 0.841345)
 
 
 @dataclass(frozen=True)
@@ -46,6 +48,11 @@ class Draws:
         order = np.argsort(self.value, kind="stable")
         weight = self.weight[order]
         return float(np.interp(share, np.cumsum(weight) - 0.5 * weight, self.value[order]))
+
+    @property
+    def error(self) -> float:
+        """Half of what holds the middle 68 % of the weight: of a Gaussian its standard deviation."""
+        return 0.5 * (self.quantile(MIDDLE[1]) - self.quantile(MIDDLE[0]))
 
     @property
     def effective(self) -> float:

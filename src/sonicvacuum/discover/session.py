@@ -129,7 +129,7 @@ def discover(
         named=found.named,
         probabilities=found.probabilities,
         confusable=alike,
-        parameters=verdict.parameters(counted.final, found.rivals) if named else {},
+        parameters=verdict.parameters(counted.final, found.rivals, drawn) if named else {},
         gap=verdict.gaps(found.null, final, found.sizes, before, left),
         where=verdict.where(places),
         upper_limits=verdict.upper_limits(limits),

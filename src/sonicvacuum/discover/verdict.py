@@ -12,6 +12,7 @@ import msgspec
 import numpy as np
 from msgspec import UNSET, Struct, UnsetType, field
 
+from sonicvacuum.discover.draws import Draws
 from sonicvacuum.discover.faults.found import Finding
 from sonicvacuum.discover.fit.goodness import Goodness
 from sonicvacuum.discover.fit.heldout import HeldOut
@@ -45,6 +46,8 @@ from sonicvacuum.tables import write_csv
 
 # How the line begins that says which slips were put right.
 PUT_RIGHT = "all else is of the record put right"
+# The posterior's own width is told from so many times the standard error of its Gaussian on: draws scatter.
+BENT = 1.5
 
 
 class Verdict(Part, kw_only=True):
@@ -160,19 +163,25 @@ def sources(catalogue: Catalogue, ids=None) -> Sources:
     return {id: Source(name=s.name, sha256=s.sha256) for id, s in own.items()} or UNSET
 
 
-def parameters(fit: Fit, found: Sequence[Rival] = ()) -> dict[str, dict[str, Value]]:
+def parameters(
+    fit: Fit, found: Sequence[Rival] = (), drawn: Sequence[Draws] = ()
+) -> dict[str, dict[str, Value]]:
     """Values and standard errors of the free parameters, with what rivals that have them make of them; places
     with error 0.
+
+    Where the posterior, as it was `drawn`, is much wider than the Gaussian of the fit, as along a valley that
+    bends, its width is the error.
     """
+    wide = {(d.effect, d.parameter): d.error for d in drawn}
     off = [share @ np.square(shift) for share, shift in rivals.shifts(fit, found)]
     result, first, sigma = {}, 0, np.sqrt(np.square(fit.sigma) + off)
     for component in fit.hypothesis.components:
         values = {}
         for k, c in enumerate(component.free):
-            u = fit.u[first + k]
-            values[c.parameter.name] = Value(
-                value=float(c.value(u)), sigma=_finite(c.slope(u) * sigma[first + k])
-            )
+            u, name = fit.u[first + k], c.parameter.name
+            error, width = c.slope(u) * sigma[first + k], wide.get((component.effect.id, name), 0.0)
+            told = error if width <= BENT * error else width
+            values[name] = Value(value=float(c.value(u)), sigma=_finite(told))
         if component.effect.places:
             values[component.effect.places] = Value(value=float(component.place), sigma=0.0)
         first += len(component.free)
