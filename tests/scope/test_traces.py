@@ -32,6 +32,19 @@ def test_rest_noise_and_arrival(offset, sigma, sign, seed):
     assert found.clipped == 0 and len(found.spikes) == 0
 
 
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_pulse_of_few_samples_is_told_as_it_was_recorded(sign):
+    """The median of five halves what three samples show; a recorder at 51.2 kS/s sees steel balls so."""
+    pulse = sign * np.array([0.08, 0.41, 0.93, 1.0, 0.52, 0.03, -0.22, -0.25, -0.2])
+    values = 0.3 + 0.002 * np.random.default_rng(3).standard_normal(400)
+    values[60:69] += pulse
+    values[300] += 2.0  # a spike is no pulse
+    found = look(values)
+    assert found.peak == pytest.approx(sign, abs=0.01)  # five standard deviations
+    assert found.width == 3
+    assert found.arrival in (60, 61)
+
+
 def test_hum_is_not_white():
     hum = 0.05 * np.sin(2.0 * np.pi * np.arange(COUNT) / 1500.0)
     found = look(pulse(2.0) + hum + noise(0.01))

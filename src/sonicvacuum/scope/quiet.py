@@ -15,6 +15,8 @@ WEAKEST = 8.0
 CLIPPED = 5
 # A single sample off the median of its neighbours by so many standard deviations is a spike.
 SPIKE = 10.0
+# Pulses of fewer samples at half height are flattened by a median of five: they are taken as recorded.
+SHORT = 12
 # Standard deviation of a normal law over its median absolute deviation.
 _NORMAL = 1.4826
 
@@ -69,7 +71,10 @@ def look(values: np.ndarray) -> Trace:
         rest = float(quiet_mean.mean()) if len(quiet_mean) else rest
     slow = float(_NORMAL * np.median(np.abs(quiet - rest))) if len(quiet) >= 20 else sigma
     above = np.flatnonzero(off > least)
-    width = _width(off, top)
+    width, peak = _width(off, top), float(smooth[top] - rest)
+    spikes = _spikes(values, smooth, sigma, width)
+    if width < SHORT:
+        width, peak = _as_recorded(values - rest, top, width)
     return Trace(
         rest,
         sigma,
@@ -78,10 +83,10 @@ def look(values: np.ndarray) -> Trace:
         arrival,
         width,
         int(above[-1]) if len(above) else len(values) - 1,
-        float(smooth[top] - rest),
+        peak,
         step,
         _clipped(values),
-        _spikes(values, smooth, sigma, width),
+        spikes,
     )
 
 
@@ -142,6 +147,14 @@ def _width(off, top):
     return max(1, end - begin - 1)
 
 
+def _as_recorded(moved, top, width):
+    """Width and peak of the short pulse around sample `top`, from what is off the rest there."""
+    first = max(0, top - width)
+    off = np.abs(moved)
+    highest = first + int(off[first : top + width + 1].argmax())
+    return _width(off, highest), float(moved[highest])
+
+
 def _clipped(values):
     """Samples that lie in rows of equal ones at the highest or lowest level, 0 for shorter rows."""
     middle, count = float(np.median(values)), 0
@@ -156,6 +169,6 @@ def _clipped(values):
 
 def _spikes(values, smooth, sigma, width):
     """Indices of single samples off the median of five, where pulses are much longer than that."""
-    if width < 12 or sigma <= 0.0:
+    if width < SHORT or sigma <= 0.0:
         return np.zeros(0, dtype=int)
     return np.flatnonzero(np.abs(values - smooth) > SPIKE * max(sigma, 1e-300))
