@@ -45,6 +45,16 @@ def test_a_pulse_of_few_samples_is_told_as_it_was_recorded(sign):
     assert found.arrival in (60, 61)
 
 
+def test_a_pulse_of_two_samples_is_one_and_a_spike_is_none():
+    values = 0.002 * np.random.default_rng(4).standard_normal(400)
+    values[[200, 201, 202, 203]] += [0.08, 1.0, 0.8, 0.06]
+    found = look(values)
+    assert (found.arrival, found.width) == (200, 2)
+    assert found.peak == pytest.approx(1.0, abs=0.01)  # five standard deviations
+    values[200:204] = [0.0, 1.0, 0.0, 0.0]
+    assert look(values).arrival is None
+
+
 def test_hum_is_not_white():
     hum = 0.05 * np.sin(2.0 * np.pi * np.arange(COUNT) / 1500.0)
     found = look(pulse(2.0) + hum + noise(0.01))

@@ -60,6 +60,10 @@ def look(values: np.ndarray) -> Trace:
     step = converter_step(values)
     rest, sigma, wander = _rest(values, step)
     smooth = median_filter(values, 5, mode="nearest") if len(values) > 50 else values
+    width = _width(np.abs(smooth - rest), int(np.abs(smooth - rest).argmax()))
+    if width < SHORT and len(values) > 50:
+        # Two samples in a row are no spike, and may be a pulse.
+        smooth = median_filter(values, 3, mode="nearest")
     off = np.abs(smooth - rest)
     top = int(off.argmax())
     least = max(SIGMAS * wander, SHARE * off[top], STEPS * step)
@@ -71,8 +75,7 @@ def look(values: np.ndarray) -> Trace:
         rest = float(quiet_mean.mean()) if len(quiet_mean) else rest
     slow = float(_NORMAL * np.median(np.abs(quiet - rest))) if len(quiet) >= 20 else sigma
     above = np.flatnonzero(off > least)
-    width, peak = _width(off, top), float(smooth[top] - rest)
-    spikes = _spikes(values, smooth, sigma, width)
+    peak, spikes = float(smooth[top] - rest), _spikes(values, smooth, sigma, width)
     if width < SHORT:
         width, peak = _as_recorded(values - rest, top, width)
     return Trace(
