@@ -1,6 +1,7 @@
 """Slips of the set-up that traces show: each is made on purpose, and must be the one that is named."""
 
 import json
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -111,7 +112,15 @@ def test_text_and_json_say_the_same(tmp_path):
     assert all(line in text for line in (*found["suspects"], *found["warnings"]))
     assert "near: peak at" in text
     assert "needed" in text
+    assert "uncalibrated" not in text
     assert found["discover_s"]["low"] < found["discover_s"]["estimate"] < found["discover_s"]["high"]
+
+
+def test_readings_of_a_gauge_that_was_never_calibrated_are_no_newtons(tmp_path):
+    text = check([put(tmp_path, sensors__0__gain_rel_sigma="unknown")])
+    assert re.search(r"near: peak at \S+ us \(\S+\); peak \S+ uncalibrated \(\S+ N\)", text)
+    assert re.search(r"near: peak \S+, uncalibrated, \S+ times the noise", text)
+    assert re.search(r"far: peak \S+ N, \S+ times the noise", text)
 
 
 @pytest.mark.parametrize(

@@ -65,7 +65,7 @@ def _run(record: Record, run: Run, block: RunBlock):
     if run.signals:
         yield (
             f"    {run.signals.samples} samples, {run.signals.interval_s * 1e6:g} us apart, from "
-            f"{run.signals.start_s * 1e6:g} us"
+            f"{round(run.signals.start_s * 1e6, 3) + 0.0:g} us"
         )
         for g in record.gauges:
             if g.id not in run.signals.readings:
@@ -73,7 +73,7 @@ def _run(record: Record, run: Run, block: RunBlock):
                 continue
             peak = float(run.signals.readings[g.id].max())
             noise = f"{peak / g.sigma:.3g} times the noise" if g.sigma else "noise not stated"
-            yield f"    {g.id}: peak {peak:.4g} {g.unit}, {noise}"
+            yield f"    {g.id}: peak {peak:.4g}{f' {g.unit}' if g.calibrated else ', uncalibrated'}, {noise}"
     for o, given in zip(run.observables, block.observables, strict=True):
         unit = "" if str(given.unit) == "1" else f" {given.unit}"
         sign = {None: "=", "at_most": "≤", "at_least": "≥"}[given.bound]

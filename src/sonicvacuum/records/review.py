@@ -37,6 +37,7 @@ class Review:
         suspects: what looks so against the nominal model, and slips that the traces show by themselves.
         treatment: what is done to long traces before the search; empty where they are taken as they are.
         discover_s: rough time of `discover` on one core.
+        uncalibrated: gauges whose readings are in a unit of their own.
     """
 
     record: str
@@ -46,6 +47,7 @@ class Review:
     suspects: tuple[str, ...]
     treatment: tuple[str, ...]
     discover_s: float
+    uncalibrated: tuple[str, ...] = ()
 
 
 def review(record: Record, searched: Record | None = None, treatment=(), slips=()) -> Review:
@@ -66,6 +68,7 @@ def review(record: Record, searched: Record | None = None, treatment=(), slips=(
         suspects=(*suspects(record, seen), *slips),
         treatment=tuple(treatment),
         discover_s=_seconds(searched or record),
+        uncalibrated=tuple(g.id for g in record.gauges if not g.calibrated),
     )
 
 
@@ -115,7 +118,8 @@ def lines(found: Review) -> list[str]:
         said.append(f"  run {run}, measured (the nominal model):")
         features = [f for f in found.expected.features if f.run == run]
         for gauge in dict.fromkeys(f.gauge for f in features):
-            said.append(f"    {gauge}: " + "; ".join(_told(f) for f in features if f.gauge == gauge))
+            own = [_told(f, gauge in found.uncalibrated) for f in features if f.gauge == gauge]
+            said.append(f"    {gauge}: " + "; ".join(own))
         said += [
             f"    recorded {_span(w.recorded)}, needed {_span(w.needed)}"
             for w in found.expected.windows
@@ -130,15 +134,19 @@ def lines(found: Review) -> list[str]:
     return [*said, f"  discover will take some {span} s on one core (a rough estimate)"]
 
 
-def _told(feature: Feature):
-    """`peak 5.4 N (5.38)`."""
+def _told(feature: Feature, uncalibrated: bool):
+    """`peak 5.4 N (5.38)`; of an uncalibrated gauge `peak 0.017 uncalibrated (5.38 N)`."""
     unit, factor = _SHOWN.get(feature.unit, (feature.unit, 1.0))
     expected, measured = (
         "–" if n is None else f"{n * factor:.4g}" for n in (feature.expected, feature.measured)
     )
+    if uncalibrated and feature.quantity == "amplitude":
+        return f"{_TITLES[feature.quantity]} {measured} uncalibrated ({expected} {unit})"
     start = f" from {feature.start}" if feature.quantity == "speed" else ""
     return f"{_TITLES[feature.quantity]}{start} {measured} {unit} ({expected})"
 
 
 def _span(window):
-    return f"{window[0] * 1e6:.4g} to {window[1] * 1e6:.4g} us"
+    # To a nanosecond: the first time of a file may be a rounding error.
+    begin, end = (round(1e6 * t, 3) + 0.0 for t in window)
+    return f"{begin:.4g} to {end:.4g} us"
