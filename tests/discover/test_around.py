@@ -93,6 +93,22 @@ def test_narrow_minima_are_looked_for_in_pairs_near_the_best(one_contact_on, mon
     assert (after.gain > before.gain + 10.0) is asked  # beyond what noise makes of one parameter
 
 
+def test_a_large_gap_is_found_where_a_lighter_bead_was():
+    """A gap of 0.61 um was told as a bead 7 % light: slopes had led to one of 0.02 um five contacts on."""
+    hidden = [("contact-gap", {"gap_um": 1.5, "contact": 4})]
+    forward, one, setup = found(hidden, "contact-gap", 0.02, 9)
+    _, lighter, _ = found(hidden, "mass-defect", 0.95, 4)
+    null = wide.nominal(forward)
+    better = around.beside(forward, null, one, lighter, setup)
+    assert better.hypothesis.components[0].place in (3, 4, 5)
+    assert better.objective < min(one.objective, lighter.objective)
+    better = around.refined(forward, better, setup)
+    assert better.hypothesis.components[0].place == 4
+    width, error = better.hypothesis.coordinates[0].value(better.u[0]), better.sigma[0]
+    assert abs(np.log(width / 1.5)) < 4.0 * error  # four standard errors of its logarithm
+    assert around.beside(forward, null, better, lighter, setup) is better
+
+
 def test_a_fit_at_its_minimum_stays_as_it_is():
     hidden = [("mass-defect", {"mass_ratio": 1.06, "bead": 5})]
     forward, one, setup = found(hidden, "mass-defect", 1.06, 5)
@@ -117,7 +133,7 @@ def test_what_has_no_place_is_not_tried():
 )
 def test_all_with_a_place_are_looked_for_where_one_leads(monkeypatch, gains, asked):
     """A gap of d′ 50 gained 412 where its slopes had led it, and a lighter bead 1762; 2539 one contact on."""
-    followed = []
+    followed, tried = [], []
     fits = {name: SimpleNamespace(name=name) for name in gains}
     monkeypatch.setattr(rounds.singles, "setup_of", lambda forward: None)
     monkeypatch.setattr(rounds.places, "placed", lambda fit: fit.name != "gravity")
@@ -125,9 +141,16 @@ def test_all_with_a_place_are_looked_for_where_one_leads(monkeypatch, gains, ask
         rounds.places, "settled", lambda forward, fit, setup: followed.append(fit.name) or fit
     )
     monkeypatch.setattr(rounds.around, "refined", lambda forward, fit, setup: fit)
+    monkeypatch.setattr(
+        rounds.around,
+        "beside",
+        lambda forward, null, fit, other, setup: tried.append((fit.name, other.name)) or fit,
+    )
     monkeypatch.setattr(rounds.enough, "first", lambda forward, found: found)
     monkeypatch.setattr(rounds.evidence, "ranked", lambda found, odds: found)
     found = [SimpleNamespace(effect=name, gain=gain, fit=fits[name]) for name, gain in gains.items()]
     forward = SimpleNamespace(experiment=SimpleNamespace(prior_odds={}))
     assert rounds._along(forward, None, found) == found
     assert followed == asked
+    # Each of the others where the leading one was found.
+    assert tried == [(name, asked[0]) for name in asked[1:]]

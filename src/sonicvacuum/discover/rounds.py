@@ -275,13 +275,25 @@ def _along(forward, null, found):
     setup = singles.setup_of(forward)
     least = max(c.gain for c in found) - ALONG
     # A gap is much like a lighter bead: where one of the two leads, the other is looked for as well.
-    placed = [c.gain > 0.0 and places.placed(c.fit) for c in found]
-    leads = any(c.gain > least for c, one in zip(found, placed, strict=True) if one)
-    for k, c in enumerate(found):
-        if leads and placed[k]:
-            better = around.refined(forward, places.settled(forward, c.fit, setup), setup)
-            if better is not c.fit:
-                result[k] = _moved(c, null, better, ((better.hypothesis.components[0].place, 1.0),), c.flags)
+    placed = [k for k, c in enumerate(found) if c.gain > 0.0 and places.placed(c.fit)]
+    leads = any(found[k].gain > least for k in placed)
+
+    def refined(k, start):
+        better = around.refined(forward, places.settled(forward, start, setup), setup)
+        if better is not result[k].fit:
+            where = ((better.hypothesis.components[0].place, 1.0),)
+            result[k] = _moved(result[k], null, better, where, result[k].flags)
+
+    for k in placed if leads else ():
+        refined(k, found[k].fit)
+    if leads:
+        first = max((result[k] for k in placed), key=lambda c: c.gain)
+        for k in placed:
+            start = result[k].fit
+            if result[k] is not first:
+                start = around.beside(forward, null, start, first.fit, setup)
+            if start is not result[k].fit:
+                refined(k, start)
     return enough.first(forward, evidence.ranked(result, forward.experiment.prior_odds))
 
 

@@ -15,6 +15,8 @@ from sonicvacuum.effects import Setup
 
 # Strengths over the one found, and how many places to either side.
 FACTORS, REACH = np.geomspace(1.0 / 6.0, 6.0, 27), 4
+# How many places to either side of a bead or contact where another effect leads, over the whole range.
+BESIDE = 2
 # Of so many trials the best one of each place is followed, of so many places at most, for so many steps, if
 # it promises this share of what the best of all does; as often as that leads elsewhere.
 TRIALS, ITERATIONS, FOLLOWED, PROMISE, ROUNDS = 60, 10, 4, 0.5, 4
@@ -32,6 +34,29 @@ def refined(forward: Forward, one: Fit, setup: Setup) -> Fit:
         if component.effect.places in places.ALONG and len(component.free) == 1:
             one = _refined(forward, one, k, setup)
     return one
+
+
+def beside(forward: Forward, null: Fit, one: Fit, other: Fit, setup: Setup) -> Fit:
+    """The fit of one effect, or a better one from trials of any strength where another effect was found: a
+    large gap passes for a lighter bead there, and for a small gap elsewhere.
+
+    Args:
+        forward: the predictor.
+        null: the model without either.
+        one: of the effect alone, at a bead or contact.
+        other: of the other effect alone, at a bead or contact.
+        setup: which knows the places.
+    """
+    component, place = one.hypothesis.components[0], other.hypothesis.components[0].place
+    if len(component.free) > 1:
+        return one
+    near = [p for p in component.effect.candidates(setup) if abs(p - place) <= BESIDE]
+    sizes = secants.finely(component.free[0])
+    trials = secants.one_a_place(secants.tried(forward, null, component, setup, TRIALS, sizes, near))
+    if not trials:
+        return one
+    better = fit(forward, one.hypothesis, *restart.put(one, 0, trials[:FOLLOWED]), FOLLOWED, ITERATIONS)
+    return better if better.objective < one.objective - places.WORTH else one
 
 
 def _refined(forward, one, k, setup):
