@@ -101,6 +101,9 @@ RIVAL, AT_BOUND = 9.0, 0.6
 # probable as all others together.
 REFUSED_NONE, REFUSED_UNKNOWN, REFUSED = 0.36, 0.86, 2.0 / 3.0
 
+# Odds of a bead's mass and of a gap beside what nothing of the catalogue explains: of 52 single names beside
+# something from outside it alone 34 were one of these two, 18 one of the twenty others (docs/again.md).
+NEAREST = 0.05
 # p of shapes left beside a smooth misfit below which what is unknown is more than smooth. A smooth error is
 # not quite what it is taken for: of 48 such records three left 7e-4 to 4e-3; of 58 with something from
 # outside the catalogue 47 left less than 1e-4, three more than 4e-3 (docs/again.md).

@@ -12,7 +12,7 @@ import msgspec
 import numpy as np
 from msgspec import UNSET, Struct, UnsetType, field
 
-from sonicvacuum.discover.draws import Draws
+from sonicvacuum.discover.draws import SAMPLED, Draws
 from sonicvacuum.discover.faults.found import Finding
 from sonicvacuum.discover.fit.goodness import Goodness
 from sonicvacuum.discover.fit.heldout import HeldOut
@@ -46,8 +46,9 @@ from sonicvacuum.tables import write_csv
 
 # How the line begins that says which slips were put right.
 PUT_RIGHT = "all else is of the record put right"
-# The posterior's own width is told from so many times the standard error of its Gaussian on: draws scatter.
-BENT = 1.5
+# The posterior's own width is told from so many times the standard error of its Gaussian on, where draws are
+# worth so many equal ones: they scatter.
+BENT, MANY = 1.5, 50
 
 
 class Verdict(Part, kw_only=True):
@@ -169,10 +170,11 @@ def parameters(
     """Values and standard errors of the free parameters, with what rivals that have them make of them; places
     with error 0.
 
-    Where the posterior, as it was `drawn`, is much wider than the Gaussian of the fit, as along a valley that
-    bends, its width is the error.
+    Where many draws of the posterior are much wider than the Gaussian of the fit, as along a valley that
+    bends, their width is the error.
     """
-    wide = {(d.effect, d.parameter): d.error for d in drawn}
+    many = (d for d in drawn if d.how == SAMPLED and d.effective > MANY)
+    wide = {(d.effect, d.parameter): d.error for d in many}
     off = [share @ np.square(shift) for share, shift in rivals.shifts(fit, found)]
     result, first, sigma = {}, 0, np.sqrt(np.square(fit.sigma) + off)
     for component in fit.hypothesis.components:
