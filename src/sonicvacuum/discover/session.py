@@ -299,15 +299,14 @@ def gap_rows(result: Result):
 
 
 def rounds_of(found: Investigation) -> list[tuple[str, float]]:
-    """Best model of each round and its χ²."""
-    result = [("nominal", float(found.null.normal.chi2.sum()))]
-    if found.candidates:
-        best = found.candidates[0]
-        result.append((best.effect, float(best.fit.normal.chi2.sum())))
-    if found.combinations:
-        best = found.combinations[0]
-        result.append(("+".join(best.effects), float(best.fit.normal.chi2.sum())))
-    return result
+    """Best model of each round and its χ²; at last that of the adopted effects where they are another."""
+    models = [("nominal", found.null)]
+    models += [(c.effect, c.fit) for c in found.candidates[:1]]
+    models += [("+".join(c.effects), c.fit) for c in found.combinations[:1]]
+    adopted = set(found.final.hypothesis.ids)
+    if adopted and all(set(name.split("+")) != adopted for name, _ in models):
+        models.append(("+".join(found.final.hypothesis.ids), found.final))
+    return [(name, float(one.normal.chi2.sum())) for name, one in models]
 
 
 def trace_rows(result: Result):

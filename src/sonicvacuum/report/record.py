@@ -27,7 +27,8 @@ PICTURES = {
     "profile), 90 % interval shaded, and the Gaussian of value and standard error (dashed; alone where no "
     "draws lie beside the verdict). On the right the range searched (grey), the value with its 90 % "
     "interval, and a cross where the effect is off, if the axis has that value.",
-    "gap": "Misfit of the best model of each round, adopted or not; 1 is the noise.",
+    "gap": "Misfit of the best model of each round, and of the adopted one where that is another; 1 is the "
+    "noise.",
     "traces": "First and last run: measured, nominal and extended traces; below them running means of the "
     "residuals over their own standard error (band: two of them).",
     "law": "Free-form contact law: force between two beads besides the nominal one, with its standard error, "
