@@ -18,7 +18,7 @@ from sonicvacuum.discover import session
     ],
 )
 def test_the_adopted_model_is_among_those_of_the_rounds(adopted, rounds):
-    """Friction was adopted in a real record, beside much that is left; the gap was drawn for a heavier bead."""
+    """Friction was adopted in a real record, beside much that is left; the gap stood for a heavier bead."""
 
     def model(*ids):
         chi2 = SimpleNamespace(chi2=np.array([[10.0 - len(ids)]]))
