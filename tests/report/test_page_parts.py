@@ -134,8 +134,12 @@ def test_what_the_data_measure_is_told_with_its_error():
 
 
 def test_numbers_of_a_page_have_no_powers_of_ten_where_people_write_none():
-    said = bench.nuisances(replace(model(verdict()), trigger_us={"slow": 332.1}, gain={"g1": 12.3}))
+    one = replace(model(verdict()), trigger_us={"slow": 332.1}, gain={"g1": 12.3, "g2": 1.02})
+    said = bench.nuisances(one, verdict())
     assert "gauge gains by up to 1100 % and time zeros by up to 330 µs" in said
+    # Nobody has calibrated g1: there is no gain that could have moved.
+    open_ = {"gain g1": Known(value=12.3, sigma=0.1, prior=None)}
+    assert "gauge gains by up to 2 %" in bench.nuisances(one, verdict(nuisances=open_))
 
 
 def test_a_gauge_at_fault_is_called_by_its_name():

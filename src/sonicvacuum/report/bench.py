@@ -55,8 +55,12 @@ def slip(one: Fault) -> str:
     return f"{text} in run {one.run}" if place else text
 
 
-def nuisances(model: Model) -> str:
-    """How far what the record states with an error has moved."""
+def nuisances(model: Model, verdict: Verdict) -> str:
+    """How far what the record states with an error has moved; of a gauge that nobody calibrated it states
+    none, see `measured`.
+    """
+    uncalibrated = {name.removeprefix("gain ") for name in verdict.nuisances or {}}
+    gains = [ratio for gauge, ratio in model.gain.items() if gauge not in uncalibrated]
 
     def farthest(values):
         return max((abs(v - 1.0) for v in values), default=0.0)
@@ -66,8 +70,8 @@ def nuisances(model: Model) -> str:
         parts.append(f"modulus of the beads' material times {model.modulus_ratio:.4g}")
     if farthest(model.speed_ratio.values()) >= 5e-5:
         parts.append(f"striker speeds by up to {_short(100.0 * farthest(model.speed_ratio.values()))} %")
-    if farthest(model.gain.values()) >= 5e-5:
-        parts.append(f"gauge gains by up to {_short(100.0 * farthest(model.gain.values()))} %")
+    if farthest(gains) >= 5e-5:
+        parts.append(f"gauge gains by up to {_short(100.0 * farthest(gains))} %")
     shift = max((abs(v) for v in model.trigger_us.values()), default=0.0)
     if shift >= 5e-3:
         parts.append(f"time zeros by up to {_short(shift)} µs")

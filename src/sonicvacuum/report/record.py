@@ -112,7 +112,7 @@ def _told(folder, verdict, model, tables, catalogue, gauges):
         "drawn": words.drawn(drawn),
         "tests_nothing": verdict.sees_nothing,
         "odds": rows.odds(verdict, catalogue, tables["candidates"]),
-        "nuisances": " ".join(filter(None, (bench.nuisances(model), bench.measured(verdict)))),
+        "nuisances": " ".join(filter(None, (bench.nuisances(model, verdict), bench.measured(verdict)))),
         "present": rows.present(verdict, model, catalogue),
         "law": words.law(verdict, catalogue),
         "alternatives": words.alternatives(verdict, catalogue),
