@@ -4,7 +4,7 @@ import pytest
 
 from sonicvacuum.discover import session
 from sonicvacuum_blind import extra_cases
-from sonicvacuum_blind.hide import hide
+from sonicvacuum_blind.hide import Spec, hide
 from sonicvacuum_blind.study import cases
 
 # The list of systematic errors and sets that the first samples were drawn from.
@@ -32,6 +32,16 @@ def test_the_lowest_minimum_is_found(place, named):
         own = found.parameters[hidden["id"]]
         for name, value in hidden["parameters"].items():
             assert abs(own[name].value - value) < 4.0 * own[name].sigma
+
+
+def test_an_effect_behind_one_at_a_bead_is_fitted():
+    """Slopes promise 99 of friction and 179 of a gap, and keep neither: friction gains 338 in χ², and a bead
+    next to the striker 286, which was named.
+    """
+    record, _ = hide(
+        Spec("friction", "single", "traces", "white", ("guide-friction",), 20.0, 95_771_918, 119)
+    )
+    assert session.discover(record, limits=False).verdict.named == ["guide-friction"]
 
 
 @pytest.mark.parametrize(

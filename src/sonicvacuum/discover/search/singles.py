@@ -25,8 +25,9 @@ NONLINEAR = 1500.0
 # Effects whose predicted gain is this far behind the best, beyond the share by which slopes err, are not
 # refitted while slopes can be trusted.
 HOPELESS, ERR = 20.0, 0.2
-# That share where all that were refitted leave much, or slopes did not foresee what the best one gains.
-ERR_FAR = 0.75
+# That share where all that were refitted leave much, or slopes did not foresee what the best one gains; of
+# one at a bead or contact they often do not, which says less of others.
+ERR_FAR, ERR_PLACED = 0.75, 0.5
 # A nominal fit whose nuisances stand so many standard errors off does the work of what is missing with them.
 STRAINED = 5.0
 # A deviation that the screen puts beyond this many typical ones may lie where slopes do not reach.
@@ -91,7 +92,8 @@ def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
         elif err == ERR and not loose and wide.leaves_much(forward, null.objective - achieved):
             err = ERR_FAR
         elif err == ERR and not loose and _unforeseen(leading, gains):
-            best_gain, err = achieved, ERR_FAR
+            placed = leading.fit.hypothesis.components[0].effect.places
+            best_gain, err = (best_gain, ERR_PLACED) if placed else (achieved, ERR_FAR)
         else:
             break
     return ranked([c for c in found if c is not None], forward.experiment.prior_odds)
@@ -99,9 +101,9 @@ def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
 
 def _unforeseen(leading: Candidate | None, gains: dict[str, float]) -> bool:
     """Whether the leading effect gains more than slopes foresee, by more than they err: those of others err,
-    too. Of one at a bead or contact that says nothing of others.
+    too.
     """
-    if leading is None or leading.fit.hypothesis.components[0].effect.places:
+    if leading is None:
         return False
     return (1.0 - ERR) * leading.gain > gains.get(leading.effect, leading.gain)
 
