@@ -28,7 +28,6 @@ import numpy as np
 import peers
 from problems import AGREEMENT, INTERVAL, P1_MOMENT, P1_PEAK, PROBLEMS, STEP, Problem, errors, peaks
 
-from sonicvacuum.physics.methods import BLANES_MOAN, VERLET
 from sonicvacuum.physics.run import simulate
 
 COLUMNS = [
@@ -281,10 +280,6 @@ def measure_scaling(folder):
     long = take_turns({name: engine(PROBLEMS[name]) for name in ("P4", "P5")})
     cold, warm = measure_start(folder)
     rows = [
-        *(
-            [f"composed stepper over one without choices, {m.name}", effects_cost.composed_over_bare(m), ""]
-            for m in (VERLET, BLANES_MOAN)
-        ),
         ["P5 over P4 in turns, default", long["P5"][0] / long["P4"][0], ""],
         ["speed-up of two processes", 2.0 * alone / together, ""],
         ["speed-up of two threads", found[1][0] / found[2][0], ""],
