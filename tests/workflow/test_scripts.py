@@ -1,4 +1,4 @@
-"""What scripts that no test runs take from the packages is there: `make bench` once asked for a name that had moved."""
+"""What scripts that no test runs take from the packages is there; `make bench` asked for what had moved."""
 
 import ast
 import importlib.util
