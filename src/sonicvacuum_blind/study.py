@@ -101,8 +101,6 @@ BALL = (
     "relaxing-contact",
     "striker-error",
 )
-# What acts on it besides: in what is added to the main list, so that its cases stay those of other seeds.
-ON_BALL_BESIDES = "wall-compliance"
 
 
 def cases(study: str) -> list[Spec]:
@@ -240,11 +238,6 @@ def _besides(random):
         for kind in ELSEWHERE:
             for _ in range(STRONG_ELSEWHERE):
                 yield "single", kind, "white", (name,), 40.0
-    for name in (*BALL, ON_BALL_BESIDES):
-        # As often as the others in the main list, and all of them as often as elsewhere.
-        strengths = (10.0, 10.0, 10.0, 40.0) if name == ON_BALL_BESIDES else ()
-        for strength in (*strengths, *[40.0] * STRONG_ELSEWHERE):
-            yield "single", "ball", "white", (name,), strength
     for _ in range(STRONG_PAIRS):
         chosen = random.choice(len(ids), 2, replace=False)
         yield "pair", "traces", "white", tuple(ids[i] for i in chosen), 50.0

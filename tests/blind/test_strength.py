@@ -9,7 +9,7 @@ from scipy import stats
 from sonicvacuum.discover import policy
 from sonicvacuum.discover.model.problem import experiment
 from sonicvacuum.effects import Setup
-from sonicvacuum_blind import catalogue, design, study
+from sonicvacuum_blind import catalogue, design
 from sonicvacuum_blind.prediction import Errors, predict
 from sonicvacuum_blind.record import as_record
 from sonicvacuum_blind.signature import Frame
@@ -133,12 +133,6 @@ def test_rivals_are_what_may_be_named(kind, seed):
     named = {r.id for r in rivals(Frame.of(made))}
     assert ("coating-thickness" in named) == made.coated
     assert named <= asked
-
-
-def test_one_ball_hides_all_that_acts_on_it():
-    ball = Frame.of(design.draw("ball", np.random.default_rng(1)))
-    hidden = {s.effects[0] for s in study.cases("full") if (s.kind, s.design) == ("single", "ball")}
-    assert {r.id for r in rivals(ball)} == hidden
 
 
 def test_an_effect_explains_itself(frame, scaled):

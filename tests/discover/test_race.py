@@ -56,10 +56,11 @@ def test_where_none_explains_them_all_are_followed(monkeypatch):
     [
         # Foreseen but for a fifth: what is promised half as much stays behind.
         (190.0, None, ["relaxing-contact"]),
+        (190.0, "bead", ["relaxing-contact"]),
         # Twice what slopes said: the others may gain more than they said, too.
         (330.0, None, ["relaxing-contact", "kuwabara-kono", "hunt-crossley"]),
-        # A bead's own strength says nothing of others.
-        (330.0, "bead", ["relaxing-contact"]),
+        # One at a bead says less of others: those of which half of the best was promised.
+        (330.0, "bead", ["relaxing-contact", "kuwabara-kono", "hunt-crossley"]),
     ],
 )
 def test_what_slopes_did_not_foresee_asks_the_others_too(monkeypatch, gained, place, followed):
