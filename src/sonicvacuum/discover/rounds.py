@@ -276,7 +276,8 @@ def _along(forward, null, found):
     least = max(c.gain for c in found) - ALONG
     # A gap is much like a lighter bead: where one of the two leads, the other is looked for as well.
     placed = [k for k, c in enumerate(found) if c.gain > 0.0 and places.placed(c.fit)]
-    leads = any(found[k].gain > least for k in placed)
+    if not any(found[k].gain > least for k in placed):
+        placed = []
 
     def refined(k, start):
         better = around.refined(forward, places.settled(forward, start, setup), setup)
@@ -284,14 +285,12 @@ def _along(forward, null, found):
             where = ((better.hypothesis.components[0].place, 1.0),)
             result[k] = _moved(result[k], null, better, where, result[k].flags)
 
-    for k in placed if leads else ():
+    for k in placed:
         refined(k, found[k].fit)
-    if leads:
-        first = max((result[k] for k in placed), key=lambda c: c.gain)
-        for k in placed:
-            start = result[k].fit
-            if result[k] is not first:
-                start = around.beside(forward, null, start, first.fit, setup)
+    first = max((result[k] for k in placed), key=lambda c: c.gain, default=None)
+    for k in placed:
+        if result[k] is not first:
+            start = around.beside(forward, null, result[k].fit, first.fit, setup)
             if start is not result[k].fit:
                 refined(k, start)
     return enough.first(forward, evidence.ranked(result, forward.experiment.prior_odds))

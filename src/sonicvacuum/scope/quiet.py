@@ -60,11 +60,12 @@ def look(values: np.ndarray) -> Trace:
     step = converter_step(values)
     rest, sigma, wander = _rest(values, step)
     smooth = median_filter(values, 5, mode="nearest") if len(values) > 50 else values
-    width = _width(np.abs(smooth - rest), int(np.abs(smooth - rest).argmax()))
+    off = np.abs(smooth - rest)
+    width = _width(off, int(off.argmax()))
     if width < SHORT and len(values) > 50:
         # Two samples in a row are no spike, and may be a pulse.
         smooth = median_filter(values, 3, mode="nearest")
-    off = np.abs(smooth - rest)
+        off = np.abs(smooth - rest)
     top = int(off.argmax())
     least = max(SIGMAS * wander, SHARE * off[top], STEPS * step)
     arrival = _first_row(off > least) if off[top] > max(WEAKEST * wander, STEPS * step) else None
