@@ -23,10 +23,12 @@ KEPT_BEFORE = "bd3052c"
 # The list once more, "again", of which commit 92f947a searched a part: drawn after that commit.
 # Empty records alone, "nulls": drawn after commit a00f2f7, which searched them (docs/study.md); effects
 # beside something from outside the catalogue, "beside": after d211601, which knew such records from
-# "beside-training" and searched them.
+# "beside-training" and searched them. The "next" full study, drawn after c315193, is one that is under way:
+# it becomes "full", with its tag and commit, when all of it is searched.
 SEEDS = {
     "small": 20061,
     "full": 58_825_997,
+    "next": 95_771_918,
     "nulls": 97_583_300,
     "again": 84_131_661,
     "training": 20063,
@@ -101,6 +103,9 @@ BALL = (
     "relaxing-contact",
     "striker-error",
 )
+# What acts on it besides; in what the next study adds to the main list, so that its cases stay those of
+# other seeds.
+ON_BALL_BESIDES = "wall-compliance"
 
 
 def cases(study: str) -> list[Spec]:
@@ -144,8 +149,8 @@ def _listed(study):
     if study == "training":
         rows = [rows[(2 * k + 1) * len(rows) // (2 * TRAINING)] for k in range(TRAINING)]
     main = len(rows)
-    if study == "full":
-        rows += _besides(random)
+    if study in ("full", "next"):
+        rows += _besides(random, on_ball=study == "next")
     # Folder names must not follow the order of kinds.
     return rows, main, random.permutation(len(rows)).tolist()
 
@@ -227,8 +232,10 @@ def _full(random):
             yield "pair" if size == 2 else "set", kind, "white", tuple(among[i] for i in chosen), strength
 
 
-def _besides(random):
-    """Cases of which the main list has too few to tell whether a goal is met."""
+def _besides(random, on_ball):
+    """Cases of which the main list has too few to tell whether a goal is met; those on one ball since the
+    "next" study.
+    """
     ids = catalogue.STUDIED
     yield from _empty(ALONE)
     for name in ids:
@@ -238,6 +245,11 @@ def _besides(random):
         for kind in ELSEWHERE:
             for _ in range(STRONG_ELSEWHERE):
                 yield "single", kind, "white", (name,), 40.0
+    for name in (*BALL, ON_BALL_BESIDES) if on_ball else ():
+        # As often as the others in the main list, and all of them as often as elsewhere.
+        strengths = (10.0, 10.0, 10.0, 40.0) if name == ON_BALL_BESIDES else ()
+        for strength in (*strengths, *[40.0] * STRONG_ELSEWHERE):
+            yield "single", "ball", "white", (name,), strength
     for _ in range(STRONG_PAIRS):
         chosen = random.choice(len(ids), 2, replace=False)
         yield "pair", "traces", "white", tuple(ids[i] for i in chosen), 50.0

@@ -187,6 +187,22 @@ def test_what_a_study_has_besides_its_main_list_is_known_by_seed_and_place():
     assert study.added(study.SEEDS["again"]) == study.added(None) == frozenset()
 
 
+def test_the_next_study_has_one_ball_as_often_as_elsewhere_besides():
+    """The wall acts on one ball too, and the main list, whose cases are those of other seeds, has it not."""
+    added = study.added(study.SEEDS["next"])
+    cases = study.cases("next")
+    shares = [
+        Counter((s.kind, s.design, s.noise) for s in study.cases(name) if s.place not in study.added(seed))
+        for name, seed in study.SEEDS.items()
+        if name in ("full", "next")
+    ]
+    assert shares[0] == shares[1]
+    balls = Counter(s.effects[0] for s in cases if s.place in added and s.design == "ball" and s.effects)
+    wall = study.ON_BALL_BESIDES
+    assert balls == dict.fromkeys(study.BALL, 4) | {wall: 8}
+    assert len(cases) == len(study.cases("full")) + sum(balls.values())
+
+
 def test_records_of_the_small_study_keep_their_numbers():
     """Its list had 36 records once, which docs/benchmark.md names by their numbers."""
     small = {s.id: s for s in study.cases("small")}
