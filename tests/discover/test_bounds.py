@@ -52,6 +52,25 @@ def test_the_bound_towards_off_is_none(empty, setup):
     assert bounds.beyond(forward, one) == (one, False)
 
 
+def test_a_contact_that_forgets_at_once_is_not_followed_further(hidden, setup):
+    """Sooner than at the bound makes no difference there; in an impact so short that it does, it is."""
+    forward, model = Forward(experiment(hidden)), effect("relaxing-contact")
+    (free,) = variants(model, setup)
+    fastest = np.array([[c.low if not c.parameter.switches else c.high for c in free]])
+    one = fit(
+        forward,
+        Hypothesis((Component(model, free),)),
+        fastest,
+        np.zeros((1, forward.layout.size)),
+        iterations=0,
+        finish=False,
+    )
+    where = [c.parameter.name for c in free].index("tau_us")
+    assert bounds.stuck(one)[where]
+    assert bounds.stuck(one, soon=0.1 * free[where].value(free[where].low))[where]
+    assert not bounds.stuck(one, soon=free[where].value(free[where].low))[where]
+
+
 @pytest.mark.parametrize("effect", CATALOGUE, ids=lambda e: e.id)
 def test_wider_bounds_keep_to_what_values_may_mean(effect, setup):
     for parameter in effect.parameters:

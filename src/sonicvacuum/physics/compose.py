@@ -51,6 +51,15 @@ def highest(v, w, gain):
     return select(turns, top, positive(gain))
 
 
+@_compiled
+def between(x, v, y, w, fraction):
+    """Cubic between values x and y with slopes v and w per step, at a fraction of the step."""
+    gap = y - x
+    square = 3.0 * gap - 2.0 * v - w
+    cube = v + w - 2.0 * gap
+    return x + fraction * (v + fraction * (square + fraction * cube))
+
+
 class _Source:
     """Source text of one function that evaluates formulas of a law set at a row of the table."""
 
@@ -58,7 +67,7 @@ class _Source:
         self.composition, self.laws = composition, composition.laws
         self.lines = [f"def composed({signature}):"]
         self.namespace = {name: getattr(lanes, name) for name in ("select", "positive", "without_fusing")}
-        self.namespace |= {"read": read, "write": write, "highest": highest}
+        self.namespace |= {"read": read, "write": write, "highest": highest, "between": between}
         self.namespace |= {"absolute": lanes.absolute, "is_any_positive": is_any_positive}
 
     def call(self, term, what, *arguments):
@@ -245,11 +254,31 @@ def _stored_energy(composition, source):
 def _keep_memory(composition, source):
     for k in range(composition.memories):
         source.add(f"write(row, {composition.first_old + k}, read(row, {composition.first_memory + k}))")
+    _add_slopes(composition, source, composition.first_slope)
     return composition.memories > 0
 
 
+def _end_memory(composition, source):
+    _add_slopes(composition, source, composition.first_slope + composition.memories)
+    return bool(composition.laws.in_slot("memory"))
+
+
+def _add_slopes(composition, source, first):
+    """Leave what memories change by in a step at their present rate in columns from `first` on."""
+    laws, ahead = composition.laws, composition.columns
+    if not laws.in_slot("memory"):
+        return
+    source.add(f"approach = read(row, {U}) - read(row, {ahead + U})", _delta(laws))
+    source.add_elastic(composition.first_memory)
+    for term in laws.in_slot("memory"):
+        k = laws.memory_of[term.name]
+        source.add(f"state = read(row, {composition.first_memory + k})")
+        growth = source.call(term, "growth", "elastic", "state")
+        source.add(f"write(row, {first + k}, select(delta, step * {growth}, 0.0))")
+
+
 def _blend_memory(composition, source):
-    laws = composition.laws
+    laws, slope = composition.laws, composition.first_slope
     if laws.in_slot("path"):
         source.add(_delta(laws))
     for name, k in laws.memory_of.items():
@@ -260,7 +289,10 @@ def _blend_memory(composition, source):
         if name in [t.name for t in laws.in_slot("path")]:
             source.add("blend = select(rate, select(delta - old, delta, old), new)")
         else:
-            source.add("blend = old * (1.0 - fraction) + new * fraction")
+            source.add(
+                f"v, w = read(row, {slope + k}), read(row, {slope + composition.memories + k})",
+                "blend = between(old, v, new, w, fraction)",
+            )
         source.add(f"write(row, {composition.first_blend + k}, blend)")
     return composition.memories > 0
 
@@ -272,6 +304,7 @@ PIECES = {
     "follow_path": Piece(("step",), _follow_path),
     "body_acceleration": Piece(("velocity",), _body_acceleration, returns=True),
     "stored_energy": Piece(("approach",), _stored_energy, returns=True),
-    "keep_memory": Piece((), _keep_memory),
+    "keep_memory": Piece(("step",), _keep_memory),
+    "end_memory": Piece(("step",), _end_memory),
     "blend_memory": Piece(("fraction", "approach", "rate"), _blend_memory),
 }

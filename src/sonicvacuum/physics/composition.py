@@ -6,7 +6,7 @@ an array (groups, bodies + 1, columns, lanes) whose last body is the wall, alway
     U, V, INVERSE_MASS          displacement from rest, velocity, 1/mass
     REST, REST_FORCE            compression and force of the contact at rest; only if it may be preloaded
     coefficients, memory        of the law set
-    increments, old, blend, turn  work space of the Runge–Kutta stepper and of its samples between steps
+    increments, old, blend, slopes, turn  work space of Runge and Kutta's stepper and of samples between steps
 """
 
 from dataclasses import dataclass
@@ -113,9 +113,16 @@ class Composition:
         return self.first_old + self.memories
 
     @property
+    def first_slope(self) -> int:
+        """Column of the change per step of the memory at the step's start, and behind it of that at its end;
+        kept where a memory has a rate of its own.
+        """
+        return self.first_blend + self.memories
+
+    @property
     def first_turn(self) -> int:
         """Column of approach and rate at the step's start, kept where a path is to be followed."""
-        return self.first_blend + self.memories
+        return self.first_slope + (2 * self.memories if self.laws.in_slot("memory") else 0)
 
     @property
     def columns(self) -> int:

@@ -41,6 +41,7 @@ from sonicvacuum.physics.table import (
     INLINED,
     advance_memory,
     body_acceleration,
+    end_memory,
     first_increment,
     first_memory,
     follow_path,
@@ -215,13 +216,15 @@ def _advance_group(
         sampled = is_any_positive(time - load(c, clock, DUE))
         if sampled:
             for r in range(len(contacts)):
-                keep_memory(c, table, first + contacts[r])
+                keep_memory(c, table, first + contacts[r], step)
         if sampled and not noted:
             note(c, table, first, contacts, pending, start)
             note_motion(c, table, first, recorder, start)
         impulse = impulse + _step(c, table, first, beyond, weight, factors, gains, step, pending)
         pending = pending_part * step
         if sampled:
+            for r in range(len(contacts)):
+                end_memory(c, table, first + contacts[r], step)
             note(c, table, first, contacts, pending, end)
             note_motion(c, table, first, recorder, end)
             emit(c, table, first, recorder, start, end, before, time, step)

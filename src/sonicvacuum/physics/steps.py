@@ -14,8 +14,12 @@ from sonicvacuum.physics.laws import HERTZ, LawSet, columns_of, elastic_at
 STEP = {"splitting": 0.1, "runge-kutta": 0.05}
 EARLY_REFINEMENT = 8
 EARLY_CONTACT_TIMES = 4.5
-# Step in units of the time in which damping or memory decays: stable and accurate to the stepper's order.
+# Step in units of the time in which damping stops a bead: stable and accurate to the stepper's order.
 DECAY_STEP = 0.25
+# And in units of the time in which a memory forgets, in the early phase too: what is forgotten so soon
+# follows the force, and the strike is hardly sharper to it than the rest. With ten times the elastic force
+# remembered and 0.3 us to forget it, forces err by 1e-6 of their peak.
+MEMORY_STEP = 0.75
 # Speed of a body about to stop, in units of the striker's.
 CREEP = 1e-4
 
@@ -63,21 +67,15 @@ def _typical_compression(chain, mass):
     return np.maximum(impact, np.cbrt(np.square(chain.load / chain.stiffness)))
 
 
-def decay_time(chain: Chain, laws: LawSet, table: np.ndarray, mass: np.ndarray) -> np.ndarray:
-    """(lanes,) shortest time in s in which damping stops a bead or a memory forgets; else infinite."""
+def damping_time(chain: Chain, laws: LawSet, table: np.ndarray, mass: np.ndarray) -> np.ndarray:
+    """(lanes,) shortest time in s in which damping stops a bead; infinite where nothing does."""
     fastest = np.zeros(chain.lanes)
-    lightest = mass.min(axis=0)
-    rate = np.broadcast_to(chain.speed, (len(table), chain.lanes))
-    delta = np.broadcast_to(_typical_compression(chain, lightest), rate.shape)
-    force = elastic_at(laws, table, delta)
+    lightest, delta, force = _typical(chain, laws, table, mass)
+    rate = np.broadcast_to(chain.speed, delta.shape)
     for term in laws.in_slot("force"):
         columns = columns_of(laws, term, table)
         fall = term.formula(delta, rate, force, *columns) - term.formula(delta, 0.5 * rate, force, *columns)
         fastest = np.maximum(fastest, np.abs(2.0 * fall / (rate * lightest)).max(axis=0))
-    for term in laws.in_slot("memory"):
-        columns = columns_of(laws, term, table)
-        fall = term.growth(force, force, *columns) - term.growth(force, 0.5 * force, *columns)
-        fastest = np.maximum(fastest, np.abs(2.0 * fall / force).max(axis=0))
     for term in laws.in_slot("body"):
         # Friction stops the slow sooner than the fast.
         for velocity in (rate, CREEP * rate):
@@ -87,16 +85,39 @@ def decay_time(chain: Chain, laws: LawSet, table: np.ndarray, mass: np.ndarray) 
         return 1.0 / fastest
 
 
+def memory_time(chain: Chain, laws: LawSet, table: np.ndarray, mass: np.ndarray) -> np.ndarray:
+    """(lanes,) shortest time in s in which a contact forgets; infinite where none remembers."""
+    fastest = np.zeros(chain.lanes)
+    *_, force = _typical(chain, laws, table, mass)
+    for term in laws.in_slot("memory"):
+        columns = columns_of(laws, term, table)
+        fall = term.growth(force, force, *columns) - term.growth(force, 0.5 * force, *columns)
+        fastest = np.maximum(fastest, np.abs(2.0 * fall / force).max(axis=0))
+    with np.errstate(divide="ignore"):
+        return 1.0 / fastest
+
+
+def _typical(chain, laws, table, mass):
+    """(lanes,) lightest mass in kg; (bodies, lanes) typical compressions in m, their elastic forces in N."""
+    lightest = mass.min(axis=0)
+    delta = np.broadcast_to(_typical_compression(chain, lightest), (len(table), chain.lanes))
+    return lightest, delta, elastic_at(laws, table, delta)
+
+
 def choose_steps(chain: Chain, laws: LawSet, table: np.ndarray, mass: np.ndarray) -> tuple:
     """Steps in s of each chain: (lanes,) before and after the end of the early phase, and that end in s."""
     stepper = "splitting" if laws.splits else "runge-kutta"
     late = STEP[stepper] * time_scale(chain, laws, table, mass)
     if not laws.is_positional:
-        late = np.minimum(late, DECAY_STEP * decay_time(chain, laws, table, mass))
+        late = np.minimum(late, DECAY_STEP * damping_time(chain, laws, table, mass))
+    early = late / EARLY_REFINEMENT
+    if laws.in_slot("memory"):
+        most = MEMORY_STEP * memory_time(chain, laws, table, mass)
+        early, late = np.minimum(early, most), np.minimum(late, most)
     struck = chain.first.mass
     heavy = np.maximum(1.0, chain.striker_mass / struck)
     until = EARLY_CONTACT_TIMES * heavy * contact_time(struck, chain.striker_stiffness, chain.speed)
-    return late / EARLY_REFINEMENT, late, until
+    return early, late, until
 
 
 def reachable_bodies(chain: Chain, duration: float) -> int:

@@ -247,9 +247,15 @@ def stored_energy(typing, c, table, body, approach):
 
 
 @intrinsic
-def keep_memory(typing, c, table, body):
-    """Copy the memory of a contact to the columns `old`."""
-    return _law("keep_memory", c, table)
+def keep_memory(typing, c, table, body, step):
+    """Before a step, copy the memory of a contact to the columns `old`, and keep its rate."""
+    return _law("keep_memory", c, table, _number_type(c))
+
+
+@intrinsic
+def end_memory(typing, c, table, body, step):
+    """After a step, keep the rate of the memory of a contact."""
+    return _law("end_memory", c, table, _number_type(c))
 
 
 @intrinsic

@@ -2,7 +2,8 @@
 
 The bounds of the catalogue are those of beads and laboratory strikers. Data of another size may ask for more;
 and what stands at a bound fits worse than it could, so that its rivals look surer than they are. The bound of
-a strength towards off is none: there the effect is absent.
+of a strength towards off is none: there the effect is absent. Nor does one hold anything back below which a
+contact forgets so soon that sooner makes no difference, and takes long to simulate.
 """
 
 from dataclasses import replace
@@ -13,28 +14,31 @@ from sonicvacuum.discover.fit.refit import Fit, polish
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Hypothesis
 from sonicvacuum.discover.model.parameters import Coordinate
+from sonicvacuum.physics.scales import impact_scales
 
 # A bound is moved by this factor (logarithmic coordinates), or by the whole range (linear ones), so many
 # times at most: from beads of some millimetres to balls of half a kilogramme, or to grains, damping constants
 # and forces change by four decades.
 FACTOR, TURNS = 10.0, 4
+# A time that only shapes an effect of contacts is as good as none from this share of the impact on: what
+# a relaxing contact does then differs by a hundredth from the dashpot that it tends to.
+FAST = 1.0 / 300.0
 # In χ², less is no reason to leave the range.
 WORTH = 0.5
 _ROOM = 1e-6
 
 
-def stuck(fit: Fit) -> np.ndarray:
+def stuck(fit: Fit, soon: float = 0.0) -> np.ndarray:
     """(p,) whether a coordinate stands at a bound that is neither its off value nor the end of what it may
-    mean.
+    mean; `soon`: times of contacts in us are as good as none from there on.
     """
-    return np.array(
-        [
-            (u >= c.high - _ROOM and c.high < _ends(c)[1] - 2.0 * _ROOM)
-            or (u <= c.low + _ROOM and not _off_below(c) and c.low > _ends(c)[0] + 2.0 * _ROOM)
-            for u, c in zip(fit.u, fit.hypothesis.coordinates, strict=True)
-        ],
-        dtype=bool,
-    )
+
+    def held(u, c):
+        least, most = _ends(c, soon)
+        above = u >= c.high - _ROOM and c.high < most - 2.0 * _ROOM
+        return above or (u <= c.low + _ROOM and not _off_below(c) and c.low > least + 2.0 * _ROOM)
+
+    return np.array([held(u, c) for u, c in zip(fit.u, fit.hypothesis.coordinates, strict=True)], dtype=bool)
 
 
 def held_back(fit: Fit) -> bool:
@@ -51,20 +55,21 @@ def beyond(forward: Forward, fit: Fit) -> tuple[Fit, bool]:
     The same fit where letting go gains nothing: there the bound holds nothing back.
     """
     found, held = fit, False
+    soon = FAST * 1e6 * min(impact_scales(batch.chain)[1] for batch in forward.experiment.batches)
     for _ in range(TURNS):
-        if not stuck(found).any():
+        if not stuck(found, soon).any():
             return found, False
-        further = _further(forward, found)
+        further = _further(forward, found, soon)
         if not further.objective < found.objective - WORTH:
             return found, False
-        found, held = further, bool(stuck(further).any())
+        found, held = further, bool(stuck(further, soon).any())
     return found, held
 
 
-def _further(forward: Forward, fit: Fit) -> Fit:
+def _further(forward: Forward, fit: Fit, soon: float) -> Fit:
     """The fit with its stuck coordinates let go once."""
-    at = stuck(fit)
-    wider = iter([_wider(c) if s else c for c, s in zip(fit.hypothesis.coordinates, at, strict=True)])
+    at = stuck(fit, soon)
+    wider = iter([_wider(c, soon) if s else c for c, s in zip(fit.hypothesis.coordinates, at, strict=True)])
     parts = tuple(replace(c, free=tuple(next(wider) for _ in c.free)) for c in fit.hypothesis.components)
     return polish(forward, Fit(Hypothesis(parts, fit.hypothesis.common), fit.normal, others=fit.others))
 
@@ -74,19 +79,22 @@ def _off_below(c: Coordinate) -> bool:
     return (c.parameter.switches and c.endless) or (c.kind == "linear" and c.low == 0.0)
 
 
-def _wider(c: Coordinate) -> Coordinate:
+def _wider(c: Coordinate, soon: float = 0.0) -> Coordinate:
     """A coordinate with bounds further out, inside what the parameter may mean."""
     more = c.high - c.low if c.kind == "linear" else float(np.log(FACTOR))
     low, high = c.low if _off_below(c) else c.low - more, c.high + more
-    least, most = _ends(c)
+    least, most = _ends(c, soon)
     return replace(c, low=max(low, least), high=min(high, most))
 
 
-def _ends(c: Coordinate) -> tuple[float, float]:
+def _ends(c: Coordinate, soon: float) -> tuple[float, float]:
     """Coordinates between which a parameter has a meaning, or which the record states."""
-    if c.parameter.known:
+    own = c.parameter
+    if own.known:
         return c.low, c.high
-    ends = [_place(c, value) for value in (c.parameter.least, c.parameter.most)]
+    ends = [_place(c, value) for value in (own.least, own.most)]
+    if soon and own.unit == "us" and not own.switches and not own.electronic:
+        ends[0] = max(ends[0], min(c.low, c.inverse(soon)))
     return min(ends), max(ends)
 
 

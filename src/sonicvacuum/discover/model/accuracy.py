@@ -10,9 +10,9 @@ import numpy as np
 # that all data together change by about this many standard errors, and collinear columns come out collinear.
 LARGEST_STEP, STEP_AIM = 3e-3, 10.0
 # Error of a simulation at full accuracy as a share of the data's norm, and what is allowed of it, in standard
-# errors over all data together; it grows as the fourth power of the step. At four times the step a memory
-# decays by its own size within one, and the fast limit of relaxation no longer is the law it tends to; below
-# LONGEST coated chains with any law err by some 1e-4 of a gauge's peak.
+# errors over all data together; it grows as the fourth power of the step. Below LONGEST coated chains with
+# any law, and contacts that forget ten times the elastic force in 0.3 us, err by some 1e-4 of a gauge's peak;
+# at twice that a step is as long as one of a memory can be.
 ERROR, ERROR_AIM, LONGEST = 1e-6, 0.05, 3.0
 # The same of running integrals, which only lead to where fits start.
 LEADING_AIM = 1.0
