@@ -14,6 +14,7 @@ from numba import njit, types
 from sonicvacuum.physics import lanes
 from sonicvacuum.physics.composition import REST, REST_FORCE, Composition, U, V
 from sonicvacuum.physics.lanes import positive, root, select
+from sonicvacuum.physics.sampling import hermite
 from sonicvacuum.physics.table import INLINED, is_any_positive, number_type, read, write
 
 # Gauss's rule on −1 to 1, moved to 0 to 1; exact where a correction is a polynomial in √compression up to the
@@ -51,15 +52,6 @@ def highest(v, w, gain):
     return select(turns, top, positive(gain))
 
 
-@_compiled
-def between(x, v, y, w, fraction):
-    """Cubic between values x and y with slopes v and w per step, at a fraction of the step."""
-    gap = y - x
-    square = 3.0 * gap - 2.0 * v - w
-    cube = v + w - 2.0 * gap
-    return x + fraction * (v + fraction * (square + fraction * cube))
-
-
 class _Source:
     """Source text of one function that evaluates formulas of a law set at a row of the table."""
 
@@ -67,7 +59,7 @@ class _Source:
         self.composition, self.laws = composition, composition.laws
         self.lines = [f"def composed({signature}):"]
         self.namespace = {name: getattr(lanes, name) for name in ("select", "positive", "without_fusing")}
-        self.namespace |= {"read": read, "write": write, "highest": highest, "between": between}
+        self.namespace |= {"read": read, "write": write, "highest": highest, "hermite": hermite}
         self.namespace |= {"absolute": lanes.absolute, "is_any_positive": is_any_positive}
 
     def call(self, term, what, *arguments):
@@ -291,7 +283,7 @@ def _blend_memory(composition, source):
         else:
             source.add(
                 f"v, w = read(row, {slope + k}), read(row, {slope + composition.memories + k})",
-                "blend = between(old, v, new, w, fraction)",
+                "blend = hermite(old, v, new, w, fraction)",
             )
         source.add(f"write(row, {composition.first_blend + k}, blend)")
     return composition.memories > 0

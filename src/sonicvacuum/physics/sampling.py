@@ -97,7 +97,7 @@ def _keep_motion(c, table, first, recorder, ends):
 
 
 @_inlined
-def _hermite(x, v, y, w, fraction):
+def hermite(x, v, y, w, fraction):
     """Cubic between values x and y with slopes v and w per step, at a fraction of the step."""
     gap = y - x
     square = 3.0 * gap - 2.0 * v - w
@@ -137,7 +137,7 @@ def _write_motion(c, table, first, recorder, start, end, step, fraction):
     weight = load(c, clock, WEIGHT)
     count, kept = len(contacts), 2 * len(contacts)
     for b in range(len(watched)):
-        velocity = _hermite(
+        velocity = hermite(
             load(c, start, kept + 2 * b),
             step * load(c, start, kept + 2 * b + 1),
             load(c, end, kept + 2 * b),

@@ -2,7 +2,7 @@
 
 The bounds of the catalogue are those of beads and laboratory strikers. Data of another size may ask for more;
 and what stands at a bound fits worse than it could, so that its rivals look surer than they are. The bound of
-of a strength towards off is none: there the effect is absent. Nor does one hold anything back below which a
+a strength towards off is none: there the effect is absent. Nor does one hold anything back below which a
 contact forgets so soon that sooner makes no difference, and takes long to simulate.
 """
 
@@ -55,6 +55,8 @@ def beyond(forward: Forward, fit: Fit) -> tuple[Fit, bool]:
     The same fit where letting go gains nothing: there the bound holds nothing back.
     """
     found, held = fit, False
+    if not stuck(fit).any():
+        return fit, False
     soon = FAST * 1e6 * min(impact_scales(batch.chain)[1] for batch in forward.experiment.batches)
     for _ in range(TURNS):
         if not stuck(found, soon).any():
