@@ -90,9 +90,9 @@ def _added(score):
     if not count:
         return ""
     return (
-        f" {count} of these, empty or of strong effects, are besides the list of the studies before, so that "
-        "it can be told whether goals are met: they count by design and d′, by noise and in intervals, "
-        "not where all records are added up."
+        f" {count} of these, empty, of strong effects or of one ball, are besides the list of the studies "
+        "before, so that it can be told whether goals are met: they count by design and d′, by noise and in "
+        "intervals, not where all records are added up."
     )
 
 

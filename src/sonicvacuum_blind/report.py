@@ -141,7 +141,8 @@ def judgement(row: dict) -> str:
 
 def reached(row: dict) -> str:
     """Whether a line's 95 % interval lies inside its goal ("met"), outside ("missed") or across its bound
-    ("open"); its value decides where there is no interval; nothing where there is no goal.
+    ("open"); its value decides where there is no interval; nothing where there is no goal, or where the
+    ideal rule tells nothing.
     """
     found = re.fullmatch(r"(<=|>=) ([\d.]+)( of ideal)?|([\d.]+) to ([\d.]+)", row["goal"])
     value, low, high = (float(row[key] or "nan") for key in ("value", "low", "high"))
@@ -149,7 +150,7 @@ def reached(row: dict) -> str:
         return ""
     sign, bound, of_ideal, *ends = found.groups()
     if of_ideal:
-        bound = float(bound) * float(row["ideal"] or "nan")
+        bound = float(bound) * (float(row["ideal"] or "nan") or math.nan)
     least, most = (bound, math.inf) if sign == ">=" else (-math.inf, bound) if sign else ends
     least, most = float(least), float(most)
     if math.isnan(low) or math.isnan(high):

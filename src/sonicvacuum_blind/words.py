@@ -53,7 +53,7 @@ GROUPS = {
     "quantised": "coarse steps of the recorder",
     "leftover d' 8 and more": "the best of the catalogue leaves d′ 8 or more",
     "stated below 0.9": "those stated below 0.9",
-    "with the records added": "with the empty records and strong effects that were added to the list",
+    "with the records added": "with the records that were added to the list",
     "right probabilities": "what right probabilities would show in as many records",
     "base rates: half empty": "if half of all records hid nothing",
     "base rates: nine in ten empty": "if nine in ten hid nothing",

@@ -8,9 +8,7 @@ from sonicvacuum.cli import existing
 from sonicvacuum.cli.helped import FOLDER, PRESENT, WRITTEN
 from sonicvacuum.files import InputError
 
-STUDIES = click.Choice(
-    ["small", "full", "next", "nulls", "again", "training", "laws", "beside", "beside-training"]
-)
+STUDIES = click.Choice(["small", "full", "nulls", "again", "training", "laws", "beside", "beside-training"])
 
 
 def batch_of(text: str) -> tuple[int, int]:
