@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from made_records import made
+from made_records import SIGMA, made
 
 from sonicvacuum.discover.fit import wide
 from sonicvacuum.discover.model.forward import Forward
@@ -51,6 +51,26 @@ def test_where_none_explains_them_all_are_followed(monkeypatch):
     assert found[0].fit.objective > size + singles.EXPLAINED * np.sqrt(2.0 * size)
 
 
+@pytest.mark.parametrize("stiffness", [3.5, 5.0])
+def test_a_stiff_wall_seen_by_its_own_gauge_is_tried_all_over_its_range(stiffness):
+    """Two minima lie between the nominal wall and the hidden one, and slopes at the first promise nothing:
+    a bead's mass next to it gains most of the rest. At 5.0 slopes promise so little of what is left that all
+    effects race, at 3.5 they do not.
+    """
+    wall = {"id": "wall", "kind": "wall", "sigma_N": 24.0 * SIGMA, "gain_rel_sigma": 0.02}
+    record, _ = made([("wall-compliance", {"stiffness_ratio": stiffness})], seed=11, sensors=[wall])
+    forward = Forward(experiment(record), 1)
+    null, setup = wide.nominal(forward), singles.setup_of(forward)
+    scores = screen.screen(forward, null, directions.catalogue(setup, forward.experiment.excluded))
+    promised = float(np.square(scores.z).max())
+    assert promised < singles.NONLINEAR
+    assert singles._unseen(forward, null, promised) == (stiffness == 5.0)
+    best, size = singles.fit_all(forward, null, scores)[0], sum(map(forward.experiment.size, (0, 1)))
+    assert best.effect == "wall-compliance"
+    assert best.fit.objective == pytest.approx(size, abs=4.0 * np.sqrt(2.0 * size))  # four σ of χ²
+    assert np.exp(best.fit.u[0]) == pytest.approx(stiffness, rel=0.1)  # some three of its errors
+
+
 @pytest.mark.parametrize(
     ("gained", "place", "followed"),
     [
@@ -87,6 +107,7 @@ def test_what_slopes_did_not_foresee_asks_the_others_too(monkeypatch, gained, pl
     )
     monkeypatch.setattr(singles, "candidate", candidate)
     monkeypatch.setattr(singles, "ranked", lambda found, odds: found)
+    monkeypatch.setattr(singles, "data", lambda forward: 900)
     scores = SimpleNamespace(
         best=lambda: {name: k for k, name in enumerate(names)},
         z=np.sqrt(list(promised.values())),

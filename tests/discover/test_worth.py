@@ -84,3 +84,10 @@ def test_starts_that_cannot_be_simulated_are_left_alone(missing):
 def test_near_the_noise_starts_are_told_apart_by_a_fiftieth():
     both = normal([0.0, 0.2, 0.1], [999.0, 999.0, 999.0])  # χ² differs by 0.04 and 0.01
     assert worth.doubled(both, SIZE, None).tolist() == [False, False, True]
+
+
+@pytest.mark.filterwarnings("error")
+def test_where_no_start_has_a_finite_misfit_none_is_given_up_for_another():
+    """Pulses that never come leave no number to compare: inf − inf was no reason and a warning."""
+    nowhere = np.full(3, np.inf)
+    assert not after([[10.0] * 3, [10.0] * 3]).hopeless(nowhere).any()

@@ -45,7 +45,10 @@ class Progress:
 
     def hopeless(self, objective: np.ndarray) -> np.ndarray:
         """(L,) whether starts are so far behind that they would not get where they should."""
-        behind = objective - min(objective.min(), self.reach)
+        best = min(objective.min(), self.reach)
+        if not np.isfinite(best):
+            return np.zeros(len(objective), dtype=bool)
+        behind = objective - best
         return PATIENCE * self._tried.max(axis=0) < behind
 
 

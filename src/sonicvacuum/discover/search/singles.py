@@ -22,6 +22,11 @@ from sonicvacuum.effects import Effect, Setup
 # Beyond this misfit of the nominal model (in χ²) its slopes may point the wrong way: whole ranges are
 # searched.
 NONLINEAR = 1500.0
+# So they do where the nominal model leaves more than this, and no effect promises more than this share of it.
+UNFORESEEN, FORESEEN = 1000.0, 0.6
+# Where what was found gains as much as this, and leaves more than noise does, in standard deviations, trials
+# of finite strength that promise this share of what the best one has gained are followed.
+GAINS, LEAVES, PROMISING = 50.0, 0.5, 0.3
 # Effects whose predicted gain is this far behind the best, beyond the share by which slopes err, are not
 # refitted while slopes can be trusted.
 HOPELESS, ERR = 20.0, 0.2
@@ -56,7 +61,7 @@ def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
     gains = {e: float(np.square(scores.z[k])) for e, k in best.items()}
     largest = max(gains.values(), default=0.0)
     traced = any(r.has_signals for r in forward.experiment.runs)
-    nonlinear = largest > NONLINEAR or _strained(forward, null)
+    nonlinear = largest > NONLINEAR or _unseen(forward, null, largest) or _strained(forward, null)
     # Few scalars with large errors leave room for large deviations, which slopes do not foresee.
     rough = nonlinear and wide.wide(forward)
     loose = nonlinear or (not traced and largest > CLEAR)
@@ -65,7 +70,9 @@ def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
     left = list(setup.catalogue.candidates(setup, forward.experiment.excluded))
     if nonlinear and traced and not rough:
         found = _raced(forward, null, scores, gains, left, Effort(True, steps, COARSE))
-        return ranked(_once_more(forward, null, found, setup), forward.experiment.prior_odds)
+        found = _once_more(forward, null, found, setup)
+        found = _all_over(forward, null, scores, found, left, setup)
+        return ranked(found, forward.experiment.prior_odds)
     found: list[Candidate] = []
     best_gain, err = largest, ERR
 
@@ -96,7 +103,8 @@ def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
             best_gain, err = (best_gain, ERR_PLACED) if placed else (achieved, ERR_FAR)
         else:
             break
-    return ranked([c for c in found if c is not None], forward.experiment.prior_odds)
+    found = _all_over(forward, null, scores, [c for c in found if c is not None], left, setup)
+    return ranked(found, forward.experiment.prior_odds)
 
 
 def _unforeseen(leading: Candidate | None, gains: dict[str, float]) -> bool:
@@ -184,6 +192,37 @@ def _once_more(forward, null, found, setup):
     return rest + abreast.each(forward, denser, [c for c in found if local(c)], "effects at one place")
 
 
+def _all_over(forward, null, scores, found, effects, setup):
+    """The same with effects that have one strength and no place tried all over its range, where all that was
+    found leaves more than noise: slopes and running integrals may lead to another minimum. Followed are those
+    of which a trial promises more than they have gained, and a share of what the best has.
+    """
+    size, best = data(forward), max((c.gain for c in found), default=0.0)
+    excess = null.objective - size
+    if best < GAINS or excess - best < max(LEAVES * np.sqrt(2.0 * size), MISSED * excess):
+        return found
+    gains = {c.effect: c.gain for c in found}
+
+    def elsewhere(branch, effect):
+        least = max(PROMISING * best, gains.get(effect.id, 0.0))
+        options = [free for free in variants(effect, setup) if of_one_strength(free)]
+        near = [(free, _trials(branch, null, effect, free, setup, least)) for free in options]
+        near = [(free, starts) for free, starts in near if starts is not None]
+        return candidate(branch, null, scores, effect, Effort(True, ITERATIONS), near)
+
+    more = abreast.each(forward, elsewhere, [e for e in effects if not e.places], "effects all over")
+    better = [c for c in more if c is not None and c.gain > gains.get(c.effect, -np.inf)]
+    return list(({c.effect: c for c in found} | {c.effect: c for c in better}).values())
+
+
+def _trials(forward, null, effect, free, setup, least):
+    """Starts at trials all over the range of a strength; None where none promises more than `least`."""
+    trials = secants.tried(forward, null, Component(effect, free), setup, TRIALS, secants.finely(free[0]))
+    if not trials or trials[0].gain < least:
+        return None
+    return Starts(np.array([t.u for t in trials]), np.array([t.nu for t in trials]))
+
+
 def _densely(forward, null: Fit, component: Component, setup: Setup) -> Fit | None:
     """The best fit of an effect with a place, from trials of finite strength all over; None without any."""
     trials = secants.tried(forward, null, component, setup, TRIALS, secants.finely(component.free[0]))
@@ -193,6 +232,12 @@ def _densely(forward, null: Fit, component: Component, setup: Setup) -> Fit | No
     twice = [np.concatenate(pair) for pair in ((u, u), (nu, 0.0 * nu), (at, at))]
     one = fit(forward, Hypothesis((component,)), *twice, TRIALS, ITERATIONS, COARSE)
     return settled(forward, one, setup)
+
+
+def _unseen(forward: Forward, null: Fit, largest: float) -> bool:
+    """Whether the nominal model leaves much of which slopes promise too little, `largest` in χ²."""
+    excess = null.objective - data(forward)
+    return excess > UNFORESEEN and largest < FORESEEN * excess
 
 
 def _strained(forward: Forward, null: Fit) -> bool:
