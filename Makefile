@@ -96,7 +96,7 @@ crash: env  ## disturb 60 runs of a small pipeline and let `make` recover; table
 interrupt: env  ## interrupt every verb at several moments, on the finished run in results/; table in results/interrupt.csv
 	$(BIN)/python workflow/scripts/interrupt.py --out results/interrupt.csv
 
-slurm: .venv/clustered  ## a small pipeline and RECORDS of the full study (4270: all) on a Slurm of one node, started here, against a local run
+slurm: .venv/clustered  ## a small pipeline and RECORDS of the full study (4318: all) on a Slurm of one node, started here, against a local run
 	$(BIN)/python workflow/scripts/cluster.py --records $(RECORDS) --local $(LOCAL) $(if $(PLACE),--place $(PLACE)) \
 		--out results/slurm.csv
 

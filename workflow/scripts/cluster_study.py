@@ -47,8 +47,8 @@ def size(records: int, made: int) -> tuple[str, ...]:
 
     A batch is one of the full study's, or half of the records if that is less.
     """
-    batch = min(math.ceil(whole() / BATCHES), math.ceil(records / 2))
-    parts = {"full_batches": math.ceil(whole() / batch), "full_taken": math.ceil(made / batch)}
+    batches = max(BATCHES, math.ceil(whole() / math.ceil(records / 2)))
+    parts = {"full_batches": batches, "full_taken": -(-made * batches // whole())}
     # The last option ends the list of the first, so that the target is not taken for one of it.
     return ("--config", *(f"{key}={value}" for key, value in parts.items()), "--nocolor")
 
