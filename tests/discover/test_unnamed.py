@@ -58,6 +58,18 @@ def test_a_name_that_only_comes_near_is_gone(told):
     assert left < 0.2 * before  # what is asked of a law outside the catalogue
 
 
+def test_where_much_more_than_noise_is_left_a_law_takes_away_much_of_it_or_names_stay(monkeypatch):
+    """A real chain's friction gave way to a law with a power of 5.8 of the rate that left as much as it."""
+    one = investigation([STIFFER], "sensor-lowpass")
+    size = sum(one.sizes)
+    for much, most in ((False, 100.0), (True, 75.0)):
+        monkeypatch.setattr(unnamed.gross, "gross", lambda *_, much=much: much)
+        assert unnamed._Weighed(one)._most(size + 100.0) == size + most
+    monkeypatch.setattr(unnamed.policy, "LAW_FURTHER", 0.9999)
+    found, law = with_law(one)
+    assert found is one and law is None
+
+
 def test_the_formula_has_the_power_of_the_rate(told):
     words = formula(surface(told[1]))
     assert "sgn" not in words

@@ -10,8 +10,9 @@ from dataclasses import dataclass, replace
 
 from sonicvacuum.discover import policy
 from sonicvacuum.discover.fit import discrepancy, smooth
+from sonicvacuum.discover.fit.enough import data
 from sonicvacuum.discover.fit.refit import Fit
-from sonicvacuum.discover.judge import decided, explanations
+from sonicvacuum.discover.judge import decided, explanations, gross
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.rounds import Investigation
 from sonicvacuum.discover.search import pairs, restart
@@ -71,8 +72,9 @@ class _Weighed:
         plain = self._account(found.final)
         law = free_law(found.forward, found.final)
         best = whole = self._account(found.final, law) if law else plain
+        most = self._most(plain.left)
         for one in (alone, *map(self._searched, self._less(found.final))):
-            if one is None or one.law is None or one.left > plain.left:
+            if one is None or one.law is None or one.left > most:
                 continue
             # A law alone has all of a catalogue of laws in it: it is asked for more than a name is.
             earned = -max(_EARNED, _ERRS * one.gain) if best.law else policy.LAW_LOG_BAYES
@@ -81,6 +83,15 @@ class _Weighed:
         if best is whole:
             return found, whole.law
         return self._renamed(best, best.worth - plain.worth), best.law
+
+    def _most(self, left: float) -> float:
+        """χ² that a law in place of names may leave, which leave so much. Beside much more than the noise a
+        polynomial is easily as good as a name: there it has to take away as much as a further group of it.
+        """
+        size = data(self.found.forward)
+        if not gross.gross(self.found.forward, self.found.final, self.known):
+            return left
+        return size + (1.0 - policy.LAW_FURTHER) * (left - size)
 
     def _surely(self, alone: _Account) -> Investigation:
         """Nothing was named, as which of several effects it is was open: whether the law beats them all."""
