@@ -53,8 +53,8 @@ def test_where_none_explains_them_all_are_followed(monkeypatch):
 
 @pytest.mark.parametrize("stiffness", [3.5, 5.0])
 def test_a_stiff_wall_seen_by_its_own_gauge_is_tried_all_over_its_range(stiffness):
-    """Two minima lie between the nominal wall and the hidden one, and slopes at the first promise nothing:
-    a bead's mass next to it gains most of the rest. At 5.0 slopes promise so little of what is left that all
+    """The misfit has a minimum at the nominal wall and another at the hidden one, and slopes at the first
+    promise nothing: a bead's mass next to it gains most of the rest. At 5.0 slopes promise so little of what is left that all
     effects race, at 3.5 they do not.
     """
     wall = {"id": "wall", "kind": "wall", "sigma_N": 24.0 * SIGMA, "gain_rel_sigma": 0.02}
@@ -64,7 +64,7 @@ def test_a_stiff_wall_seen_by_its_own_gauge_is_tried_all_over_its_range(stiffnes
     scores = screen.screen(forward, null, directions.catalogue(setup, forward.experiment.excluded))
     promised = float(np.square(scores.z).max())
     assert promised < singles.NONLINEAR
-    assert singles._unseen(forward, null, promised) == (stiffness == 5.0)
+    assert singles._beyond_slopes(forward, null, promised) == (stiffness == 5.0)
     best, size = singles.fit_all(forward, null, scores)[0], sum(map(forward.experiment.size, (0, 1)))
     assert best.effect == "wall-compliance"
     assert best.fit.objective == pytest.approx(size, abs=4.0 * np.sqrt(2.0 * size))  # four σ of χ²

@@ -85,7 +85,7 @@ class _Weighed:
         return self._renamed(best, best.worth - plain.worth), best.law
 
     def _most(self, left: float) -> float:
-        """χ² that a law in place of names may leave, which leave so much. Beside much more than the noise a
+        """χ² that a law may leave that replaces names, which leave so much. Beside much more than the noise a
         polynomial is easily as good as a name: there it has to take away as much as a further group of it.
         """
         size = data(self.found.forward)

@@ -61,7 +61,7 @@ def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
     gains = {e: float(np.square(scores.z[k])) for e, k in best.items()}
     largest = max(gains.values(), default=0.0)
     traced = any(r.has_signals for r in forward.experiment.runs)
-    nonlinear = largest > NONLINEAR or _unseen(forward, null, largest) or _strained(forward, null)
+    nonlinear = largest > NONLINEAR or _beyond_slopes(forward, null, largest) or _strained(forward, null)
     # Few scalars with large errors leave room for large deviations, which slopes do not foresee.
     rough = nonlinear and wide.wide(forward)
     loose = nonlinear or (not traced and largest > CLEAR)
@@ -234,7 +234,7 @@ def _densely(forward, null: Fit, component: Component, setup: Setup) -> Fit | No
     return settled(forward, one, setup)
 
 
-def _unseen(forward: Forward, null: Fit, largest: float) -> bool:
+def _beyond_slopes(forward: Forward, null: Fit, largest: float) -> bool:
     """Whether the nominal model leaves much of which slopes promise too little, `largest` in χ²."""
     excess = null.objective - data(forward)
     return excess > UNFORESEEN and largest < FORESEEN * excess
