@@ -54,8 +54,8 @@ def test_where_none_explains_them_all_are_followed(monkeypatch):
 @pytest.mark.parametrize("stiffness", [3.5, 5.0])
 def test_a_stiff_wall_seen_by_its_own_gauge_is_tried_all_over_its_range(stiffness):
     """The misfit has a minimum at the nominal wall and another at the hidden one, and slopes at the first
-    promise nothing: a bead's mass next to it gains most of the rest. At 5.0 slopes promise so little of what is left that all
-    effects race, at 3.5 they do not.
+    promise nothing: a bead's mass next to it gains most of the rest. At 5.0 slopes promise so little of what
+    is left that all effects race, at 3.5 they do not.
     """
     wall = {"id": "wall", "kind": "wall", "sigma_N": 24.0 * SIGMA, "gain_rel_sigma": 0.02}
     record, _ = made([("wall-compliance", {"stiffness_ratio": stiffness})], seed=11, sensors=[wall])
