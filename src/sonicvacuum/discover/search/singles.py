@@ -174,8 +174,8 @@ def _once_more(forward, null, found, setup):
     """The same with effects at one bead or contact searched densely, and along the chain, where all that was
     found leaves much.
     """
-    excess = null.objective - data(forward)
-    if excess - max((c.gain for c in found), default=0.0) < max(NONLINEAR, MISSED * excess):
+    excess, rest = _left(forward, null, found)
+    if rest < max(NONLINEAR, MISSED * excess):
         return found
 
     def denser(branch, c):
@@ -197,17 +197,19 @@ def _all_over(forward, null, scores, found, effects, setup):
     found leaves more than noise: slopes and running integrals may lead to another minimum. Followed are those
     of which a trial promises more than they have gained, and a share of what the best has.
     """
-    size, best = data(forward), max((c.gain for c in found), default=0.0)
-    excess = null.objective - size
-    if best < GAINS or excess - best < max(LEAVES * np.sqrt(2.0 * size), MISSED * excess):
+    excess, rest = _left(forward, null, found)
+    noise, best = np.sqrt(2.0 * data(forward)), excess - rest
+    if best < GAINS or rest < max(LEAVES * noise, MISSED * excess):
         return found
     gains = {c.effect: c.gain for c in found}
 
     def elsewhere(branch, effect):
-        least = max(PROMISING * best, gains.get(effect.id, 0.0))
-        options = [free for free in variants(effect, setup) if of_one_strength(free)]
-        near = [(free, _trials(branch, null, effect, free, setup, least)) for free in options]
-        near = [(free, starts) for free, starts in near if starts is not None]
+        near, least = [], max(PROMISING * best, gains.get(effect.id, 0.0))
+        for free in filter(of_one_strength, variants(effect, setup)):
+            trials = _trials(branch, null, Component(effect, free), setup)
+            if trials and trials[0].gain >= least:
+                u, nu = (np.array(x) for x in zip(*((t.u, t.nu) for t in trials), strict=True))
+                near.append((free, Starts(u, nu)))
         return candidate(branch, null, scores, effect, Effort(True, ITERATIONS), near)
 
     more = abreast.each(forward, elsewhere, [e for e in effects if not e.places], "effects all over")
@@ -215,17 +217,20 @@ def _all_over(forward, null, scores, found, effects, setup):
     return list(({c.effect: c for c in found} | {c.effect: c for c in better}).values())
 
 
-def _trials(forward, null, effect, free, setup, least):
-    """Starts at trials all over the range of a strength; None where none promises more than `least`."""
-    trials = secants.tried(forward, null, Component(effect, free), setup, TRIALS, secants.finely(free[0]))
-    if not trials or trials[0].gain < least:
-        return None
-    return Starts(np.array([t.u for t in trials]), np.array([t.nu for t in trials]))
+def _left(forward, null, found):
+    """χ² that the nominal model leaves beyond the noise, and what the best of single effects leaves of it."""
+    excess = null.objective - data(forward)
+    return excess, excess - max((c.gain for c in found), default=0.0)
+
+
+def _trials(forward, null: Fit, component: Component, setup: Setup) -> list[secants.Secant]:
+    """The best trials of finite strength all over an effect's range, best first."""
+    return secants.tried(forward, null, component, setup, TRIALS, secants.finely(component.free[0]))
 
 
 def _densely(forward, null: Fit, component: Component, setup: Setup) -> Fit | None:
     """The best fit of an effect with a place, from trials of finite strength all over; None without any."""
-    trials = secants.tried(forward, null, component, setup, TRIALS, secants.finely(component.free[0]))
+    trials = _trials(forward, null, component, setup)
     if not trials:
         return None
     u, nu, at = (np.array(x) for x in zip(*((t.u, t.nu, [t.place]) for t in trials), strict=True))
@@ -236,7 +241,7 @@ def _densely(forward, null: Fit, component: Component, setup: Setup) -> Fit | No
 
 def _beyond_slopes(forward: Forward, null: Fit, largest: float) -> bool:
     """Whether the nominal model leaves much of which slopes promise too little, `largest` in χ²."""
-    excess = null.objective - data(forward)
+    excess, _ = _left(forward, null, ())
     return excess > UNFORESEEN and largest < FORESEEN * excess
 
 
