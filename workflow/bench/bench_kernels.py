@@ -28,7 +28,7 @@ def chain(lanes, name="bare"):
 @pytest.mark.parametrize("lanes", [1, 64])
 @pytest.mark.parametrize("options", OPTIONS)
 def test_steppers(benchmark, lanes, options):
-    h = benchmark(simulate, chain(lanes), [12], 0.6e-3, INTERVAL, **OPTIONS[options])
+    h = benchmark(simulate, chain(lanes), [12], 0.6e-3, INTERVAL, alone=True, **OPTIONS[options])
     assert h.force.max() > 1.0
 
 

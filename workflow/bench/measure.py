@@ -47,8 +47,9 @@ MOST_REPEATS = 20
 
 
 def engine(problem, **options):
-    """The engine as users call it: from chains to forces."""
+    """The engine as users call it, one chain by itself without lanes: from chains to forces."""
     chain, contacts = problem.chain, [problem.contact]
+    options["alone"] = True
     return lambda: simulate(chain, contacts, problem.duration, INTERVAL, **options).of(problem.contact)
 
 

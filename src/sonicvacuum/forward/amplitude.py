@@ -132,7 +132,7 @@ def _struck(chain, diameters, sensor, pair, speeds, begun, refine):
     for goes_on in (True, False):
         own = setup if len(left) == chain.lanes else setup.take(left)
         duration = begun if goes_on else passage_of(lanes, CROSSED)
-        seen = see(own, duration, interval, refine=refine, forgiving=True, alone=False)
+        seen = see(own, duration, interval, refine=refine, forgiving=True)
         found[:, left], unsettled = _shown(seen, geometry, goes_on)
         left = left[unsettled]
         if not len(left):

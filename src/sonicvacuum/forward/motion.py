@@ -34,7 +34,6 @@ def see(
     refine: float = 1.0,
     threads: int = 1,
     forgiving: bool = False,
-    alone: bool = True,
 ) -> Seen:
     """Simulate a setup for `duration` with samples every `interval`, in s.
 
@@ -46,7 +45,6 @@ def see(
         refine: divides the step.
         threads: as in `physics.run.simulate`.
         forgiving: lanes whose motion does not stay finite show no numbers, instead of ending all.
-        alone: as in `physics.run.simulate`.
 
     Raises:
         FloatingPointError: for such a lane, unless forgiving.
@@ -59,8 +57,7 @@ def see(
     contacts = sorted({*contacts, *((0,) if striker else ())})
 
     def recorded(chain):
-        how = {"bodies": bodies, "refine": refine, "threads": threads, "alone": alone}
-        return simulate(chain, contacts, duration, interval, **how)
+        return simulate(chain, contacts, duration, interval, bodies=bodies, refine=refine, threads=threads)
 
     history = _whatever(recorded, setup.chain) if forgiving else recorded(setup.chain)
     return Seen(setup, history, readings(setup.sensors, history, beads))

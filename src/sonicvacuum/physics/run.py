@@ -27,7 +27,7 @@ COINCIDENCE = 1e-9
 AUDIT_ENTRIES = 400
 # Shares of the work per thread, so that threads end together though groups differ in cost.
 SHARES = 8
-# Beyond so many bodies one chain or two never take lanes: eight copies cost more than compiling.
+# Beyond so many bodies one chain or two take no lanes: eight copies cost more than compiling.
 LONG = 1000
 # Steps of one body (in all lanes of a group) below which a call is over in a fraction of a second.
 SHORT = 5e6
@@ -48,12 +48,12 @@ def simulate(
     symplectic: bool = True,
     audit: bool = False,
     threads: int = 1,
-    alone: bool = True,
+    alone: bool = False,
 ) -> History:
     """Integrate a batch of chains from the moment of impact.
 
-    The result for a chain depends neither on `threads` nor on the other chains of the batch: `alone`, a
-    chain is computed without lanes, which changes rounding errors only.
+    The result for a chain depends neither on `threads` nor on the other chains of the batch; `alone` changes
+    rounding errors only.
 
     Args:
         chain: what is integrated, `chain.lanes` chains.
@@ -67,8 +67,8 @@ def simulate(
         symplectic: False takes the Runge–Kutta stepper of dissipative laws for any law.
         audit: keep the energy and momentum balance.
         threads: groups run on so many threads.
-        alone: whether one chain or two are computed without lanes. With them they cost a little more, and one
-            compiled kernel serves any number of chains.
+        alone: whether one chain or two are computed without lanes, as long ones are: a short one takes two
+            thirds of the time then, and code that has to be compiled first.
 
     Raises:
         ValueError: for a contact, body or method that does not exist, a duration, interval, step or

@@ -340,5 +340,4 @@ class Forward:
             refine=self._refine,
             threads=self.threads,
             forgiving=True,
-            alone=False,
         )
