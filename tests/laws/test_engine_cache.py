@@ -112,10 +112,10 @@ def test_a_damaged_file_is_replaced(crowd, copy):
     paths = [p for p in cache.glob("*/*.bin") if p.parent == max(cache.iterdir(), key=os.path.getmtime)]
     whole = {path: path.read_bytes() for path in paths}
     frame, stepper = sorted(whole, key=lambda path: len(whole[path]), reverse=True)
-    # Cut off; a bit turned.
-    for content, names in ((whole[stepper][:1000], "1 True"), (whole[stepper][:-1] + b"?", "1 True")):
+    # Cut off; a bit turned. Laws are put into a frame that is there without Numba.
+    for content in (whole[stepper][:1000], whole[stepper][:-1] + b"?"):
         stepper.write_bytes(content)
-        assert finish(start(copy, cache)) == (results[0][0], names)
+        assert finish(start(copy, cache)) == (results[0][0], "1 False")
         assert finish(start(copy, cache)) == (results[0][0], "0 False")
     frame.write_bytes(b"")
     stepper.unlink()

@@ -8,9 +8,9 @@ from sonicvacuum.physics import lanes, run
 from sonicvacuum.physics.chain import Chain
 from sonicvacuum.physics.composition import Frame
 from sonicvacuum.physics.entry import handed_over, kinds_of, prototype
-from sonicvacuum.physics.linking import alone
 from sonicvacuum.physics.machine import address_of
 from sonicvacuum.physics.run import simulate
+from sonicvacuum.physics.skeleton import alone
 from sonicvacuum.physics.table import OPTIONS, load, store
 
 MODULI = np.linspace(2.76e9, 30e9, 19)

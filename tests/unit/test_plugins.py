@@ -79,7 +79,11 @@ def test_several_effects_come_from_one_file(tmp_path):
         ("EFFECT = Effect(", "LAW = Effect(", "needs EFFECT = "),
         ("return [damping]", "return [damping, damping]", "trial with damping_kg_s_m"),
         ("return [damping]", "return [damping + 1e4]", "it must fade there"),
-        ("return damping * delta * rate", "return eval('damping * delta * rate')", "cannot be compiled"),
+        (
+            "return damping * delta * rate",
+            "return damping * delta * __import__('numpy').sinh(rate)",
+            "cannot be compiled: deep_force: TypeError: .* use plain arithmetic and the functions",
+        ),
         ("return add_term(", "return id(", "trial with damping_kg_s_m"),
     ],
 )

@@ -10,13 +10,13 @@ import re
 from dataclasses import fields
 
 import numpy as np
-from numba.core.errors import NumbaError
 
 from sonicvacuum.effects.base import NUISANCES, PLACES, PRIORS, Effect, Parameter, Setup
 from sonicvacuum.gauges import Gauge
 from sonicvacuum.physics.bodies import Body, Elastic
 from sonicvacuum.physics.chain import Chain
 from sonicvacuum.physics.run import simulate
+from sonicvacuum.physics.tracing import FormulaError
 
 _ID = re.compile(r"[a-z][a-z0-9]*(-[a-z0-9]+)*")
 # The lanes of the trial, in typical deviations: off, hardly there, typical.
@@ -111,9 +111,8 @@ def _try(effect):
             force = _forces(effect, p, setup)
         except FloatingPointError:
             raise ValueError(f"{p.name}: forces do not stay finite at the typical deviation") from None
-        except NumbaError as error:
-            told = " ".join(str(error).split())
-            raise ValueError(f"its formula cannot be compiled: {told[:300]}") from None
+        except FormulaError as error:
+            raise ValueError(f"its formula cannot be compiled: {error}") from None
         except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
             told = " ".join(str(error).split())
             raise ValueError(f"trial with {p.name}: {type(error).__name__}: {told}") from None

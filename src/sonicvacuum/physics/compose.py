@@ -1,123 +1,139 @@
 """From a law set to functions of a body's row: the formulas of a composition, chained into one function each.
 
-They fill what the stepper leaves open (see `table`). Each is made as a source text that calls the formulas of
-the terms and nothing else, with which `linking` goes on.
+They fill what the stepper leaves open (see `table`), and are written as LLVM's code right away (`tracing`).
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from types import FunctionType
+from functools import partial
 
 import numpy as np
-from numba import njit, types
+from llvmlite import ir
 
-from sonicvacuum.physics import lanes
+from sonicvacuum.physics.arithmetic import LANES_KIND, constant, is_any_positive, splat
 from sonicvacuum.physics.composition import REST, REST_FORCE, Composition, U, V
-from sonicvacuum.physics.lanes import positive, root, select
-from sonicvacuum.physics.sampling import hermite
-from sonicvacuum.physics.table import INLINED, is_any_positive, number_type, read, write
+from sonicvacuum.physics.cubic import hermite, highest
+from sonicvacuum.physics.lanes import LANES, absolute, positive, select, without_fusing
+from sonicvacuum.physics.laws import Term
+from sonicvacuum.physics.tracing import Number, worked_out
 
 # Gauss's rule on −1 to 1, moved to 0 to 1; exact where a correction is a polynomial in √compression up to the
 # eleventh power.
 _X, _W = np.polynomial.legendre.leggauss(8)
 _NODES, _WEIGHTS = (0.5 * (_X + 1.0)).tolist(), (0.5 * _W).tolist()
 
-
-def _compiled(function):
-    """A formula, with the functions that it calls; those of `lanes` Numba is taught."""
-    known = function.__globals__
-    called = {name: known[name] for name in function.__code__.co_names if _is_formula(known.get(name))}
-    if called:
-        own = known | {name: _compiled(one) for name, one in called.items()}
-        function = FunctionType(function.__code__, own, function.__name__, function.__defaults__)
-    return njit(**INLINED)(function)
+_WHOLE = ir.IntType(64)
 
 
-def _is_formula(value):
-    return isinstance(value, FunctionType) and value.__module__ != lanes.__name__
+class _Code:
+    """The code of one function, written at the row of a body."""
 
-
-@_compiled
-def highest(v, w, gain):
-    """Largest value during a step of the cubic that goes from 0 to `gain`, first at the rate v, last at w.
-
-    Rates per step. Only the maximum of a curve that rises first and falls last counts.
-    """
-    square = 3.0 * gain - 2.0 * v - w
-    cube = v + w - 2.0 * gain
-    turns = select(v, select(-w, 1.0, 0.0), 0.0)
-    below = root(square * square - 3.0 * cube * v) - square
-    moment = v / select(turns, below, 1.0)
-    top = moment * (v + moment * (square + moment * cube))
-    return select(turns, top, positive(gain))
-
-
-class _Source:
-    """Source text of one function that evaluates formulas of a law set at a row of the table."""
-
-    def __init__(self, composition, signature):
+    def __init__(self, composition, function):
         self.composition, self.laws = composition, composition.laws
-        self.lines = [f"def composed({signature}):"]
-        self.namespace = {name: getattr(lanes, name) for name in ("select", "positive", "without_fusing")}
-        self.namespace |= {"read": read, "write": write, "highest": highest, "hermite": hermite}
-        self.namespace |= {"absolute": lanes.absolute, "is_any_positive": is_any_positive}
+        self.builder, self.row = ir.IRBuilder(function.append_basic_block()), function.args[0]
+        self.kind = self.row.type.pointee
 
-    def call(self, term, what, *arguments):
-        """The call of one formula of a term, its coefficients read from the table."""
-        key = f"{what}_{self.laws.terms.index(term)}"
-        if key not in self.namespace:
-            self.namespace[key] = _compiled(getattr(term, what))
-        start = self.composition.first_coefficient + self.laws.first_coefficient[term.name]
-        read = [f"read(row, {start + k})" for k in range(term.coefficients)]
-        return f"{key}({', '.join([*arguments, *read])})"
+    def number(self, value):
+        """A number of all lanes, from one or from what is alike in all."""
+        scalar = value.type != self.kind
+        return Number(self.builder, splat(self.builder, value) if scalar else value)
 
-    def add(self, *lines):
-        self.lines += [f"    {line}" for line in lines]
+    def _at(self, column, more=0):
+        if isinstance(column, int):
+            column = ir.Constant(_WHOLE, column + more)
+        elif more:
+            column = self.builder.add(column, ir.Constant(_WHOLE, more))
+        return self.builder.gep(self.row, [column], inbounds=True)
 
-    def add_acting(self, term, line):
-        """A line that works a term out, passed over where its strengths are zero in all lanes.
+    def read(self, column, more=0):
+        """The number in a column, or `more` columns behind it."""
+        return Number(self.builder, self.builder.load(self._at(column, more), align=8))
+
+    def write(self, column, number):
+        self.builder.store(number.value, self._at(column), align=8)
+
+    def call(self, term: Term, what: str, *arguments: Number) -> Number:
+        """One formula of a term, its coefficients read from the table."""
+        start = self._first(term)
+        own = [self.read(start + k) for k in range(term.coefficients)]
+        return worked_out(getattr(term, what), *arguments, *own)
+
+    def _first(self, term):
+        return self.composition.first_coefficient + self.laws.first_coefficient[term.name]
+
+    def acting(self, term: Term, otherwise: Number, value: Callable[[], Number]) -> Number:
+        """What `value` writes of a term, passed over where its strengths are zero in all lanes.
 
         A term that has the law set to itself (beside the elastic one) is there because it acts.
         """
         if not term.strengths or len(self.laws.terms) < 3:
-            self.add(line)
-            return
-        start = self.composition.first_coefficient + self.laws.first_coefficient[term.name]
-        sizes = " + ".join(f"absolute(read(row, {start + k}))" for k in term.strengths)
-        self.add(f"if is_any_positive({sizes}):", f"    {line}")
+            return value()
+        start, (first, *others) = self._first(term), term.strengths
+        sizes = absolute(self.read(start + first))
+        for k in others:
+            sizes = sizes + absolute(self.read(start + k))
+        acts, after = self.builder.append_basic_block(), self.builder.append_basic_block()
+        before = self.builder.block
+        self.builder.cbranch(is_any_positive(self.builder, sizes.value), acts, after)
+        self.builder.position_at_end(acts)
+        found, end = value().value, self.builder.block
+        self.builder.branch(after)
+        self.builder.position_at_end(after)
+        chosen = self.builder.phi(self.kind)
+        chosen.add_incoming(otherwise.value, before)
+        chosen.add_incoming(found, end)
+        return Number(self.builder, chosen)
 
-    def add_elastic(self, first_memory):
-        """Leave the elastic force before and after path dependence in `loading` and `elastic`."""
-        self.add(f"loading = {self.loading('delta')}", "elastic = loading")
+    def with_terms(self, slot: str, total: Number, *arguments: Number) -> Number:
+        """A total with what all terms of a slot add to it."""
+
+        def plus(term, before):
+            return before + self.call(term, "formula", *arguments)
+
+        for term in self.laws.in_slot(slot):
+            total = self.acting(term, total, partial(plus, term, total))
+        return total
+
+    def depth(self, approach: Number) -> Number:
+        """Compression of the contact, by what it approached since rest."""
+        return approach + self.read(REST) if self.laws.preloaded else approach
+
+    def elastic(self, delta: Number, first_memory) -> Number:
+        """The elastic force: the loading curve, or what paths make of it."""
+        loading = elastic = self.loading(delta)
+
+        def unloading(term):
+            largest = self.memory(term, first_memory)
+            return self.call(term, "formula", delta, loading, largest, self.loading(largest))
+
         for term in self.laws.in_slot("path"):
-            largest = f"read(row, {first_memory} + {self.laws.memory_of[term.name]})"
-            unloading = self.call(term, "formula", "delta", "loading", largest, self.loading(largest))
-            self.add_acting(term, f"elastic = {unloading}")
+            elastic = self.acting(term, elastic, partial(unloading, term))
+        return elastic
 
-    def loading(self, delta):
+    def memory(self, term: Term, first_memory) -> Number:
+        """What a term remembers, in columns from `first_memory` on."""
+        return self.read(first_memory, self.laws.memory_of[term.name])
+
+    def loading(self, delta: Number) -> Number:
         """The loading curve at a compression."""
-        terms = (*self.laws.in_slot("elastic"), *self.laws.in_slot("factor"))
-        return " * ".join(self.call(term, "formula", delta) for term in terms)
+        (base,) = self.laws.in_slot("elastic")
+        force = self.call(base, "formula", delta)
+        for term in self.laws.in_slot("factor"):
+            force = force * self.call(term, "formula", delta)
+        return force
 
-    def add_energy(self, name, delta):
-        """Leave the work of the loading curve up to a compression in a variable.
+    def energy(self, delta: Number) -> Number:
+        """Work of the loading curve up to a compression.
 
         Corrected curves by Gauss's rule in √compression, in which they are smooth: ∫F dδ = ∫F(δt²) 2δt dt.
         """
         (base,) = self.laws.in_slot("elastic")
-        factors = self.laws.in_slot("factor")
-        if not factors:
-            self.add(f"{name} = {self.call(base, 'energy', delta)}")
-            return
-        self.add(f"{name} = 0.0 * {delta}")
+        if not self.laws.in_slot("factor"):
+            return self.call(base, "energy", delta)
+        total = 0.0 * delta
         for t, weight in zip(_NODES, _WEIGHTS, strict=True):
-            self.add(f"part = {t * t!r} * {delta}")
-            self.add(f"{name} = {name} + {2.0 * t * weight!r} * {delta} * {self.loading('part')}")
-
-    def function(self):
-        """The finished Python function."""
-        exec("\n".join(self.lines), self.namespace)
-        return self.namespace["composed"]
+            total = total + 2.0 * t * weight * delta * self.loading(t * t * delta)
+        return total
 
 
 @dataclass(frozen=True)
@@ -126,167 +142,143 @@ class Piece:
 
     Attributes:
         arguments: names of what it takes beside `row`, a pointer to the row of a body; numbers of all lanes.
-        write: adds lines to a source; whether there is anything to do: if not, zero is returned.
+        work: writes its code, given that and the arguments; what it returns, if anything.
         scalars: names of arguments that are alike in all lanes.
         columns: names of arguments that are columns of the table.
-        returns: whether it returns a number of all lanes.
+        returns: whether it returns a number of all lanes: zero, where `work` has none.
     """
 
     arguments: tuple[str, ...]
-    write: Callable[[Composition, _Source], bool]
+    work: Callable[..., Number | None]
     scalars: tuple[str, ...] = ()
     columns: tuple[str, ...] = ()
     returns: bool = False
 
-    def signature(self, composition: Composition):
-        """Types of all arguments and of what is returned, for Numba."""
-        number = number_type(composition.width)
-        kinds = dict.fromkeys(self.scalars, types.float64) | dict.fromkeys(self.columns, types.intp)
-        arguments = [kinds.get(name, number) for name in self.arguments]
-        return (number if self.returns else types.void)(types.CPointer(number), *arguments)
+    def write(self, module: ir.Module, name: str, composition: Composition) -> None:
+        """Add the function for a composition to a module.
 
-    def function(self, composition: Composition) -> Callable | None:
-        """Python function of `row` and the arguments; None where it does nothing."""
-        source = _Source(composition, ", ".join(("row", *self.arguments)))
-        return source.function() if self.write(composition, source) else None
+        Raises:
+            FormulaError: for a formula that cannot be written as code.
+        """
+        kind = LANES_KIND if composition.width == LANES else ir.DoubleType()
+        others = dict.fromkeys(self.scalars, ir.DoubleType()) | dict.fromkeys(self.columns, _WHOLE)
+        taken = [kind.as_pointer(), *(others.get(name, kind) for name in self.arguments)]
+        returned = kind if self.returns else ir.VoidType()
+        code = _Code(composition, ir.Function(module, ir.FunctionType(returned, taken), name))
+        given = code.builder.function.args[1:]
+        numbers = [a if a.type == _WHOLE else code.number(a) for a in given]
+        result = self.work(code, *numbers)
+        if not self.returns:
+            code.builder.ret_void()
+        else:
+            code.builder.ret(constant(kind, 0.0) if result is None else result.value)
 
 
-def _push(composition, source):
-    laws = composition.laws
-    source.add(_delta(laws))
-    source.add_elastic("first_memory")
-    source.add("force = elastic")
-    for term in laws.in_slot("force"):
-        source.add_acting(term, f"force = force + {source.call(term, 'formula', 'delta', 'rate', 'elastic')}")
+def _push(code, approach, rate, first_memory):
+    laws = code.laws
+    delta = code.depth(approach)
+    elastic = code.elastic(delta, first_memory)
+    force = code.with_terms("force", elastic, delta, rate, elastic)
     for term in laws.in_slot("memory"):
-        state = f"read(row, first_memory + {laws.memory_of[term.name]})"
-        source.add(f"force = force + {source.call(term, 'formula', 'elastic', state)}")
+        force = force + code.call(term, "formula", elastic, code.memory(term, first_memory))
     if not laws.is_positional:
         # A lone elastic force is already zero out of contact and never negative.
-        source.add("force = select(delta, positive(force), 0.0)")
-    if laws.preloaded:
-        source.add(f"force = without_fusing(force, read(row, {REST_FORCE}))")
-    source.add("return force")
-    return True
+        force = select(delta, positive(force), 0.0)
+    return without_fusing(force, code.read(REST_FORCE)) if laws.preloaded else force
 
 
-def _delta(laws):
-    rest = f" + read(row, {REST})" if laws.preloaded else ""
-    return f"delta = approach{rest}"
-
-
-def _advance_memory(composition, source):
-    laws = composition.laws
+def _advance_memory(code, approach, keep, gain, step):
+    laws, composition = code.laws, code.composition
     if not laws.in_slot("memory"):
-        return False
-    source.add(_delta(laws))
-    source.add_elastic(composition.first_memory)
+        return
+    delta = code.depth(approach)
+    elastic = code.elastic(delta, composition.first_memory)
     for term in laws.in_slot("memory"):
         k = laws.memory_of[term.name]
         column, increment = composition.first_memory + k, composition.first_increment + 2 + k
-        growth = source.call(term, "growth", "elastic", "state")
-        source.add(
-            f"state = read(row, {column})",
-            f"change = keep * read(row, {increment}) + step * {growth}",
-            f"write(row, {increment}, select(delta, change, 0.0))",
-            f"write(row, {column}, select(delta, state + gain * change, 0.0))",
-        )
-    return True
+        state = code.read(column)
+        change = keep * code.read(increment) + step * code.call(term, "growth", elastic, state)
+        code.write(increment, select(delta, change, 0.0))
+        code.write(column, select(delta, state + gain * change, 0.0))
 
 
-def _follow_path(composition, source):
+def _follow_path(code, step):
     """The largest compression of the step is that of the cubic Hermite polynomial.
 
     The stages of a step stray from the motion, and a largest compression once too large would stay so.
     """
-    laws = composition.laws
+    laws, composition = code.laws, code.composition
     if not laws.in_slot("path"):
-        return False
-    start, ahead = composition.first_turn, composition.columns
-    source.add(
-        f"x, v = read(row, {start}), step * read(row, {start + 1})",
-        f"rate = read(row, {V}) - read(row, {ahead + V})",
-        f"approach = read(row, {U}) - read(row, {ahead + U})",
-        f"write(row, {start}, approach)",
-        f"write(row, {start + 1}, rate)",
-        "approach = x + highest(v, step * rate, approach - x)",
-        _delta(laws),
-    )
+        return
+    start = composition.first_turn
+    x, v = code.read(start), step * code.read(start + 1)
+    approach, rate = _approach(code), _rate(code)
+    code.write(start, approach)
+    code.write(start + 1, rate)
+    delta = code.depth(x + highest(v, step * rate, approach - x))
     for term in laws.in_slot("path"):
+        largest = code.memory(term, composition.first_memory)
         column = composition.first_memory + laws.memory_of[term.name]
-        source.add(f"largest = read(row, {column})")
-        source.add(f"write(row, {column}, select(delta - largest, delta, largest))")
-    return True
+        code.write(column, select(delta - largest, delta, largest))
 
 
-def _body_acceleration(composition, source):
-    if not composition.laws.in_slot("body"):
-        return False
-    source.add("total = 0.0 * velocity")
-    for term in composition.laws.in_slot("body"):
-        source.add_acting(term, f"total = total + {source.call(term, 'formula', 'velocity')}")
-    source.add("return total")
-    return True
+def _approach(code):
+    """Of a body and the next, since rest."""
+    return code.read(U) - code.read(code.composition.columns + U)
 
 
-def _stored_energy(composition, source):
-    laws = composition.laws
-    if not (composition.audited and laws.stores_energy):
-        return False
-    source.add(_delta(laws))
-    source.add_energy("energy", "delta")
-    if laws.preloaded:
-        source.add(f"rest = read(row, {REST})", f"force = read(row, {REST_FORCE})")
-        source.add_energy("before", "rest")
-        source.add("energy = energy - before - force * approach")
-    source.add("return energy")
-    return True
+def _rate(code):
+    return code.read(V) - code.read(code.composition.columns + V)
 
 
-def _keep_memory(composition, source):
+def _body_acceleration(code, velocity):
+    return code.with_terms("body", 0.0 * velocity, velocity) if code.laws.in_slot("body") else None
+
+
+def _stored_energy(code, approach):
+    if not (code.composition.audited and code.laws.stores_energy):
+        return None
+    energy = code.energy(code.depth(approach))
+    if code.laws.preloaded:
+        energy = energy - code.energy(code.read(REST)) - code.read(REST_FORCE) * approach
+    return energy
+
+
+def _keep_memory(code, step):
+    composition = code.composition
     for k in range(composition.memories):
-        source.add(f"write(row, {composition.first_old + k}, read(row, {composition.first_memory + k}))")
-    _add_slopes(composition, source, composition.first_slope)
-    return composition.memories > 0
+        code.write(composition.first_old + k, code.read(composition.first_memory + k))
+    _keep_slopes(code, step, composition.first_slope)
 
 
-def _end_memory(composition, source):
-    _add_slopes(composition, source, composition.first_slope + composition.memories)
-    return bool(composition.laws.in_slot("memory"))
+def _end_memory(code, step):
+    _keep_slopes(code, step, code.composition.first_slope + code.composition.memories)
 
 
-def _add_slopes(composition, source, first):
+def _keep_slopes(code, step, first):
     """Leave what memories change by in a step at their present rate in columns from `first` on."""
-    laws, ahead = composition.laws, composition.columns
+    laws, first_memory = code.laws, code.composition.first_memory
     if not laws.in_slot("memory"):
         return
-    source.add(f"approach = read(row, {U}) - read(row, {ahead + U})", _delta(laws))
-    source.add_elastic(composition.first_memory)
+    delta = code.depth(_approach(code))
+    elastic = code.elastic(delta, first_memory)
     for term in laws.in_slot("memory"):
-        k = laws.memory_of[term.name]
-        source.add(f"state = read(row, {composition.first_memory + k})")
-        growth = source.call(term, "growth", "elastic", "state")
-        source.add(f"write(row, {first + k}, select(delta, step * {growth}, 0.0))")
+        growth = code.call(term, "growth", elastic, code.memory(term, first_memory))
+        code.write(first + laws.memory_of[term.name], select(delta, step * growth, 0.0))
 
 
-def _blend_memory(composition, source):
-    laws, slope = composition.laws, composition.first_slope
-    if laws.in_slot("path"):
-        source.add(_delta(laws))
+def _blend_memory(code, fraction, approach, rate):
+    laws, composition = code.laws, code.composition
+    slope, paths = composition.first_slope, [t.name for t in laws.in_slot("path")]
     for name, k in laws.memory_of.items():
-        source.add(
-            f"old = read(row, {composition.first_old + k})",
-            f"new = read(row, {composition.first_memory + k})",
-        )
-        if name in [t.name for t in laws.in_slot("path")]:
-            source.add("blend = select(rate, select(delta - old, delta, old), new)")
+        old, new = code.read(composition.first_old + k), code.read(composition.first_memory + k)
+        if name in paths:
+            delta = code.depth(approach)
+            blend = select(rate, select(delta - old, delta, old), new)
         else:
-            source.add(
-                f"v, w = read(row, {slope + k}), read(row, {slope + composition.memories + k})",
-                "blend = hermite(old, v, new, w, fraction)",
-            )
-        source.add(f"write(row, {composition.first_blend + k}, blend)")
-    return composition.memories > 0
+            v, w = code.read(slope + k), code.read(slope + composition.memories + k)
+            blend = hermite(old, v, new, w, fraction)
+        code.write(composition.first_blend + k, blend)
 
 
 # What `table` says of each of these names.

@@ -1,7 +1,7 @@
 """Compiled code ready to be called: kept in files, loaded once for each process.
 
-Numba is imported where something must be compiled, and nowhere else: it takes longer to load than most
-calls.
+Numba is imported where a stepper or another function must be compiled, and nowhere else: it takes longer to
+load than most calls. A law set is put into a stepper without it.
 """
 
 import hashlib
@@ -36,9 +36,9 @@ class Compiled:
 
     def _loaded(self, kinds):
         def alone():
-            from sonicvacuum.physics import linking
+            from sonicvacuum.physics import skeleton
 
-            return linking.alone(*self._make(), kinds, self._name)
+            return skeleton.alone(*self._make(), kinds, self._name)
 
         sources = (compiled.files_digest((file,)) for file in self._sources)
         return _function(self._name, kinds, compiled.kept(" ".join((self._name, *kinds, *sources)), alone))
@@ -76,14 +76,14 @@ def _stepper(composition, kinds):
     """The stepper of a composition, whose laws are put into that of its frame."""
     symbol = f"stepper_{hashlib.sha256(composition.name.encode()).hexdigest()[:16]}"
 
-    def skeleton():
-        from sonicvacuum.physics import linking
+    def of_frame():
+        from sonicvacuum.physics import skeleton
 
-        return linking.skeleton(composition.frame, kinds)
+        return skeleton.skeleton(composition.frame, kinds)
 
     def linked():
         from sonicvacuum.physics import linking
 
-        return linking.linked(composition, compiled.kept(composition.frame.name, skeleton), symbol)
+        return linking.linked(composition, compiled.kept(composition.frame.name, of_frame), symbol)
 
     return _function(symbol, kinds, compiled.kept(composition.name, linked))

@@ -18,13 +18,19 @@ _LOG2 = [2.0 / math.log(2.0) / (2 * k + 1) for k in range(11)]
 _EXP2 = [math.log(2.0) ** k / math.factorial(k) for k in range(14)]
 
 
+def call(builder, name, result, *values):
+    """The call of a function by its name in LLVM, declared where it is not yet."""
+    function = builder.module.globals.get(name)
+    if function is None:
+        kind = ir.FunctionType(result, [v.type for v in values])
+        function = ir.Function(builder.module, kind, name)
+    return builder.call(function, values)
+
+
 def call_intrinsic(builder, name, x):
     """LLVM's own function of one double or one vector of doubles."""
     kind = f"v{x.type.count}f64" if isinstance(x.type, ir.VectorType) else "f64"
-    function = builder.module.globals.get(f"{name}.{kind}")
-    if function is None:
-        function = ir.Function(builder.module, ir.FunctionType(x.type, [x.type]), f"{name}.{kind}")
-    return builder.call(function, [x])
+    return call(builder, f"{name}.{kind}", x.type, x)
 
 
 def _numbers(kind, value):
@@ -69,7 +75,7 @@ def _emit_exp2(builder, x):
     return builder.select(low, _numbers(x.type, 0.0), builder.fmul(fraction, scale))
 
 
-def emit_power(builder, x, exponent):
+def power_of_lanes(builder, x, exponent):
     """LLVM code of x**exponent for vectors, x ≥ 0, exponent > 0; 0 at x = 0."""
     is_zero = builder.fcmp_ordered("==", x, _numbers(x.type, 0.0))
     kept = builder.select(is_zero, _numbers(x.type, 1.0), x)

@@ -14,6 +14,7 @@ from numba import njit
 from numba.extending import overload
 
 from sonicvacuum.physics.composition import BEFORE, BEHIND, BODY, DUE, INVERSE_MASS, TOLERANCE, WEIGHT, U, V
+from sonicvacuum.physics.cubic import hermite
 from sonicvacuum.physics.table import (
     INLINED,
     blend_memory,
@@ -31,6 +32,7 @@ from sonicvacuum.physics.table import (
 COMPILED_ONLY = "this function exists in compiled code only: it takes a frame that Numba knows"
 
 _inlined = njit(**INLINED)
+_hermite = _inlined(hermite)
 
 
 class Recorder(NamedTuple):
@@ -97,15 +99,6 @@ def _keep_motion(c, table, first, recorder, ends):
 
 
 @_inlined
-def hermite(x, v, y, w, fraction):
-    """Cubic between values x and y with slopes v and w per step, at a fraction of the step."""
-    gap = y - x
-    square = 3.0 * gap - 2.0 * v - w
-    cube = v + w - 2.0 * gap
-    return x + fraction * (v + fraction * (square + fraction * cube))
-
-
-@_inlined
 def _sample(c, table, body, start, end, r, step, fraction):
     """Force of a recorded contact at a fraction of the step; its approach by cubic Hermite interpolation."""
     x = load(c, start, 2 * r)
@@ -137,7 +130,7 @@ def _write_motion(c, table, first, recorder, start, end, step, fraction):
     weight = load(c, clock, WEIGHT)
     count, kept = len(contacts), 2 * len(contacts)
     for b in range(len(watched)):
-        velocity = hermite(
+        velocity = _hermite(
             load(c, start, kept + 2 * b),
             step * load(c, start, kept + 2 * b + 1),
             load(c, end, kept + 2 * b),

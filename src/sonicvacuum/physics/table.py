@@ -11,17 +11,17 @@ from numba.core import cgutils
 from numba.extending import intrinsic, models, register_model
 from numba.np.arrayobj import populate_array
 
+from sonicvacuum.physics import arithmetic
+from sonicvacuum.physics.arithmetic import FASTMATH, constant
 from sonicvacuum.physics.composition import Frame
 from sonicvacuum.physics.lanes import LANES
-from sonicvacuum.physics.registers import FASTMATH, constant, lane
+from sonicvacuum.physics.linking import LAW
+from sonicvacuum.physics.registers import lane
 
 # Options of all that is compiled, and of what is only ever called from compiled code.
 OPTIONS = {"fastmath": FASTMATH, "error_model": "numpy", "nogil": True, "_nrt": False}
 WITHIN = {"forceinline": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 INLINED = OPTIONS | WITHIN
-
-# What names begin with that a law set fills in.
-LAW = "law_"
 
 
 class FrameType(types.Type):
@@ -130,37 +130,11 @@ def put(typing, c, table, body, column, value):
 
 
 @intrinsic
-def read(typing, row, column):
-    """One number of a body for all lanes, by a pointer to the body's row."""
-
-    def generate(context, builder, sig, args):
-        return builder.load(builder.gep(args[0], [args[1]], inbounds=True), align=8)
-
-    return row.dtype(row, types.intp), generate
-
-
-@intrinsic
-def write(typing, row, column, value):
-    """Write one number of a body for all lanes, by a pointer to the body's row."""
-
-    def generate(context, builder, sig, args):
-        builder.store(args[2], builder.gep(args[0], [args[1]], inbounds=True), align=8)
-        return context.get_dummy_value()
-
-    return types.void(row, types.intp, row.dtype), generate
-
-
-@intrinsic
 def is_any_positive(typing, x):
     """Whether x > 0 in any lane."""
 
     def generate(context, builder, sig, args):
-        zero = constant(args[0].type, 0.0)
-        mask = builder.fcmp_ordered(">", args[0], zero)
-        if sig.args[0] is not lane:
-            return mask
-        bits = builder.bitcast(mask, ir.IntType(LANES))
-        return builder.icmp_unsigned("!=", bits, ir.Constant(bits.type, 0))
+        return arithmetic.is_any_positive(builder, args[0])
 
     return types.boolean(x), generate
 
