@@ -122,6 +122,16 @@ def test_a_damaged_file_is_replaced(crowd, copy):
     assert finish(start(copy, cache)) == (results[0][0], "2 True")
 
 
+def test_code_for_a_plain_processor_is_made_apart(crowd, copy, monkeypatch):
+    cache, results = crowd
+    monkeypatch.setenv("NUMBA_CPU_NAME", "generic")
+    monkeypatch.setenv("NUMBA_CPU_FEATURES", "")
+    force, counts = finish(start(copy, cache))
+    assert counts == "2 True"
+    # Square roots of lanes are good to 6e-13 where the processor estimates them, else exact.
+    assert force == pytest.approx(results[0][0], rel=1e-11)
+
+
 def test_without_a_writable_folder_code_is_compiled_afresh(crowd, copy, tmp_path):
     (tmp_path / "file").write_text("no folder can be made here")
     assert finish(start(copy, tmp_path / "file" / "cache")) == (crowd[1][0][0], "2 True")

@@ -5,9 +5,10 @@ doubles and vectors of doubles. Both ways to compiled code take it from here: Nu
 stepper (`registers`), and the laws, which need no compiler but LLVM (`tracing`).
 """
 
-from llvmlite import binding, ir
+from llvmlite import ir
 
 from sonicvacuum.physics.lanes import LANES
+from sonicvacuum.physics.machine import has
 from sonicvacuum.physics.powers import call, call_intrinsic, power_of_lanes
 
 # Contraction to fused multiply-add and ignoring the sign of zero are the only liberties taken.
@@ -83,18 +84,13 @@ def emit_power(builder, x, exponent):
     return call(builder, "llvm.pow.f64", x.type, base, exponent)
 
 
-def _has_reciprocal_root():
-    """Whether the machine estimates 1/sqrt for a whole 512-bit register (AVX-512F)."""
-    return bool(binding.get_host_cpu_features().get("avx512f"))
-
-
 def emit_root(builder, x):
     """sqrt(x) where x > 0, else 0.
 
-    For lanes, where the machine can: its estimate of 1/sqrt, good to 14 bits, is improved by one
-    third-order step (relative error below 6e-13), in half the time of its square root.
+    For lanes, where the machine estimates 1/sqrt for a whole 512-bit register: the estimate, good to 14 bits,
+    is improved by one third-order step (relative error below 6e-13), in half the time of its square root.
     """
-    if not (isinstance(x.type, ir.VectorType) and _has_reciprocal_root()):
+    if not (isinstance(x.type, ir.VectorType) and has("avx512f")):
         return call_intrinsic(builder, "llvm.sqrt", emit_positive(builder, x))
     mask = builder.bitcast(_is_positive(builder, x), ir.IntType(LANES))
     y = call(builder, "llvm.x86.avx512.rsqrt14.pd.512", x.type, x, constant(x.type, 0.0), mask)

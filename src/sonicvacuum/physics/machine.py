@@ -1,5 +1,6 @@
 """The processor as LLVM knows it: what code is made for, and where it is put to be run."""
 
+import os
 from functools import lru_cache
 
 import llvmlite.binding as llvm
@@ -7,12 +8,18 @@ import llvmlite.binding as llvm
 
 @lru_cache(maxsize=1)
 def processor() -> tuple[str, str, str]:
-    """System, name and features of the processor."""
+    """System, name and features of the processor: this one, or what Numba's own variables say instead."""
+    name, features = (os.environ.get(f"NUMBA_CPU_{what}") for what in ("NAME", "FEATURES"))
     return (
         llvm.get_process_triple(),
-        llvm.get_host_cpu_name(),
-        llvm.get_host_cpu_features().flatten(),
+        llvm.get_host_cpu_name() if name is None else name,
+        llvm.get_host_cpu_features().flatten() if features is None else features,
     )
+
+
+def has(feature: str) -> bool:
+    """Whether the processor has a feature, by LLVM's name of it."""
+    return f"+{feature}" in processor()[2].split(",")
 
 
 def target() -> llvm.TargetMachine:
