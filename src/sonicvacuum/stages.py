@@ -43,6 +43,17 @@ def _tell():
         listener(*_now)
 
 
+@contextmanager
+def unheard() -> Iterator[None]:
+    """Within this, nobody hears of stages and steps, and the stage stays what it is."""
+    listeners, now = _listeners[:], _now[:]
+    _listeners.clear()
+    try:
+        yield
+    finally:
+        _listeners[:], _now[:] = listeners, now
+
+
 def silent() -> None:
     """Nobody is told of anything any more."""
     _listeners.clear()

@@ -4,7 +4,6 @@ import multiprocessing
 import os
 import signal
 import time
-from collections import deque
 
 import numpy as np
 import pytest
@@ -105,35 +104,57 @@ def test_one_that_fails_raises_here(hidden, worth_it, threads):
 
 @needs_copies
 def test_an_interruption_ends_all_copies(hidden, worth_it):
+    here = os.getpid()
+
     def interrupted(name, done, total):
         if done:
             raise KeyboardInterrupt
 
+    def work(branch, k):
+        time.sleep(1000.0 * k if os.getpid() != here else 0.0)
+
     with stages.told_to(interrupted), pytest.raises(KeyboardInterrupt):
-        abreast.each(ready(hidden, 2), lambda branch, k: time.sleep(1000.0 * k), range(2), "a stage")
+        abreast.each(ready(hidden, 2), work, range(2), "a stage")
     assert not multiprocessing.active_children()
 
 
 @needs_copies
 def test_what_a_copy_cannot_do_or_hand_over_is_done_here(hidden, worth_it):
     """A result that cannot be pickled; a copy that is killed, as for want of memory."""
-    forward, here = ready(hidden, 2), os.getpid()
+    forward, here = ready(hidden, 3), os.getpid()
 
     def work(branch, k):
-        if k == 2 and os.getpid() != here:
+        if os.getpid() == here:
+            time.sleep(0.05)  # the copies are quicker
+        elif k == 2:
             os.kill(os.getpid(), signal.SIGKILL)
         return (lambda: k) if k == 1 else (k, os.getpid() == here)
 
-    first, second, third, last = abreast.each(forward, work, range(4))
-    assert first == (0, False) and second() == 1 and third == (2, True) and last == (3, False)
+    found = abreast.each(forward, work, range(12))
+    assert found[1]() == 1 and found[2] == (2, True)
+    assert [k for k, _ in found[3:]] == list(range(3, 12))
+    assert {by for _, by in found[3:]} == {True, False}
 
 
-def test_a_copy_that_is_gone_is_asked_nothing():
-    ours, theirs = multiprocessing.Pipe()
-    theirs.close()
-    asked = {}
-    copies._ask(ours, deque([0]), asked)
-    assert asked == {}
+@needs_copies
+def test_more_than_a_pipe_holds_is_done_too(monkeypatch):
+    monkeypatch.setattr(copies, "_MOST", 3)
+    done = []
+    assert copies.each(lambda k: k * k, 8, 2, lambda: done.append(1)) == [k * k for k in range(8)]
+    assert len(done) == 8
+
+
+@needs_copies
+def test_who_is_free_takes_the_next():
+    """A task that takes long holds up none of the others."""
+    here = os.getpid()
+
+    def task(k):
+        time.sleep(0.5 if k == 0 else 0.0)
+        return os.getpid()
+
+    by = copies.each(task, 20, 2, lambda: None)
+    assert len(set(by[1:])) == 1 and by[0] not in by[1:] and here in by
 
 
 @needs_copies
@@ -147,7 +168,7 @@ def test_a_copy_tells_nobody_and_makes_no_copies(hidden, worth_it):
     with stages.told_to(lambda *one: told.append(one)):
         processes = abreast.each(ready(hidden, 4), work, range(2), "a stage")
     assert told == [("a stage", k, 2) for k in range(3)]
-    assert [len(own) for own in processes] == [1, 1] and os.getpid() not in set.union(*processes)
+    assert [len(own) for own in processes] == [1, 1]
 
 
 def test_copies_are_for_what_takes_long(hidden):

@@ -41,7 +41,8 @@ def test_the_tail_of_whiteness_is_true_far_out():
 
 def test_every_member_of_the_bank_is_a_chi_square_of_two(noise):
     for start, decay in ((0, np.inf), (100, 15.0), (50, 60.0)):
-        values = goodness._bank(noise, start, decay)
+        window = goodness._window(noise.shape[1], start, decay)
+        values = goodness._squares(noise * window, goodness._products(window))
         seen = values[:, values.any(axis=0)]
         # Mean of 200 draws for each frequency, neighbours correlated: five standard errors of 2/√200.
         np.testing.assert_allclose(seen.mean(axis=0), 2.0, atol=5.0 * 2.0 / np.sqrt(TRACES))

@@ -188,10 +188,12 @@ def _windows(samples, wide):
     return windows, _products(windows)
 
 
-def _bank(r, start, decay):
-    """(L, F) χ² (two degrees of freedom) of oscillations of all frequencies in (L, T) residuals."""
-    window = _window(r.shape[1], start, decay)
-    return _squares(r * window, _products(window))
+@lru_cache(maxsize=128)
+def _common_windows(samples, starts, wide):
+    """The same of oscillations that all runs share, setting in at `starts` of one run."""
+    decays = [decay * wide for decay in (*DECAYS, np.inf)]
+    windows = np.array([_window(samples, start, decay) for start in starts for decay in decays])
+    return windows, _products(windows)
 
 
 def _squares(r, products):
@@ -236,11 +238,10 @@ def _together(own, s):
     """p of the best oscillation of one gauge's runs, their χ² added."""
     traces = [_size(data, s) for data, _ in own]
     wide = int(np.median([width(t) for t in traces]))
-    highest, count = 0.0, 0
-    for after in TOGETHER:
-        for decay in (*DECAYS, np.inf):
-            starts = [max(0, int(t.argmax() + after * wide)) for t in traces]
-            total = sum(_bank(r[None], t, decay * wide)[0] for (_, r), t in zip(own, starts, strict=True))
-            highest, count = max(highest, float(total.max())), count + len(total)
+    total = 0.0
+    for (_, r), trace in zip(own, traces, strict=True):
+        starts = tuple(max(0, int(trace.argmax() + after * wide)) for after in TOGETHER)
+        windows, products = _common_windows(len(r), starts, wide)
+        total = total + _squares(r * windows, products)
     # Neighbouring members of the bank are alike; counting each errs on the safe side.
-    return float(min(1.0, count * tails.chi_squared(highest, 2 * len(own))))
+    return float(min(1.0, total.size * tails.chi_squared(float(total.max()), 2 * len(own))))

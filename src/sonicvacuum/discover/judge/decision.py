@@ -13,6 +13,7 @@ from sonicvacuum.discover.judge import explanations, gross, weighing
 from sonicvacuum.discover.judge.beside import Beside
 from sonicvacuum.discover.judge.decided import Decision, View, viewed
 from sonicvacuum.discover.judge.left import Left, left, short, sure
+from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.search import directions, pairs, planes, restart, screen, several, unknown
 from sonicvacuum.effects import Setup
@@ -158,7 +159,8 @@ class Case:
         """
         names = set(found.effects)
         fewer = [c for c in others if set(c.effects) < names and len(c.effects) == len(names) - 1]
-        parts = [(c, left(self.forward, c.fit, self.known)) for c in fewer]
+        seen_of = abreast.each(self.forward, lambda branch, c: left(branch, c.fit, self.known), fewer)
+        parts = zip(fewer, seen_of, strict=True)
         part, seen = max(parts, key=lambda x: x[0].log_bayes + x[1].size.log_odds, default=(None, after))
         count = "a pair leaves" if len(found.effects) == 2 else f"{len(found.effects)} effects together leave"
         if part is None or found.log_bayes - part.log_bayes - seen.size.log_odds > policy.FURTHER:

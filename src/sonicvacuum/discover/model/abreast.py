@@ -18,8 +18,8 @@ Result = TypeVar("Result")
 
 # Calls of the predictor that following one item takes, about: slopes along one direction; a fit; a valley.
 SLOPES, FIT, VALLEY = 1, 20, 30
-# What side by side has to save, in s: copies of the process take 0.015 s.
-SAVED = 0.04
+# What side by side has to save, in s; a copy of the process takes as long.
+SAVED = 0.01
 
 
 def each(

@@ -1,15 +1,17 @@
-"""Work shared out among copies of this process (`fork`), which begin with all that it knows.
+"""Work shared out among this process and copies of it (`fork`), which begin with all that it knows.
 
 What was loaded and read need not be handed over, and what is asked need not be written down: only results
-are, through pipes. A copy hears of no interruption and tells nobody of stages; it ends when its pipe does.
+are, through pipes. A copy hears of no interruption and tells nobody of stages; it ends when all is done, or
+when nobody is there any more to tell.
 """
 
 import multiprocessing
+import os
+import pickle
 import signal
 import sys
-from collections import deque
 from collections.abc import Callable
-from multiprocessing.connection import wait
+from multiprocessing.connection import Connection, wait
 from threading import current_thread, main_thread
 from typing import TypeVar
 
@@ -18,58 +20,59 @@ from sonicvacuum.physics import watch
 
 Result = TypeVar("Result")
 
-# Set in a copy, which makes none itself.
-_is_copy = False
+# Bytes of a number, and how many a pipe takes before anybody reads: 64 kB of the least that Linux gives.
+_BYTES, _MOST = 4, 1024
+# Set while there are copies, in them and in the process that made them: none makes more.
+_shared_out = False
 
 
 def possible() -> bool:
     """Whether copies can be made: not on macOS, whose libraries do not survive it, nor on Windows; nor from
     a thread beside the main one, where what others hold would stay held in the copy.
     """
-    return sys.platform == "linux" and current_thread() is main_thread() and not _is_copy
+    return sys.platform == "linux" and current_thread() is main_thread() and not _shared_out
 
 
 def each(task: Callable[[int], Result], count: int, processes: int, done: Callable[[], None]) -> list[Result]:
-    """`task(k)` for k from 0 to count - 1, in this order, by so many copies at a time.
+    """`task(k)` for k from 0 to count - 1, in this order, by so many processes at a time, of which this is
+    one: whoever is free takes the next.
 
-    What a copy cannot do or hand over (an error; a result that cannot be pickled; too little memory) is done
-    here, once the others are ready, where an error is raised as it would be without copies.
+    What cannot be done or handed over (an error; a result that cannot be pickled; too little memory) is done
+    here once more, when all others are ready, where an error is raised as it would be without copies.
 
     Args:
         task: what is done.
         count: how often.
-        processes: copies at a time.
+        processes: at a time.
         done: called after each.
     """
+    global _shared_out
     found: dict[int, Result] = {}
-    asked: dict = {}
-    left = deque(range(count))
-    begun = []
+    numbers, begun = _numbers(min(count, _MOST)), []
+    _shared_out = True
     try:
-        for _ in range(min(processes, count)):
-            pipe, process = _copy(task)
-            begun.append((pipe, process))
-            _ask(pipe, left, asked)
-        while asked:
-            for pipe in wait(list(asked)):
-                k = asked.pop(pipe)
-                try:
-                    able, result = pipe.recv()
-                except (EOFError, OSError):
-                    continue  # it was ended from outside
-                except Exception:
-                    able = False  # what it wrote cannot be read here
-                if able:
-                    found[k] = result
-                    done()
-                _ask(pipe, left, asked)
+        for _ in range(min(processes, count) - 1):
+            begun.append(_copy(task, numbers))
+        told = [pipe for pipe, _ in begun]
+        while (k := _next(numbers)) is not None:
+            try:
+                with stages.unheard():
+                    found[k] = task(k)
+            except Exception:
+                continue
+            done()
+            _hear(told, found, done, 0.0)
+        while told:
+            _hear(told, found, done, None)
     finally:
-        # All pipes first: the copies made later hold our ends of the earlier ones too.
+        _shared_out = False
+        os.close(numbers)
         for pipe, process in begun:
             pipe.close()
             if len(found) < count:
                 process.terminate()
-        for _, process in begun:
+        # Copies that have told all end by themselves; whoever makes the next one looks after them.
+        for _, process in begun if len(found) < count else ():
             process.join()
     for k in range(count):
         if k not in found:
@@ -78,44 +81,64 @@ def each(task: Callable[[int], Result], count: int, processes: int, done: Callab
     return [found[k] for k in range(count)]
 
 
-def _ask(pipe, left, asked):
-    """Give a copy the next that is left, if there is one."""
-    if left:
-        k = left.popleft()
+def _numbers(count):
+    """A pipe from which each number below `count` can be read once, by whoever comes first."""
+    given, taken = os.pipe()
+    os.write(taken, b"".join(k.to_bytes(_BYTES, "little") for k in range(count)))
+    os.close(taken)
+    return given
+
+
+def _next(numbers):
+    """The next number; None after the last."""
+    number = os.read(numbers, _BYTES)
+    return int.from_bytes(number, "little") if number else None
+
+
+def _hear(told: list[Connection], found: dict, done: Callable[[], None], patience: float | None) -> None:
+    """Take in what copies tell: `None` for each task that is done, in the end all results."""
+    for pipe in wait(told, patience):
         try:
-            pipe.send(k)
-        except OSError:
-            return  # it was ended from outside
-        asked[pipe] = k
+            results = pipe.recv()
+        except (EOFError, OSError):
+            told.remove(pipe)  # it was ended from outside
+            continue
+        if results is None:
+            done()
+            continue
+        told.remove(pipe)
+        for k, result in results.items():
+            try:
+                found[k] = pickle.loads(result)
+            except Exception:
+                continue  # what it wrote cannot be read here
 
 
-def _copy(task):
-    """(our end of a pipe, process): a copy of this process that does what it is asked through the pipe."""
+def _copy(task, numbers):
+    """(our end of a pipe, process): a copy of this process that takes its share of the numbers."""
     context = multiprocessing.get_context("fork")
     ours, theirs = context.Pipe()
-    process = context.Process(target=_serve, args=(task, ours, theirs))
+    process = context.Process(target=_serve, args=(task, numbers, ours, theirs))
     process.start()
     theirs.close()
     return ours, process
 
 
-def _serve(task, ours, theirs):
+def _serve(task, numbers, ours, theirs):
     """What a copy does."""
-    global _is_copy
-    _is_copy = True
     ours.close()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     stages.silent()
     watch.silent()
+    results = {}
     try:
-        while True:
-            k = theirs.recv()
+        while (k := _next(numbers)) is not None:
             try:
-                theirs.send((True, task(k)))
-            except OSError:
-                raise
+                results[k] = pickle.dumps(task(k), pickle.HIGHEST_PROTOCOL)
             except Exception:
-                theirs.send((False, None))
-    except (EOFError, OSError):
+                continue
+            theirs.send(None)
+        theirs.send(results)
+    except OSError:
         pass  # nobody asks any more
