@@ -279,20 +279,24 @@ def _along(forward, null, found):
     if not any(found[k].gain > least for k in placed):
         placed = []
 
-    def refined(k, start):
+    def refined(forward, start):
         better = around.refined(forward, places.settled(forward, start, setup), setup)
-        if better is not result[k].fit:
-            where = ((better.hypothesis.components[0].place, 1.0),)
-            result[k] = _moved(result[k], null, better, where, result[k].flags)
+        return None if better is start else better
 
-    for k in placed:
-        refined(k, found[k].fit)
+    def moved(k, better):
+        where = ((better.hypothesis.components[0].place, 1.0),)
+        result[k] = _moved(result[k], null, better, where, result[k].flags)
+
+    around_each = abreast.each(forward, lambda branch, k: refined(branch, found[k].fit), placed)
+    for k, better in zip(placed, around_each, strict=True):
+        if better is not None:
+            moved(k, better)
     first = max((result[k] for k in placed), key=lambda c: c.gain, default=None)
     for k in placed:
         if result[k] is not first:
             start = around.beside(forward, null, result[k].fit, first.fit, setup)
             if start is not result[k].fit:
-                refined(k, start)
+                moved(k, refined(forward, start) or start)
     return enough.first(forward, evidence.ranked(result, forward.experiment.prior_odds))
 
 

@@ -184,15 +184,16 @@ def _plan(samples, wide):
 @lru_cache(maxsize=32)
 def _windows(samples, wide):
     """(W, T) all windows of a trace, and their products; kept, as one record's traces are asked again."""
-    windows = np.array([_window(samples, *one) for one in _plan(samples, wide)])
+    starts, decays = np.array(_plan(samples, wide)).T[..., None]
+    windows = _window(samples, starts, decays)
     return windows, _products(windows)
 
 
 @lru_cache(maxsize=128)
 def _common_windows(samples, starts, wide):
     """The same of oscillations that all runs share, setting in at `starts` of one run."""
-    decays = [decay * wide for decay in (*DECAYS, np.inf)]
-    windows = np.array([_window(samples, start, decay) for start in starts for decay in decays])
+    decays = np.array((*DECAYS, np.inf)) * wide
+    windows = _window(samples, np.repeat(starts, len(decays))[:, None], np.tile(decays, len(starts))[:, None])
     return windows, _products(windows)
 
 
@@ -205,7 +206,7 @@ def _squares(r, products):
 
 
 def _window(samples, start, decay):
-    """(T,) decay from a start on."""
+    """(…, T) decay from a start on; both may be (…, 1)."""
     time = np.arange(samples) - start
     return np.where(time >= 0, np.exp(-np.maximum(time, 0) / decay), 0.0)
 
