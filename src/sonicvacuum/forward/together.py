@@ -207,8 +207,9 @@ def _crossings(signals, s, peak, target, rising, places):
 def _climb(coefficients, bounds, places):
     """`trace.newton` for the polynomial of each lane; where it starts and its bounds beside it."""
     for k in range(len(places)):
-        c, (start, lower, upper) = coefficients[k], bounds[k]
-        places[k] = newton((c[0], c[1], c[2], c[3], c[4], c[5], c[6]), start, lower, upper)
+        c, b = coefficients[k], bounds[k]
+        # Unpacked by hand: a length that might be wrong is an error of Python's, for which Numba is loaded.
+        places[k] = newton((c[0], c[1], c[2], c[3], c[4], c[5], c[6]), b[0], b[1], b[2])
 
 
 def _made_crossings():
