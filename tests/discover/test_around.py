@@ -148,6 +148,7 @@ def test_all_with_a_place_are_looked_for_where_one_leads(monkeypatch, gains, ask
     )
     monkeypatch.setattr(rounds.enough, "first", lambda forward, found: found)
     monkeypatch.setattr(rounds.evidence, "ranked", lambda found, odds: found)
+    monkeypatch.setattr(rounds.abreast, "each", lambda forward, work, ks: [work(forward, k) for k in ks])
     found = [SimpleNamespace(effect=name, gain=gain, fit=fits[name]) for name, gain in gains.items()]
     forward = SimpleNamespace(experiment=SimpleNamespace(prior_odds={}))
     assert rounds._along(forward, None, found) == found

@@ -19,6 +19,9 @@ def found(effects, log_bayes):
 def decided(monkeypatch, whole, others, smooth=0.0):
     seen = SimpleNamespace(size=SimpleNamespace(log_odds=smooth), where=LEFT.where, p=LEFT.p)
     monkeypatch.setattr(decision, "left", lambda forward, fit, known: seen)
+    monkeypatch.setattr(
+        decision.abreast, "each", lambda forward, work, sets: [work(forward, s) for s in sets]
+    )
     case = decision.Case(None, None, None, [], None, None)
     return case._whole(whole, others, {}, NOTHING, [])
 
