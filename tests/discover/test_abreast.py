@@ -133,7 +133,7 @@ def test_what_a_copy_cannot_do_or_hand_over_is_done_here(hidden, worth_it):
     found = abreast.each(forward, work, range(12))
     assert found[1]() == 1 and found[2] == (2, True)
     assert [k for k, _ in found[3:]] == list(range(3, 12))
-    assert {by for _, by in found[3:]} == {True, False}
+    assert not all(by for _, by in found[3:])  # copies did some of it
 
 
 @needs_copies
@@ -145,12 +145,15 @@ def test_more_than_a_pipe_holds_is_done_too(monkeypatch):
 
 
 @needs_copies
-def test_who_is_free_takes_the_next():
+def test_who_is_free_takes_the_next(tmp_path):
     """A task that takes long holds up none of the others."""
-    here = os.getpid()
+    here, rest, late = os.getpid(), tmp_path / "the rest is done", time.monotonic() + 60.0
 
     def task(k):
-        time.sleep(0.5 if k == 0 else 0.0)
+        while k == 0 and not rest.exists() and time.monotonic() < late:
+            time.sleep(0.01)
+        if k == 19:
+            rest.touch()
         return os.getpid()
 
     by = copies.each(task, 20, 2, lambda: None)

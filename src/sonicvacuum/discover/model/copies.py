@@ -20,7 +20,7 @@ from sonicvacuum.physics import watch
 
 Result = TypeVar("Result")
 
-# Bytes of a number, and how many a pipe takes before anybody reads: 64 kB of the least that Linux gives.
+# Bytes of a number, and how many a pipe takes before anybody reads: 4 kB, the least that Linux gives one.
 _BYTES, _MOST = 4, 1024
 # Set while there are copies, in them and in the process that made them: none makes more.
 _shared_out = False
@@ -52,7 +52,7 @@ def each(task: Callable[[int], Result], count: int, processes: int, done: Callab
     _shared_out = True
     try:
         for _ in range(min(processes, count) - 1):
-            begun.append(_copy(task, numbers))
+            begun.append(_copy(task, numbers, [pipe for pipe, _ in begun]))
         told = [pipe for pipe, _ in begun]
         while (k := _next(numbers)) is not None:
             try:
@@ -71,7 +71,7 @@ def each(task: Callable[[int], Result], count: int, processes: int, done: Callab
             pipe.close()
             if len(found) < count:
                 process.terminate()
-        # Copies that have told all end by themselves; whoever makes the next one looks after them.
+        # Those that have told all end by themselves; whoever makes the next one looks after them.
         for _, process in begun if len(found) < count else ():
             process.join()
     for k in range(count):
@@ -114,11 +114,13 @@ def _hear(told: list[Connection], found: dict, done: Callable[[], None], patienc
                 continue  # what it wrote cannot be read here
 
 
-def _copy(task, numbers):
-    """(our end of a pipe, process): a copy of this process that takes its share of the numbers."""
+def _copy(task, numbers, others):
+    """(our end of a pipe, process): a copy of this process that takes its share of the numbers; `others` are
+    our ends of the copies made before, which it must not keep open.
+    """
     context = multiprocessing.get_context("fork")
     ours, theirs = context.Pipe()
-    process = context.Process(target=_serve, args=(task, numbers, ours, theirs))
+    process = context.Process(target=_serve, args=(task, numbers, [ours, *others], theirs))
     process.start()
     theirs.close()
     return ours, process
@@ -126,7 +128,8 @@ def _copy(task, numbers):
 
 def _serve(task, numbers, ours, theirs):
     """What a copy does."""
-    ours.close()
+    for pipe in ours:
+        pipe.close()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     stages.silent()
