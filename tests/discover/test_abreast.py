@@ -145,6 +145,17 @@ def test_more_than_a_pipe_holds_is_done_too(monkeypatch):
 
 
 @needs_copies
+def test_without_room_for_a_copy_all_is_done_here(monkeypatch):
+    def no_room(*_):
+        raise BlockingIOError("no more processes")
+
+    monkeypatch.setattr(copies, "_copy", no_room)
+    done = []
+    assert copies.each(lambda k: os.getpid(), 3, 2, lambda: done.append(1)) == [os.getpid()] * 3
+    assert len(done) == 3 and copies.possible()
+
+
+@needs_copies
 def test_who_is_free_takes_the_next(tmp_path):
     """A task that takes long holds up none of the others."""
     here, rest, late = os.getpid(), tmp_path / "the rest is done", time.monotonic() + 60.0

@@ -11,6 +11,7 @@ import pickle
 import signal
 import sys
 from collections.abc import Callable
+from contextlib import suppress
 from multiprocessing.connection import Connection, wait
 from threading import current_thread, main_thread
 from typing import TypeVar
@@ -51,8 +52,9 @@ def each(task: Callable[[int], Result], count: int, processes: int, done: Callab
     numbers, begun = _numbers(min(count, _MOST)), []
     _shared_out = True
     try:
-        for _ in range(min(processes, count) - 1):
-            begun.append(_copy(task, numbers, [pipe for pipe, _ in begun]))
+        with suppress(OSError):  # the system has no room for another process: these do
+            for _ in range(min(processes, count) - 1):
+                begun.append(_copy(task, numbers, [pipe for pipe, _ in begun]))
         told = [pipe for pipe, _ in begun]
         while (k := _next(numbers)) is not None:
             try:
