@@ -8,6 +8,7 @@ in compiled code is said in `physics.arithmetic`: whatever knows laws but integr
 have to load a compiler.
 """
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from functools import wraps
 
@@ -16,12 +17,12 @@ import numpy as np
 LANES = 8
 
 
-class Written:
+class Written(ABC):
     """A number of code that is being written, and knows what the functions below are for it (`tracing`)."""
 
+    @abstractmethod
     def work_out(self, function: str, values: tuple) -> "Written":
         """What the function of this name makes of values, this number among them."""
-        raise NotImplementedError
 
 
 def _of_any_number(function: Callable) -> Callable:
