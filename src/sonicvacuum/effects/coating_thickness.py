@@ -43,8 +43,11 @@ def coefficients(chain, stiffness, mass, thickness):
 
     Bodies that touch share the approach as their compliances: 1/g is the mean of both, weighted by these.
     """
-    bodies = len(stiffness)
+    bodies, solids = len(stiffness), len(chain.solids)
+    # Few kinds of pairs touch, however many contacts there are.
     one, other = chain.touching(bodies)
+    pairs, kind = np.unique(solids * one + other, return_inverse=True)
+    one, other = np.divmod(pairs, solids)
     yields = np.array([1.0 / _plane(solid.surface) for solid in chain.solids])
     limit, powers = _layers(chain)
     share = yields[one] / (yields[one] + yields[other])
@@ -54,7 +57,7 @@ def coefficients(chain, stiffness, mass, thickness):
     width = np.sqrt(chain.reduced_radii(bodies)) / (thickness * layer_law.SCALE)
     # Where there is none the factor is 1/1, to the bit.
     powers = np.where(acts[:, None], powers, np.eye(layer_law.POWERS)[-1])
-    return [width, np.where(acts, limit, 0.0), *np.moveaxis(powers, -1, 0)]
+    return [width, np.where(acts, limit, 0.0)[kind], *np.moveaxis(powers, -1, 0)[:, kind]]
 
 
 def _layers(chain):
