@@ -112,11 +112,33 @@ def test_names_beside_something_unknown_are_no_surer_than_such_names_came_true()
     assert found == pytest.approx({"tsuji + unknown": policy.ONE_BESIDE, "unknown": 1.0 - policy.ONE_BESIDE})
     smooth, _ = explanations.no_surer(odds, ["tsuji", "unknown"], smooth_only=True)
     assert smooth["tsuji + unknown"] == pytest.approx(policy.SMOOTH_BESIDE)
-    less = {"gravity + tsuji + unknown": 0.4, "unknown": 0.6}
-    assert explanations.no_surer(less, ["tsuji", "gravity", "unknown"]) == (less, [])
+    less = {"tsuji + unknown": 0.4, "unknown": 0.6}
+    assert explanations.no_surer(less, ["tsuji", "unknown"]) == (less, [])
     alone = {"tsuji": 0.99, "unknown": 0.01}
     assert explanations.no_surer(alone, ["tsuji"]) == (alone, [])
     assert explanations.no_surer({"unknown": 1.0}, ["unknown"]) == ({"unknown": 1.0}, [])
+
+
+def test_of_a_set_beside_shapes_mostly_one_is_there_or_none():
+    odds = {"gravity + tsuji + unknown": 0.6, "gravity + kuwabara-kono + unknown": 0.3, "unknown": 0.1}
+    named = ["tsuji", "gravity", "unknown"]
+    found, said = explanations.no_surer(odds, named)
+    assert "tsuji + gravity come nearest" in said[0]
+    assert sum(found.values()) == pytest.approx(1.0)
+    sets = [found["gravity + tsuji + unknown"], found["gravity + kuwabara-kono + unknown"]]
+    # All sets lose alike, so that what cannot be told apart stays so.
+    assert sum(sets) == pytest.approx(policy.SET_BESIDE)
+    assert sets[0] / sets[1] == pytest.approx(2.0)
+    lost = 0.9 - policy.SET_BESIDE
+    assert (
+        found["tsuji + unknown"] == found["gravity + unknown"] == pytest.approx(policy.ONE_OF_SET * lost / 2)
+    )
+    assert found["unknown"] == pytest.approx(0.1 + (1.0 - policy.ONE_OF_SET) * lost)
+    # A smooth misfit hides no law: there a set stays as likely as all others together.
+    smooth, _ = explanations.no_surer({**odds, "gravity + tsuji + unknown": 0.9}, named, smooth_only=True)
+    assert smooth["gravity + tsuji + unknown"] == policy.SMOOTH_SET_BESIDE
+    few = {"gravity + tsuji + unknown": 0.03, "unknown": 0.97}
+    assert explanations.no_surer(few, named) == (few, [])
 
 
 def test_beside_something_unknown_what_is_confusable_goes_by_probabilities():

@@ -51,6 +51,23 @@ def test_none_that_is_less_probable_than_an_effect_says_so():
     assert "damping with constant restitution (0.60 against 0.30 for none)" in text
 
 
+def test_a_set_beside_something_unknown_is_called_the_nearest():
+    odds = {
+        "unknown": 0.5,
+        "gravity + unknown": 0.23,
+        "tsuji + unknown": 0.23,
+        "gravity + tsuji + unknown": 0.04,
+    }
+    named = ["tsuji", "gravity", "unknown"]
+    text = words.headline(verdict(named=named, probabilities=odds, parameters={}))
+    assert text.startswith("Something is missing that nothing of the catalogue explains. Two of its effects")
+    assert text.index("(tsuji)") < text.index("(gravity)")
+    assert text.endswith("has the probability 0.04, that it is none of them 0.50.")
+    surer = odds | {"unknown": 0.02, "gravity + tsuji + unknown": 0.52}
+    text = words.headline(verdict(named=named, probabilities=surer, parameters={}))
+    assert text.startswith("Two effects are missing")
+
+
 @pytest.mark.parametrize(
     ("effect", "parameter", "value", "estimate", "told"),
     [

@@ -108,12 +108,16 @@ NEAREST = 0.05
 # not quite what it is taken for: of 48 such records three left 7e-4 to 4e-3; of 58 with something from
 # outside the catalogue 47 left less than 1e-4, three more than 4e-3 (docs/again.md).
 SHAPED = 1e-4
-# One effect named beside something unknown, and a set, is at most so probable. Where what is unknown is
-# smooth and leaves no shape, 50 of 51 single names were hidden. Where it has shapes 13 of 16 were, of 70
-# records with an effect and something from outside the catalogue (`blind hide --study beside-training`), and
-# none of 6 in 156 with that alone; the two are taken as equally likely. Of 18 sets one was; such a set, kept
-# as the nearest that the catalogue has, is only just the likeliest.
-SMOOTH_BESIDE, ONE_BESIDE, SET_BESIDE = 0.95, 0.70, 0.51
+# One effect named beside something unknown is at most so probable. Where what is unknown is smooth and leaves
+# no shape, 50 of 51 single names were hidden. Where it has shapes 25 of 30 were, of 90 records with an effect
+# and something from outside the catalogue, and none of 27 in 272 with that alone; the two are taken as
+# equally likely (docs/again.md). Of sets beside what is smooth too few are known: one is only just the
+# likeliest.
+SMOOTH_BESIDE, ONE_BESIDE, SMOOTH_SET_BESIDE = 0.95, 0.65, 0.51
+# All sets beside what has shapes are so probable together: of 64 that were named none was right as a whole.
+# In 18 of 20, of 156 records with an effect and something from outside, the effect was among them; with that
+# alone 20 of 272 records had one. Of what sets lose so much goes to one of their effects, the rest to none.
+SET_BESIDE, ONE_OF_SET = 0.05, 0.6
 
 # A free-form law is kept where it is so much likelier than none, or than names beside something unknown
 # (natural log), ...

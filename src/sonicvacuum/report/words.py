@@ -104,8 +104,10 @@ def headline(verdict: Verdict, catalogue: Catalogue = CATALOGUE) -> str:
         text = _one_of(verdict, told[0], catalogue)
     elif len(found) == 1:
         text = f"What is missing: {told[0]}. That is {in_words(verdict.probability or 0.0)}."
+    elif unknown and verdict.probability is not None and verdict.probability < max(odds.values()):
+        return _nearest_set(verdict, told)
     else:
-        text = f"{_COUNTS.get(len(found), str(len(found)))} effects are missing: {'; '.join(told)}."
+        text = f"{_counted(found)} effects are missing: {'; '.join(told)}."
         sure = verdict.probability
         text += (
             f" No single effect does: {_singles(odds, catalogue)}."
@@ -113,6 +115,20 @@ def headline(verdict: Verdict, catalogue: Catalogue = CATALOGUE) -> str:
             else f" That is {in_words(sure)}."
         )
     return text + (" Even so, a misfit is left that nothing of the catalogue explains." if unknown else "")
+
+
+def _nearest_set(verdict, told):
+    """A set beside something unknown that is not the likeliest explanation."""
+    return (
+        "Something is missing that nothing of the catalogue explains. "
+        f"{_counted(told)} of its effects come nearest to it together: {'; '.join(told)}. That it is just "
+        f"these, and something unknown, has the probability {share(verdict.probability or 0.0)}, that it is "
+        f"none of them {share(verdict.probabilities.get('unknown', 0.0))}."
+    )
+
+
+def _counted(several):
+    return _COUNTS.get(len(several), str(len(several)))
 
 
 _COUNTS = {2: "Two", 3: "Three", 4: "Four", 5: "Five", 6: "Six"}

@@ -157,12 +157,33 @@ def no_surer(
     known = [name for name in named if name != UNKNOWN]
     if not known or UNKNOWN not in named:
         return dict(found), []
+    if len(known) > 1 and not smooth_only:
+        return _hardly_a_set(found, known)
     one = policy.SMOOTH_BESIDE if smooth_only else policy.ONE_BESIDE
-    most = one if len(known) == 1 else policy.SET_BESIDE
+    most = one if len(known) == 1 else policy.SMOOTH_SET_BESIDE
     if found.get(key(named), 0.0) <= most:
         return dict(found), []
     reason = f"{' + '.join(known)} may be part of what is unknown: held no surer than such names came true"
     return doubted(found, named, most), [reason]
+
+
+def _hardly_a_set(found, known):
+    """The same of a set beside what has shapes: all sets there lose alike, to one of those named, or none."""
+    sets = {name: p for name, p in found.items() if UNKNOWN in effects(name) and len(effects(name)) > 2}
+    total = sum(sets.values())
+    if total <= policy.SET_BESIDE:
+        return dict(found), []
+    excess = total - policy.SET_BESIDE
+    less = {**found, **{name: p * policy.SET_BESIDE / total for name, p in sets.items()}}
+    for name in known:
+        one = key([name, UNKNOWN])
+        less[one] = less.get(one, 0.0) + policy.ONE_OF_SET * excess / len(known)
+    less[UNKNOWN] = less.get(UNKNOWN, 0.0) + (1.0 - policy.ONE_OF_SET) * excess
+    reason = (
+        f"{' + '.join(known)} come nearest to what is there, and are hardly just that: beside something "
+        "unknown with a shape of its own such sets were never right as a whole"
+    )
+    return less, [reason]
 
 
 def clear(weights: Mapping[str, float], named: Iterable[str]) -> bool:
