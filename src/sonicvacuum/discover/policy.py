@@ -114,9 +114,10 @@ SHAPED = 1e-4
 # equally likely (docs/again.md). Of sets beside what is smooth too few are known: one is only just the
 # likeliest.
 SMOOTH_BESIDE, ONE_BESIDE, SMOOTH_SET_BESIDE = 0.95, 0.65, 0.51
-# All sets beside what has shapes are so probable together: of 64 that were named none was right as a whole.
-# In 18 of 20, of 156 records with an effect and something from outside, the effect was among them; with that
-# alone 20 of 272 records had one. Of what sets lose so much goes to one of their effects, the rest to none.
+# All sets beside what has shapes are so probable together: of 64 that were named beside something unknown, a
+# few of them beside what is smooth, none was right as a whole. In 18 of 20, of 156 records with an effect and
+# something from outside, the effect was among them; with that alone 20 of 272 records had one. Of what sets
+# lose so much goes to one of their effects, the rest to none.
 SET_BESIDE, ONE_OF_SET = 0.05, 0.6
 
 # A free-form law is kept where it is so much likelier than none, or than names beside something unknown
