@@ -62,7 +62,9 @@ def test_a_set_beside_something_unknown_is_called_the_nearest():
     text = words.headline(verdict(named=named, probabilities=odds, parameters={}))
     assert text.startswith("Something is missing that nothing of the catalogue explains. Two of its effects")
     assert text.index("(tsuji)") < text.index("(gravity)")
-    assert text.endswith("has the probability 0.04, that it is none of them 0.50.")
+    assert text.endswith(
+        "probability 0.04; that one of them is 0.46; that it is something unknown alone 0.50."
+    )
     surer = odds | {"unknown": 0.02, "gravity + tsuji + unknown": 0.52}
     text = words.headline(verdict(named=named, probabilities=surer, parameters={}))
     assert text.startswith("Two effects are missing")

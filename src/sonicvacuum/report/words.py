@@ -105,7 +105,7 @@ def headline(verdict: Verdict, catalogue: Catalogue = CATALOGUE) -> str:
     elif len(found) == 1:
         text = f"What is missing: {told[0]}. That is {in_words(verdict.probability or 0.0)}."
     elif unknown and verdict.probability is not None and verdict.probability < max(odds.values()):
-        return _nearest_set(verdict, told)
+        return _nearest_set(verdict, told, found)
     else:
         text = f"{_counted(found)} effects are missing: {'; '.join(told)}."
         sure = verdict.probability
@@ -117,13 +117,16 @@ def headline(verdict: Verdict, catalogue: Catalogue = CATALOGUE) -> str:
     return text + (" Even so, a misfit is left that nothing of the catalogue explains." if unknown else "")
 
 
-def _nearest_set(verdict, told):
+def _nearest_set(verdict, told, found):
     """A set beside something unknown that is not the likeliest explanation."""
+    odds = verdict.probabilities
+    one = sum(odds.get(key([name, "unknown"]), 0.0) for name in found)
     return (
         "Something is missing that nothing of the catalogue explains. "
-        f"{_counted(told)} of its effects come nearest to it together: {'; '.join(told)}. That it is just "
-        f"these, and something unknown, has the probability {share(verdict.probability or 0.0)}, that it is "
-        f"none of them {share(verdict.probabilities.get('unknown', 0.0))}."
+        f"{_counted(told)} of its effects come nearest to it together: {'; '.join(told)}. "
+        f"That these are there, and something unknown beside them, has the probability "
+        f"{share(verdict.probability or 0.0)}; that one of them is {share(one)}; "
+        f"that it is something unknown alone {share(odds.get('unknown', 0.0))}."
     )
 
 
