@@ -190,6 +190,63 @@ def test_slopes_that_hold_over_the_errors_are_kept_to_the_byte(two):
     assert forward_bend is fit.normal
 
 
+class Counted(Valley):
+    """A count more, right from half a width along the valley on, off by four standard errors before."""
+
+    def counts(self, run):
+        return np.array([2])
+
+    def data(self, run):
+        return np.zeros(3)
+
+    def values(self, u, nu):
+        a, b = (u - self.middle).T
+        return np.column_stack([super().values(u, nu), np.where(a + b < 0.5 * WIDE, 4.0, 0.0)])
+
+
+def test_where_data_hold_counts_the_valley_is_followed_to_where_they_are_right(two):
+    middle = np.array([-2.0, 0.5])
+    forward = Counted(middle)
+    fit = forward.fit(two, middle)
+    assert fit.objective == pytest.approx(16.0)
+    columns = forward.columns(two, fit.u[None], fit.nu[None])
+    better = broad.broadened(forward, two, fit.normal, columns)
+    # Right from (1/2)² / 1.09 = 0.23 on; points of the valley lie up to a standard error further.
+    assert better.objective[0] < 2.5
+    assert (better.u[0] - middle).sum() >= 0.5 * WIDE
+
+
+class Cliff(Valley):
+    """A valley that ends at a cliff of 36 in χ², half a width from its middle."""
+
+    def __init__(self, middle):
+        super().__init__(middle)
+        self.asked = 0
+
+    def data(self, run):
+        return np.zeros(3)
+
+    def values(self, u, nu):
+        self.asked += 1
+        a, b = (u - self.middle).T
+        return np.column_stack([super().values(u, nu), np.where(a + b > 0.5 * WIDE, 6.0, 0.0)])
+
+
+def test_a_cliff_ends_a_valley_and_is_not_approached_for_ever(two):
+    middle = np.array([-2.0, 0.5])
+    forward = Cliff(middle)
+    fit = forward.fit(two, middle)
+    columns, forward.asked = forward.columns(two, fit.u[None], fit.nu[None]), 0
+    found = ridge.valley(forward, two, fit.normal, broad.covariance(fit.normal), columns)
+    ends = (found.u - middle).sum(axis=1)
+    before, beyond = ends[ends < 0.5 * WIDE].max(), ends[ends > 0.5 * WIDE].min()
+    assert found.objective[-1] > 36.0
+    # Steps of half a coordinate, 0.7 of this sum, are cut to a sixteenth before one beyond ends the valley.
+    assert beyond - before < 0.2 * WIDE
+    # 28 steps of Gauss and Newton; 48 where steps are cut as long as they are not the shortest.
+    assert forward.asked < 40
+
+
 class Nowhere(Valley):
     """Nothing beside the point itself can be simulated."""
 

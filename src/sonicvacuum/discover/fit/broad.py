@@ -4,8 +4,8 @@ Two parameters may nearly replace one another: strength and time of a contact th
 tell between them by a hair, and predictions jump by more than that, since a contact that opens for a moment
 forgets. Differences of short steps take such jumps for slopes, and errors come out far too small. Here slopes
 are lines through points up to a standard error to both sides, along the principal axes of the errors that the
-fit tells itself; where errors come out other than these, the valley is followed (`ridge`) and slopes are
-taken once more at its lowest point.
+fit tells itself; where errors come out other than these, or the data hold counts, the valley is followed
+(`ridge`) and slopes are taken once more at its lowest point.
 """
 
 from dataclasses import replace
@@ -39,7 +39,9 @@ def broadened(forward: Forward, hypothesis: Hypothesis, now: Normal, columns: li
     `columns` are those of a point nearby (`Forward.columns`), whose slopes to the nuisances are held.
     """
     wide = sloped(forward, hypothesis, now, columns) if now.has_slopes[0] else None
-    if wide is None or not wide.has_slopes[0] or (_alike(now, wide) and not _flat(wide)):
+    if wide is None or not wide.has_slopes[0]:
+        return now
+    if _alike(now, wide) and not _flat(wide) and not _counted(forward, len(columns)):
         return now
     here = _lowest(forward, hypothesis, wide, columns)
     for _ in range(ROUNDS):
@@ -69,6 +71,11 @@ def covariance(now: Normal) -> np.ndarray:
 def _alike(one, other):
     one, other = (np.maximum(np.diag(covariance(x)), ridge.LEAST) for x in (one, other))
     return np.abs(np.log(other / one)).max() < 2.0 * np.log(ALIKE)
+
+
+def _counted(forward, runs):
+    """Whether the data of so many runs hold counts: no slope leads to where one of them changes."""
+    return any(len(forward.counts(run)) for run in range(runs))
 
 
 def _flat(now):

@@ -22,8 +22,9 @@ BACK = 0.25
 END, CALM, STEEP = 25.0, 1.0, 6.0
 # First step, in standard errors; the longest, in a coordinate.
 FIRST, LONGEST = 0.5, 0.5
-# The shortest step, of the first one; the least variance of a coordinate, where slopes say none.
-SHORTEST, LEAST = 2e-3, 1e-24
+# The shortest step, of the first one; how often a step is cut once the valley has shown: χ² that jumps, as a
+# count does, or steep ends are met there. The least variance of a coordinate, where slopes say none.
+SHORTEST, CUTS, LEAST = 2e-3, 2, 1e-24
 # Finite differences across it: in standard errors of a coordinate known by itself, none longer.
 ACROSS, FARTHEST = 1.0, 0.05
 
@@ -128,14 +129,15 @@ class _Walk:
 
     def side(self, start: _Point, step: float) -> list[_Point]:
         """Points to one side of the start, in order from it."""
-        points, shortest = [start], SHORTEST * abs(step)
+        points, shortest, cuts = [start], SHORTEST * abs(step), 0
         for _ in range(MOST):
             new = self._beyond(points, step)
             if new is None or not (new.t - points[-1].t) * step > 0.0:
                 break
             rise = abs(new.objective - points[-1].objective)
-            if rise > END and abs(step) > shortest:
+            if rise > END and abs(step) > shortest and cuts < CUTS:
                 step *= 0.25
+                cuts += len(points) > 1
                 continue
             points.append(new)
             if new.objective > min(p.objective for p in points) + END:
