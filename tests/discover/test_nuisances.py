@@ -161,6 +161,41 @@ def test_a_time_zero_that_nobody_knows_is_found():
     assert free.objective < known.objective + 10.0
 
 
+@pytest.mark.parametrize("late", [{}, {"delay_sigma_us": 3.0}])
+def test_no_more_is_simulated_than_is_read(late):
+    """A time zero that nobody knows asks for long chains only until it is found."""
+    sensors = [{**sensor, **late} for sensor in block([0.3])["sensors"]]
+    record, _ = made(seed=8, sensors=sensors)
+    content = {**block([r.striker.speed_m_s for r in record.block.runs], sensors=sensors)}
+    free = Record(parse({**content, "trigger_sigma_us": "unknown"}), record.signals, "free")
+
+    class Whole(Forward):
+        def _lasting(self, batch, nu):
+            return batch.first_s
+
+    class Told(Forward):
+        def simulate(self, batch, setup, duration=None):
+            lasted.append(duration / batch.first_s)
+            return super().simulate(batch, setup, duration)
+
+    lasted, e = [], experiment(free)
+    forward = Told(e)
+    random = np.random.default_rng(np.random.SeedSequence(5))
+    nu = random.standard_normal((6, forward.layout.size))
+    u = np.zeros((6, 0))
+    for own, whole in zip(
+        forward.sampled(Hypothesis(), u, nu), Whole(e).sampled(Hypothesis(), u, nu), strict=True
+    ):
+        # In standard errors of single samples; chains are dealt to lanes otherwise, which is rounding.
+        np.testing.assert_allclose(own, whole, rtol=0.0, atol=1e-6)
+    assert max(lasted) < 0.9
+    # Where time zero lies far before the trace there is no end to what is read but that of the simulation.
+    far = np.zeros((1, forward.layout.size))
+    far[0, forward.layout.trigger(0)] = -1e3
+    forward.sampled(Hypothesis(), u[:1], far)
+    assert lasted[-1] == 1.0
+
+
 def test_the_speed_may_be_known_to_a_third_only():
     record, _ = made([("striker-error", {"speed_ratio": 1.25, "mass_ratio": 1.0})], seed=9)
     content = block([r.striker.speed_m_s for r in record.block.runs])

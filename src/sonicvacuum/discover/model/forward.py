@@ -263,7 +263,7 @@ class Forward:
         lost = ~(np.abs(nu[:, own] * self.nuisance_sigma[own]) < NO_CHAIN).all(axis=1)
         nu = np.where(lost[:, None], 0.0, nu)
         setup = change(self.nominal(batch, nu), np.repeat(part, len(batch.runs)))
-        seen, gain = self.simulate(batch, setup, batch.first_s), self._gain(nu)
+        seen, gain = self.simulate(batch, setup, self._lasting(batch, nu)), self._gain(nu)
         traces = {}
         for places in self._recorded_alike(batch):
             traces |= gauges.traces(
@@ -290,6 +290,13 @@ class Forward:
             rates = timing.reshape(rated * times, *shape)
             rates = e.whitened_on(run, rates, np.zeros((len(rates), measured.shape[1])))
             yield run, flat, rates.reshape(rated, times, rates.shape[1])
+
+    def _lasting(self, batch, nu) -> float:
+        """Time in s to simulate: what is read of traces, wherever time zero is; numbers may need all."""
+        if any(self.experiment.runs[run].scalars for run in batch.runs):
+            return batch.first_s
+        read = gauges.last_read(self.experiment, self.layout, self.nuisance_sigma, batch, nu)
+        return min(batch.first_s, read)
 
     def _recorded_alike(self, batch) -> list[list[int]]:
         """Places of the batch's runs, those together whose samples were taken, and count, alike."""

@@ -4,6 +4,9 @@ from functools import lru_cache
 
 import numpy as np
 
+# Simulated samples after the last time at which a trace is read: it is read between neighbours.
+AFTER = 4
+
 
 def lagrange(fraction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Weights of `resample.POINTS` neighbours (L, POINTS) at `fraction` of the way to the next sample, and
@@ -98,6 +101,19 @@ def at_record(layout, sigma, interval: float, time: np.ndarray, signals, chain, 
     if delays:
         slopes += [slopes[0] * (np.arange(signals.shape[1]) == s)[:, None] for s in channels]
     return value, np.stack(slopes, axis=1)
+
+
+def last_read(e, layout, sigma, batch, nu) -> float:
+    """True time in s of the last simulated sample from which `traces` reads those of a batch."""
+    delays = layout.other("delay")
+    late = (nu[:, delays] * sigma[delays]).min(axis=1, initial=0.0)
+    ends = [0.0]
+    for run in batch.runs:
+        data, trigger = e.runs[run], layout.trigger(run)
+        if data.has_signals:
+            shift = data.shift + nu[:, trigger] * sigma[trigger] + late
+            ends.append(data.time[-1] - shift.min())
+    return float(max(ends)) + AFTER * batch.interval
 
 
 def traces(e, layout, sigma, batch, places, readings, gain, nu, rate_of: int):
