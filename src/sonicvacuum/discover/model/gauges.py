@@ -112,7 +112,7 @@ def last_read(e, layout, sigma, batch, nu) -> float:
         data, trigger = e.runs[run], layout.trigger(run)
         if data.has_signals:
             shift = data.shift + nu[:, trigger] * sigma[trigger] + late
-            ends.append(data.time[-1] - shift.min())
+            ends.append(data.time[-1] - shift.min(where=np.isfinite(shift), initial=np.inf))
     return float(max(ends)) + AFTER * batch.interval
 
 
