@@ -166,7 +166,7 @@ def test_no_more_is_simulated_than_is_read(late):
     """A time zero that nobody knows asks for long chains only until it is found."""
     sensors = [{**sensor, **late} for sensor in block([0.3])["sensors"]]
     record, _ = made(seed=8, sensors=sensors)
-    content = {**block([r.striker.speed_m_s for r in record.block.runs], sensors=sensors)}
+    content = block([r.striker.speed_m_s for r in record.block.runs], sensors=sensors)
     free = Record(parse({**content, "trigger_sigma_us": "unknown"}), record.signals, "free")
 
     class Whole(Forward):

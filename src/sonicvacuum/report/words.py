@@ -125,7 +125,7 @@ def _nearest_set(verdict, told, found):
         "Something is missing that nothing of the catalogue explains. "
         f"{_counted(told)} of its effects come nearest to it together: {'; '.join(told)}. "
         f"That these are there, and something unknown beside them, has the probability "
-        f"{share(verdict.probability or 0.0)}; that one of them is {share(one)}; "
+        f"{share(verdict.probability)}; that one of them is {share(one)}; "
         f"that it is something unknown alone {share(odds.get('unknown', 0.0))}."
     )
 

@@ -103,17 +103,21 @@ def at_record(layout, sigma, interval: float, time: np.ndarray, signals, chain, 
     return value, np.stack(slopes, axis=1)
 
 
+def shifts(e, layout, sigma, runs, nu) -> np.ndarray:
+    """(R, L) trigger shifts in s of R runs in L lanes; the rest as in `traces`."""
+    trigger = layout.trigger(np.array(runs))
+    return np.array([e.runs[r].shift for r in runs])[:, None] + (nu[:, trigger] * sigma[trigger]).T
+
+
 def last_read(e, layout, sigma, batch, nu) -> float:
     """True time in s of the last simulated sample from which `traces` reads those of a batch."""
+    traced = [run for run in batch.runs if e.runs[run].has_signals]
+    if not traced:
+        return AFTER * batch.interval
     delays = layout.other("delay")
-    late = (nu[:, delays] * sigma[delays]).min(axis=1, initial=0.0)
-    ends = [0.0]
-    for run in batch.runs:
-        data, trigger = e.runs[run], layout.trigger(run)
-        if data.has_signals:
-            shift = data.shift + nu[:, trigger] * sigma[trigger] + late
-            ends.append(data.time[-1] - shift.min(where=np.isfinite(shift), initial=np.inf))
-    return float(max(ends)) + AFTER * batch.interval
+    late = shifts(e, layout, sigma, traced, nu) + (nu[:, delays] * sigma[delays]).min(axis=1, initial=0.0)
+    end = np.array([e.runs[run].time[-1] for run in traced])[:, None] - late
+    return float(end.max(initial=0.0, where=np.isfinite(end))) + AFTER * batch.interval
 
 
 def traces(e, layout, sigma, batch, places, readings, gain, nu, rate_of: int):
@@ -137,8 +141,7 @@ def traces(e, layout, sigma, batch, places, readings, gain, nu, rate_of: int):
     rated = np.flatnonzero(lane % rate_of == 0)
     data = e.runs[runs[0]]
     if data.has_signals:
-        trigger = layout.trigger(np.array(runs))
-        shift = np.array([e.runs[r].shift for r in runs])[:, None] + (nu[:, trigger] * sigma[trigger]).T
+        shift = shifts(e, layout, sigma, runs, nu)
         chain = lane * len(batch.runs) + np.array(places)[which]
         # All that follows is linear in the gain: over the noise from the start.
         own = (gain / e.sigma)[lane], shift.ravel(), nu[lane], rated
