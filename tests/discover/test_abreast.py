@@ -24,6 +24,13 @@ def worth_it(monkeypatch):
     monkeypatch.setattr(abreast, "SAVED", -1.0)
 
 
+@pytest.fixture
+def no_copies_yet():
+    """Copies of tests before, which have told all and end by themselves, have ended."""
+    for process in multiprocessing.active_children():
+        process.join()
+
+
 def sampled(forward):
     return forward.sampled(Hypothesis(), np.zeros((1, 0)), np.zeros((1, forward.layout.size)))
 
@@ -92,7 +99,7 @@ def test_predictions_do_not_depend_on_how_many_chains_are_simulated_at_once(hidd
 
 
 @pytest.mark.parametrize("threads", [1, 2])
-def test_one_that_fails_raises_here(hidden, worth_it, threads):
+def test_one_that_fails_raises_here(hidden, worth_it, no_copies_yet, threads):
     def work(branch, k):
         if k == 1:
             raise ZeroDivisionError("of the second")
@@ -103,7 +110,7 @@ def test_one_that_fails_raises_here(hidden, worth_it, threads):
 
 
 @needs_copies
-def test_an_interruption_ends_all_copies(hidden, worth_it):
+def test_an_interruption_ends_all_copies(hidden, worth_it, no_copies_yet):
     here = os.getpid()
 
     def interrupted(name, done, total):
