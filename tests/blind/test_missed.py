@@ -44,6 +44,19 @@ def test_an_effect_behind_one_at_a_bead_is_fitted():
     assert session.discover(record, limits=False).verdict.named == ["guide-friction"]
 
 
+def test_two_laws_of_damping_that_hide_behind_one_are_both_named():
+    """One of them leaves nothing that passes for a misfit, and both together are four times as likely."""
+    laws = ("hunt-crossley", "kuwabara-kono")
+    record, truth = hide(Spec("full-2006", "pair", "traces", "white", laws, 20.0, 95_771_918, 2006))
+    found = session.discover(record, limits=False).verdict
+    assert set(found.named) == set(laws)
+    assert found.probability == max(found.probabilities.values())
+    for hidden in truth["hidden"]:
+        ((name, value),) = hidden["parameters"].items()
+        own = found.parameters[hidden["id"]][name]
+        assert abs(own.value - value) < 3.0 * own.sigma  # with these seeds 0.8 and 1.3
+
+
 @pytest.mark.parametrize(
     ("place", "named"),
     [

@@ -2,7 +2,7 @@
 
 import math
 import time
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -10,12 +10,22 @@ from msgspec import UNSET
 
 from sonicvacuum import stages
 from sonicvacuum.blas import one_thread
-from sonicvacuum.discover import draws, given, law, next_experiment, quantities, unnamed, upper, verdict
+from sonicvacuum.discover import (
+    draws,
+    given,
+    hidden,
+    law,
+    next_experiment,
+    quantities,
+    unnamed,
+    upper,
+    verdict,
+)
 from sonicvacuum.discover.draws import Draws
 from sonicvacuum.discover.faults import competition
 from sonicvacuum.discover.fit import goodness, heldout
 from sonicvacuum.discover.fit.refit import Fit
-from sonicvacuum.discover.judge import behind, degenerate, explanations, locate, strained
+from sonicvacuum.discover.judge import degenerate, explanations, locate, strained
 from sonicvacuum.discover.judge.law import surface
 from sonicvacuum.discover.model import window
 from sonicvacuum.discover.model.forward import Forward
@@ -23,7 +33,6 @@ from sonicvacuum.discover.model.nuisances import assumed, exact
 from sonicvacuum.discover.posterior import posterior
 from sonicvacuum.discover.rounds import Investigation
 from sonicvacuum.discover.search.free_law import FreeLaw
-from sonicvacuum.discover.search.screen import Screen
 from sonicvacuum.discover.verdict import Verdict
 from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.physics import validity
@@ -100,13 +109,12 @@ def discover(
     stages.begin("places and limits")
     places = locate.locate(forward, found.null)
     found, free = unnamed.with_law(found)
+    found, scores = hidden.told(found, upper.screened(found))
     clock.mark("free-form law")
     model, final = (free.forward, free.fit) if free else (forward, found.final)
     after = locate.locate(model, final) if final is not found.null else places
     clock.mark("locate")
     fits = [goodness.goodness(forward, found.null), goodness.goodness(model, final)]
-    scores = upper.screened(found)
-    found = _with_hidden(found, scores)
     limits, untestable, wider = upper.limits(found, fits[1], scores)
     alike = degenerate.confusable(
         found.named, found.candidates, found.combinations, found.alike, found.probabilities
@@ -156,15 +164,6 @@ def discover(
     )
     said = tuple(line for lines in notes for line in lines)
     return Result(outcome.record, records, said, found, places, after, limits, result, free, tuple(drawn))
-
-
-def _with_hidden(found: Investigation, scores: Screen) -> Investigation:
-    """The same with a share of the probability for what may hide behind the named effects."""
-    if not found.named or explanations.UNKNOWN in found.named or found.counted:
-        return found
-    gain = found.null.objective - found.final.objective
-    beside = behind.odds(scores, gain, found.threshold, found.forward.experiment.prior_odds)
-    return replace(found, probabilities=behind.told(found.probabilities, found.named, beside))
 
 
 def _taken_as_stated(found: Investigation) -> list[str]:

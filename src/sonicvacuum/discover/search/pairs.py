@@ -188,11 +188,12 @@ def screened(forward: Forward, first: Fit, setup: Setup) -> screen.Screen:
     return screen.screen(forward, first, directions.catalogue(setup, present), rough=True)
 
 
-def beside(forward: Forward, null: Fit, first: Fit, setup: Setup) -> list[Start]:
-    """Every effect beside those of a first fit."""
+def beside(forward: Forward, null: Fit, first: Fit, setup: Setup, only: str = "") -> list[Start]:
+    """Every effect beside those of a first fit, or one only."""
     scores = screened(forward, first, setup)
     gained = null.objective - first.objective
     own = np.array([c.place or 0 for c in first.hypothesis.components], dtype=int)
+    asked = [(name, k) for name, k in scores.best().items() if only in ("", name)]
 
     def start(branch, best):
         second, k = best
@@ -209,9 +210,7 @@ def beside(forward: Forward, null: Fit, first: Fit, setup: Setup) -> list[Start]
         hypothesis = joined(first.hypothesis, Component(effect, free), setup)
         return Start(gained + more, hypothesis, u, nu, places)
 
-    return [
-        s for s in abreast.each(forward, start, scores.best().items(), calls=abreast.SLOPES) if s is not None
-    ]
+    return [s for s in abreast.each(forward, start, asked, calls=abreast.SLOPES) if s is not None]
 
 
 def instead(forward: Forward, null: Fit, one: Fit, k: int, setup: Setup) -> list[Start]:
