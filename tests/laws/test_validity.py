@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from engine_cases import DURATION, coated
 
+import sonicvacuum as sv
 from sonicvacuum.effects import CATALOGUE, Setup, effect
 from sonicvacuum.physics import validity
 from sonicvacuum.physics.bodies import Body, Elastic
@@ -57,7 +58,27 @@ def test_yielding_is_told_unless_the_law_yields():
 
 def test_a_coating_pressed_through_is_told():
     thin = Body(Elastic("coating", 1e8, 0.388), 0.44e-3, 2.43e-3, coating=1e-6)
-    assert any("coatings of 1 um" in w for w in told(coated(modulus=1e8, bodies=thin), duration=2e-3))
+    assert any("coatings of 2 um" in w for w in told(coated(modulus=1e8, bodies=thin), duration=2e-3))
+
+
+def test_a_coating_that_is_felt_through_is_told_unless_it_acts_as_a_layer():
+    core = Elastic("steel", 193e9, 0.29)
+    bead = Body(Elastic("coating", 2.76e9, 0.388), 0.44e-3, 2.43e-3, coating=50e-6, core=core)
+    chain = coated(modulus=2.76e9, bodies=bead)
+    (warning,) = told(chain)
+    assert "times the thickness of its coating (50 um)" in warning
+    assert told(effect("coating-thickness").apply(Setup(chain), layer_thickness_um=50.0).chain) == []
+    assert told(coated(modulus=2.76e9, bodies=replace(bead, coating=1e-3))) == []
+
+
+def test_only_the_bodies_that_touch_count():
+    """One PTFE bead in steel: contacts of steel on steel bear what would squash it, its own do not."""
+    steel, soft = (sv.bead(diameter_mm=10.0, material=m) for m in ("bearing-steel", "ptfe"))
+    chain = sv.chain(pattern=[*[steel] * 8, soft, *[steel] * 3], beads=12)
+    case = sv.case(chain, sv.striker(steel, speed_m_s=0.5), [sv.gauge("embedded", bead=5)], duration_us=600)
+    told = [w for w in sv.simulate(case).warnings if "yield" in w]
+    forces = {w.split()[4] for w in told}
+    assert forces <= {"8", "9"}, told
 
 
 @pytest.mark.parametrize(

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from sonicvacuum.physics import layer_law
 from sonicvacuum.physics.chain import Chain
 from sonicvacuum.physics.history import History
 from sonicvacuum.physics.touching import touched
@@ -19,10 +20,13 @@ OVERLAP = 0.1
 STEP = 1.0
 # Energy made of nothing, in units of the impact's; the steps chosen keep it to 2e-6.
 ENERGY = 1e-3
-# Fully plastic contacts bear 4.5 yield strengths at their centre (Johnson, Sec. 6.3: 3 in the mean).
+# Fully plastic contacts bear 3 yield strengths in the mean, which is 4.5 at the centre of Hertz's pressure
+# (Johnson, Sec. 6.3). Twice that: yield strengths in tables are of annealed bars, and beads are harder.
 YIELD = 2.0 * 4.5
 # A law that was fitted to data is warned of from so many times their largest compression and rate on.
 FURTHER = 1.2
+# Contact radius over thickness from which a coating is stiffer than a half-space by a third (docs/layer.md).
+NARROW = 0.3
 # A gauge that reads less than this part of the largest force has seen nothing yet.
 SILENT = 1e-3
 _MICRO = 1e-6
@@ -48,8 +52,12 @@ def warnings(chain: Chain, history: History, yields: Mapping[str, float | None] 
         return []
     force = _largest(chain, history)
     depth = np.stack([chain.depth_at(c, force[k][None])[0] for k, c in enumerate(history.contacts)])
-    found = [overlap(chain, history, depth), layer(chain, depth), coarse_step(chain, history, force, depth)]
-    found += [energy(chain, history), pressure(chain, history, force, depth, yields or {})]
+    found = [overlap(chain, history, depth), layer(chain, history, depth)]
+    found += [
+        coarse_step(chain, history, force, depth),
+        energy(chain, history),
+        pressure(chain, history, force, depth, yields or {}),
+    ]
     found += [extrapolation(chain, depth)]
     return [told for told in found if told]
 
@@ -78,8 +86,7 @@ def overlap(chain: Chain, history: History, depth: np.ndarray) -> str:
         chain, history: see `warnings`.
         depth: (contacts, lanes) largest compression in m.
     """
-    radii = chain.reduced_radii(max(history.contacts) + 1)[list(history.contacts)]
-    share = depth / radii
+    share = depth / _radii(chain, history)
     contact, lane = np.unravel_index(np.argmax(share), share.shape)
     worst = share[contact, lane]
     if not worst > OVERLAP:
@@ -93,16 +100,43 @@ def overlap(chain: Chain, history: History, depth: np.ndarray) -> str:
     return f"{place}{worst:.2g} of its effective radius: contact laws hold for less than {OVERLAP:g}"
 
 
-def layer(chain: Chain, depth: np.ndarray) -> str:
-    """Coatings pressed through: two of them share the compression of a contact, (contacts, lanes) in m."""
-    thinnest = min((float(np.min(body.coating)) for body in chain.solids), default=np.inf)
-    worst = float(depth.max())
-    if not worst > 2.0 * thinnest:
+def layer(chain: Chain, history: History, depth: np.ndarray) -> str:
+    """Coatings pressed through, or felt through: a contact that is not narrow beside its coating feels the
+    core; arguments as in `overlap`.
+    """
+    coats = _sides(chain, history, [body.coating for body in chain.solids])
+    there = np.where(np.isfinite(coats), coats, 0.0).sum(axis=0)
+    worst = depth.max(axis=1)
+    through = (there > 0.0) & (worst > there)
+    if through.any():
+        k = int(np.argmax(np.where(through, worst - there, -np.inf)))
+        return (
+            f"contact {history.contacts[k]} is pressed by {worst[k] / _MICRO:.3g} um, more than its coatings "
+            f"of {there[k] / _MICRO:.3g} um together are thick: what lies under them bears the load"
+        )
+    if any(action.term.name == layer_law.NAME for action in chain.actions):
+        return ""
+    thin = coats.min(axis=0)
+    wide = np.sqrt(_radii(chain, history) * depth).max(axis=1) / thin
+    k = int(np.argmax(wide))
+    if not wide[k] > NARROW:
         return ""
     return (
-        f"a contact is pressed by {worst / _MICRO:.3g} um, more than its coatings of {thinnest / _MICRO:.3g} "
-        "um each are thick: what lies under them bears the load"
+        f"contact {history.contacts[k]} reaches a radius of {wide[k]:.2g} times the thickness of its coating "
+        f"({thin[k] / _MICRO:.3g} um) and is taken for one of solid beads of the coating's material: on its "
+        "core the coating is stiffer (coating-thickness)"
     )
+
+
+def _sides(chain, history, values):
+    """(2, contacts) values of the two bodies at each contact, of one for each of `chain.solids`."""
+    touching = chain.touching(max(history.contacts) + 1)[:, list(history.contacts)]
+    return np.array(values, dtype=float)[touching]
+
+
+def _radii(chain, history):
+    """(contacts, lanes) effective radii in m."""
+    return chain.reduced_radii(max(history.contacts) + 1)[list(history.contacts)]
 
 
 def extrapolation(chain: Chain, depth: np.ndarray) -> str:
@@ -152,19 +186,22 @@ def energy(chain: Chain, history: History) -> str:
 
 
 def pressure(chain: Chain, history: History, force: np.ndarray, depth: np.ndarray, yields: Mapping) -> str:
-    """Contacts that would yield: the pressure at their centre against the beads' yield strength."""
-    known = [s for s in (yields.get(b.surface.name) for b in chain.solids) if s]
-    if not known or any(a.term.slot == "path" for a in chain.actions):
+    """Contacts that would yield: the pressure at the centre against the softer body's yield strength."""
+    strengths = [yields.get(body.surface.name) or np.inf for body in chain.solids]
+    if np.isinf(strengths).all() or any(a.term.slot == "path" for a in chain.actions):
         return ""
     seen = [touched(chain, contact, depth[k][None]) for k, contact in enumerate(history.contacts)]
     radius, steeper = (np.concatenate(part) for part in zip(*seen, strict=True))
     with np.errstate(invalid="ignore", divide="ignore"):
-        largest = np.nanmax(np.where(depth > 0.0, steeper * force / (np.pi * radius**2), 0.0))
-    if not largest > YIELD * min(known):
+        centre = np.where(depth > 0.0, steeper * force / (np.pi * radius**2), 0.0)
+    softer = _sides(chain, history, strengths).min(axis=0)
+    share = np.nanmax(centre, axis=1) / softer
+    k = int(np.argmax(share))
+    if not share[k] > YIELD:
         return ""
     return (
-        f"the contact pressure reaches {largest / 1e9:.3g} GPa, {largest / min(known):.3g} times the yield "
-        "strength: contacts would yield, which elastic laws leave out"
+        f"the pressure of contact {history.contacts[k]} reaches {np.nanmax(centre[k]) / 1e9:.3g} GPa, "
+        f"{share[k]:.3g} times the yield strength: contacts would yield, which elastic laws leave out"
     )
 
 

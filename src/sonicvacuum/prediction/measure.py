@@ -34,6 +34,8 @@ from sonicvacuum.simulation import Simulation, check_extent, set_up, simulate
 SAMPLES_PER_PULSE = 10
 # At rest before the impact, in durations of the longest pulse: baseline and noise are read there.
 REST = 2.0
+# The effect that makes a coating act as a layer.
+COATING = "coating-thickness"
 
 
 @dataclass(frozen=True)
@@ -69,6 +71,7 @@ class ChainPrediction:
         beads: their number.
         bead_mass_g: as given, or from the density.
         striker_mass_g: likewise.
+        coating_um: thickness of a coating, which acts as a layer bonded to its core; None of solid beads.
         striker_speed_m_s: as given, or the one at which the gauge reads what was aimed at.
         wave_speed_m_s: between the two gauges `speed_from` and `speed_to`, peak to peak.
         gauges: in the order asked for.
@@ -83,6 +86,7 @@ class ChainPrediction:
     beads: int
     bead_mass_g: float
     striker_mass_g: float
+    coating_um: float | None
     striker_speed_m_s: float
     wave_speed_m_s: float | None
     speed_from: str | None
@@ -125,7 +129,9 @@ def predict(
         material: what touches, a name of the table of materials.
         speed: of the striker; with an aim, where the search for it begins.
         mass: of a bead; from the density where it is not given.
-        coating: its thickness, of coated beads.
+        coating: its thickness, of coated beads. It acts as a layer bonded to its core, stiffer than the
+            half-space of Hertz's law where contacts are not much narrower than it is thick
+            (`physics.layer_law`).
         core: their inner material.
         wall: material of the wall; the beads' (their core's) where not given.
         orientation: `horizontal`, or `vertical` with the wall below.
@@ -150,11 +156,19 @@ def predict(
         >>> round(seen.bead_mass_g, 1), round(seen.wave_speed_m_s, -1)
         (32.7, 580.0)
     """
-    card = card_of(**locals())
+    card = _layered(card_of(**locals()))
     check_extent(card)
     if card.striker.aim is not None:
         card = _settled(card)
     return measured(simulate(_cut(card)))
+
+
+def _layered(card: Card) -> Card:
+    """The case with its coating as the layer that it is."""
+    thick = card.bead.coating_m
+    if thick is None:
+        return card
+    return changed(card, effects={**card.effects, COATING: {"layer_thickness_um": thick * 1e6}})
 
 
 def _cut(card: Card) -> Card:
@@ -195,6 +209,7 @@ def measured(simulation: Simulation) -> ChainPrediction:
         beads=card.beads,
         bead_mass_g=card.bead.mass_kg * 1e3,
         striker_mass_g=card.striker.mass_kg * 1e3,
+        coating_um=card.effects.get(COATING, {}).get("layer_thickness_um"),
         striker_speed_m_s=float(simulation.speeds[0]),
         wave_speed_m_s=fast,
         speed_from=first,

@@ -30,6 +30,8 @@ def text(prediction: ChainPrediction) -> str:
         f"{p.beads} beads of {p.bead_mass_g:.4g} g, struck by {p.striker_mass_g:.4g} g at "
         f"{p.striker_speed_m_s:.4g} m/s"
     ]
+    if p.coating_um is not None:
+        lines.append(f"the coating of {p.coating_um:.4g} um acts as a layer bonded to its core")
     if p.wave_speed_m_s is not None:
         lines.append(f"wave speed {p.wave_speed_m_s:.4g} m/s, {_place(p.speed_from)} to {_place(p.speed_to)}")
     lines += ["", *_table(p), ""]
