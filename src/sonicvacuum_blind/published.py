@@ -115,11 +115,18 @@ def in_short(study: Study) -> str:
         told(study) + " All of them: [docs/study.md](docs/study.md).",
         f"Single effects of 3 to 500 standard errors named exactly: {found('exact name', 'all')}; pairs: "
         f"{found('exact pair', 'all')}; sets of three: {found('exact set of three', 'all')}.",
-        f"Empty records named: {found('named on null', 'white')}; effects {outside} called unknown: "
-        f"{unknown}, given a wrong name unqualified: {wrong}.",
+        f"Empty records named: {_alarms(study) or found('named on null', 'white')}; "
+        f"effects {outside} called unknown: {unknown}, given a wrong name unqualified: {wrong}.",
         _beside_bic(study.baselines),
     )
     return "\n".join(lines)
+
+
+def _alarms(study):
+    """How many of all empty records are named, whatever their noise; "" where no rule was held beside."""
+    rows = () if study.baselines is None else study.baselines.to_dict("records")
+    own = (r for r in rows if (r["rule"], r["measure"]) == ("sonicvacuum", ALARM) and r["group"] in GROUPS)
+    return percent(next(own, None)) if rows else ""
 
 
 def _beside_bic(baselines):

@@ -5,10 +5,20 @@ import pandas as pd
 import pytest
 
 from sonicvacuum import config
+from sonicvacuum.effects.coating_thickness import layer_factor
+from sonicvacuum.physics import layer_law
 from sonicvacuum.report import inline
 from sonicvacuum_paper.columns import column_cards
 from sonicvacuum_paper.report import rivals, uncertain
-from sonicvacuum_paper.uncertainty import decide, formats, identify, losses, picture, viscoelastic
+from sonicvacuum_paper.uncertainty import (
+    decide,
+    formats,
+    identify,
+    layer_viscosity,
+    losses,
+    picture,
+    viscoelastic,
+)
 
 
 @pytest.fixture(scope="module")
@@ -92,17 +102,32 @@ def laws():
     rows = [
         (contact, law, name, 1.0, fast, slow, 130.0, 2.5, 0.87, 0.8, 1.0)
         for contact, fast, slow in (("layer", 197.0, 130.0), ("matched", 209.0, 153.0))
-        for law, name in losses.LAWS.items()
+        for law, name in losses.ALL.items()
     ]
     return pd.DataFrame(rows, columns=formats.LOSSES)
 
 
 def test_a_law_speaks_for_the_layer_where_hertz_misses_a_speed(laws):
     told = rivals.of_laws(laws)["by_law"]
-    assert (told["speaks"], told["of"]) == (4, 4)
+    assert (told["speaks"], told["of"]) == (5, 5)
     assert told["ratios"] == ["1.52", "1.37"]
     changed = laws.assign(low_speed_m_s=laws.low_speed_m_s.where(laws.law != "tsuji", 130.0))
-    assert rivals.of_laws(changed)["by_law"]["speaks"] == 3
+    assert rivals.of_laws(changed)["by_law"]["speaks"] == 4
+
+
+def test_the_viscous_force_of_a_layer_is_the_slope_of_its_elastic_force():
+    limit, powers = layer_law.coefficients(0.388, [0.015], 0.3)
+    shape = (np.sqrt(1.2e-3) / (50e-6 * layer_law.SCALE), limit[0], *powers[0])
+    delta, step = np.geomspace(1e-9, 1e-5, 9), 1e-5
+
+    def force(x):
+        return 5e7 * x**1.5 * layer_factor(x, *shape)
+
+    slope = (force(delta * (1.0 + step)) - force(delta * (1.0 - step))) / (2.0 * step * delta)
+    given = layer_viscosity.viscous_force(delta, 0.3, force(delta), 2e-6, *shape)
+    assert given == pytest.approx(2e-6 * slope * 0.3, rel=1e-4)  # a difference over a part of 1e-4
+    # Narrow contacts are those of a half-space: 3/2 F/delta.
+    assert given[0] == pytest.approx(2e-6 * 0.3 * 1.5 * force(delta[0]) / delta[0], rel=0.02)
 
 
 def test_a_loss_is_calibrated_on_the_printed_duration(cases):

@@ -37,7 +37,8 @@ EFFECT = Effect(
     signature="pulses decay and widen along the chain, strong ones a little faster (lost fraction as "
     "u^{1/5}); restitution 1 - 1.15 (3A/2) (K/m)^{2/5} v^{1/5}",
     when_to_use="polymers, ice, rubber; restitution that falls slowly with impact speed",
-    when_not="loss independent of amplitude: tsuji, viscous-drag; delayed stiffness: relaxing-contact",
+    when_not="loss independent of amplitude: tsuji, viscous-drag; delayed stiffness: relaxing-contact; on a "
+    "layer (coating-thickness) K is still the half-space's, and A no time of the material",
     dissipative=True,
     change=change,
     of_material=True,

@@ -21,6 +21,8 @@ FAR = 0.2
 _SHIFTS = ("delay", "clock", "shared")
 # What has moved by more of its stated standard errors than this has left them.
 STRAINED = 2.5
+# What has moved by less of its stated standard error is not worth a word.
+MOVED = 0.1
 # Data that leave less than this of a stated error have measured it.
 TOLD = 0.5
 
@@ -75,9 +77,28 @@ def nuisances(model: Model, verdict: Verdict) -> str:
     shift = max((abs(v) for v in model.trigger_us.values()), default=0.0)
     if shift >= 5e-3:
         parts.append(f"time zeros by up to {_short(shift)} µs")
+    parts += _shared(verdict)
     if not parts:
         return "What the record states with an error (speeds, time zeros, gains, modulus) stays as recorded."
     return f"What the record states with an error has followed the data: {joined(parts)}."
+
+
+def _shared(verdict):
+    """What all runs share that has moved by a tenth of its stated error and more."""
+    for name, known in (verdict.nuisances or {}).items():
+        if not known.prior:
+            continue
+        kind, _, of = name.partition(" ")
+        away = known.value if kind in _SHIFTS else math.log(known.value)
+        if abs(away) >= MOVED * known.prior:
+            what = f"the error that quantities share, {of}," if kind == "shared" else _named(kind, of)
+            yield f"{what} by {_short(abs(away) / known.prior)} of its stated standard errors"
+
+
+def _named(kind, of):
+    """Something that all runs share, as a reader calls it."""
+    what = WORDS.get(kind, kind.replace("-", " "))
+    return f"{what} of {of}" if of else what
 
 
 def measured(verdict: Verdict) -> str:
@@ -147,8 +168,7 @@ def _told_of(kind, of, known):
         return f"Check the delay of gauge {of}: the data ask for {known.value:.3g} µs"
     if kind == "clock":
         return f"Check the recorder's clock: the data ask for one that is off by {100.0 * known.value:.2g} %"
-    what = WORDS.get(kind, kind.replace("-", " "))
-    return _asked(f"the {what} of {of}" if of else f"the {what}", known.value, known.sigma)
+    return _asked(f"the {_named(kind, of)}", known.value, known.sigma)
 
 
 def _short(value: float) -> str:

@@ -148,9 +148,18 @@ def _ledger(given: Sources):
     claims = tables.read(given.claims, CLAIMS).set_index("claim")
     ledger["statement"] = [claims["statement"].get(c, "") for c in ledger["claim"]]
     ledger["note"] = [claims["note"].get(c, "") for c in ledger["claim"]]
+    ledger["printed"] = [_printed(claims["test"].get(row.claim, ""), row) for row in ledger.itertuples()]
     ledger["excluded_by"] = ledger["excluded"].map(tables.shown)
     ledger["probable"] = ledger["probability"].map(uncertain.shown)
     return ledger
+
+
+def _printed(test, row):
+    """What the paper prints with its error, or the bound that its words are taken for."""
+    bound = {"at_least": "≥ ", "at_most": "≤ "}.get(test, "")
+    value = " to ".join(tables.number(part) for part in row.measured.split(".."))
+    error = tables.number(row.sigma, 2)
+    return f"{bound}{value}" + (f" ± {error}" if error not in ("", "0") else "")
 
 
 def _claim_row(row: dict) -> dict:

@@ -10,6 +10,13 @@ from sonicvacuum_paper.report import tables
 
 BEGIN = "<!-- {}: made by `snakemake publish`, do not edit -->"
 END = "<!-- end of {} -->"
+# Parts of a model's total, and what they are called.
+PARTS = (
+    ("agrees", "agrees"),
+    ("fitted", "fitted to it"),
+    ("excluded", "excluded by"),
+    ("outside", "outside it, or not simulated"),
+)
 # What must come out again of a blind study; times and estimates are left out.
 NAMING = ("id", "kind", "effects", "named", "exact")
 
@@ -27,7 +34,7 @@ def summary(ledger: pd.DataFrame) -> str:
         f"| {' | '.join(map(_cell, (row['printed'], *row['cells'])))} |" for row in tables.first(ledger)
     ]
     totals = {t.model: t for t in ladder.totals(ledger.to_dict("records"))}
-    for part, name in (("agrees", "agrees"), ("fitted", "fitted to it"), ("excluded", "excluded by")):
+    for part, name in PARTS:
         cells = [str(getattr(totals[c], part)) if c in totals else "–" for c in models]
         lines.append(f"| *statements: {name}* | " + " | ".join(cells) + " |")
     lines.append("| *free parameters* | " + " | ".join(ladder.MODELS[c].free for c in models) + " |")

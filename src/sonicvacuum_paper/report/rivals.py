@@ -16,6 +16,7 @@ from sonicvacuum.report.tables import number
 from sonicvacuum_paper.ladder import title
 from sonicvacuum_paper.printed import PRINTED
 from sonicvacuum_paper.uncertainty import formats
+from sonicvacuum_paper.uncertainty.layer_viscosity import WITH_LAYER
 from sonicvacuum_paper.verdict import BOUND
 
 WITHIN = 0.95
@@ -166,7 +167,7 @@ def of_laws(table: pd.DataFrame) -> dict:
     of_hertz = table[table.contact == "matched"]
     ratios = [_span(part.speed_m_s / part.low_speed_m_s, 3) for part in (of_layer, of_hertz)]
     rows = [
-        [title(r.contact), CATALOGUE.effect(r.law).title, f"{number(r.value, 2)}", *_cells(r)]
+        [title(r.contact), WITH_LAYER.effect(r.law).title, f"{number(r.value, 2)}", *_cells(r)]
         for r in table.itertuples()
     ]
     words = {

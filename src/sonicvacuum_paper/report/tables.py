@@ -46,16 +46,26 @@ def shown(excluded: str) -> str:
 
 
 def headline(ledger: pd.DataFrame) -> str:
-    """How many statements need a simulation, what came of them, and what was counted apart."""
+    """How many statements there are, how many of them need a simulation, and what came of all."""
     part = ledger[ledger["kind"] == SIMULATION]
-    found = counts(part)
-    apart = (ledger["kind"] == THEORY).sum(), (ledger["kind"] == ARITHMETIC).sum()
+    found, beside = counts(part), ledger[ledger["kind"] == THEORY]
+    printed = ledger[ledger["kind"] == ARITHMETIC]
+    agree = counts(beside)[REPRODUCED]
     return (
-        f"Of {len(part)} statements that need a simulation, the printed layer, with nothing fitted, "
-        f"reproduces {found[REPRODUCED]} and contradicts {found[DISAGREES]}; {found[OUTSIDE]} need a loss "
-        f"and are outside it. Counted apart: {apart[0]} identities of the equations, {apart[1]} checks of "
-        f"printed numbers, {counts(ledger)[INCONSISTENT]} places where the paper contradicts itself."
+        f"Of {len(ledger)} statements {len(part)} need a simulation: the printed layer, with nothing "
+        f"fitted, reproduces {found[REPRODUCED]} and contradicts {found[DISAGREES]}; {found[OUTSIDE]} need "
+        f"a loss and are outside it. Of {len(beside)} that follow from the equations {agree} hold; of "
+        f"{len(printed)} checks of printed numbers {counts(printed)[INCONSISTENT]} contradict the paper itself. "
+        f"{_rest(ledger)}"
     )
+
+
+def _rest(ledger):
+    """What stands in the ledger besides: misprints, and what cannot be tested."""
+    others = ledger[~ledger["kind"].isin((SIMULATION, THEORY, ARITHMETIC))]
+    misprints = counts(others)[INCONSISTENT]
+    untested = len(others) - misprints
+    return f"{misprints} are misprints; {untested} cannot be tested by what is printed."
 
 
 def asked(ledger: pd.DataFrame) -> bool:

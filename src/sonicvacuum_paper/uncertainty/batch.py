@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from sonicvacuum.card import Card
-from sonicvacuum.effects import CATALOGUE, Setup
+from sonicvacuum.effects import Setup
 from sonicvacuum.forward import Seen, see
 from sonicvacuum.gauges import Gauge
 from sonicvacuum.observe import quantities
@@ -17,6 +17,7 @@ from sonicvacuum.physics.assemble import assemble
 from sonicvacuum.simulation import sensors
 from sonicvacuum_paper.one_run import LOWER, UPPER
 from sonicvacuum_paper.uncertainty.formats import LAYER, LOSS
+from sonicvacuum_paper.uncertainty.layer_viscosity import WITH_LAYER
 
 Draws = Mapping[str, np.ndarray]
 GRAM = 1e-3
@@ -46,7 +47,7 @@ def set_up(card: Card, draws: Draws, speed=None, loss_us=None) -> Setup:
         chain = chain.stiffened(material, draws[material])
     setup = Setup(chain, _gauges(card, draws))
     for name, parameters in card.effects.items():
-        setup = CATALOGUE.effect(name).apply(setup, **_drawn(name, parameters, draws, loss_us))
+        setup = WITH_LAYER.effect(name).apply(setup, **_drawn(name, parameters, draws, loss_us))
     return setup
 
 
