@@ -55,8 +55,8 @@ def headline(ledger: pd.DataFrame) -> str:
         f"Of {len(ledger)} statements {len(part)} need a simulation: the printed layer, with nothing "
         f"fitted, reproduces {found[REPRODUCED]} and contradicts {found[DISAGREES]}; {found[OUTSIDE]} need "
         f"a loss and are outside it. Of {len(beside)} that follow from the equations {agree} hold; of "
-        f"{len(printed)} checks of printed numbers {counts(printed)[INCONSISTENT]} contradict the paper itself. "
-        f"{_rest(ledger)}"
+        f"{len(printed)} checks of printed numbers {counts(printed)[INCONSISTENT]} contradict the paper "
+        f"itself. {_rest(ledger)}"
     )
 
 
