@@ -59,6 +59,32 @@ def test_a_trigger_off_by_more_than_its_error_is_told(shift_us, word):
     assert not [s for s in slip(change=late, trigger_sigma_us="unknown") if "trigger" in s]
 
 
+def of_gauges(names, traces=TRACES, shift_us=0.0, **keys):
+    """What is said of the record with some of its gauges only, its times put later."""
+    sensors = [s | keys for s in CONTENT["sensors"] if s["id"] in names]
+    runs = [{k: v for k, v in r.items() if k != "observables"} for r in CONTENT["runs"]]
+    signals = {
+        run: Signals(s.time_us + shift_us, {g: s.readings[g] for g in names}) for run, s in traces.items()
+    }
+    record = Record(parse(content(sensors=sensors, runs=runs)), signals, "few")
+    return [line for line in suspects(record, expected(record)) if "begins" not in line]
+
+
+@pytest.mark.parametrize(
+    ("names", "where"), [(("near",), "gauge near"), (("far",), "gauge far"), (("near", "far"), "every gauge")]
+)
+def test_a_late_trigger_is_told_by_gauges_at_one_bead_too(names, where):
+    told = of_gauges(names, shift_us=250.0, **({"bead": 3} if len(names) > 1 else {}))
+    one(told, "us too late at " + where, "write trigger_sigma_us: unknown")
+    assert of_gauges(names[:1]) == []
+
+
+@pytest.mark.parametrize("name", ["near", "far", "wall"])
+def test_a_wave_that_is_slower_is_no_late_trigger_of_a_single_gauge(name):
+    softer = made(materials={"stainless-steel": {"modulus_GPa": 97.5, "modulus_rel_sigma": 0.03}})
+    assert not [line for line in of_gauges([name], softer.signals) if "trigger" in line]
+
+
 def test_volts_are_told_from_a_striker():
     volts = slip(change=scaled(0.08, "near", "far", "wall"))
     one(volts, "peaks are 0.080", "are they in V, mN or kN?")

@@ -146,6 +146,17 @@ def _window(run, features, model):
 
 
 def _passing(record, run, features):
-    """Run → time in s for one bead, from the speed between the first gauges that show one."""
+    """Run → time in s for one bead, from the speed between the first gauges that show one.
+
+    With one gauge, or all at one bead, there is none: then from the first arrival and the way to its gauge,
+    of half a bead at least.
+    """
+    bead = record.specimen.first.diameter_m
     speeds = [f.expected for f in features if f.quantity == "speed" and f.expected]
-    return {run.id: record.specimen.first.diameter_m / speeds[0]} if speeds else {}
+    if speeds:
+        return {run.id: bead / speeds[0]}
+    arrivals = [f for f in features if f.quantity == "arrival" and f.expected]
+    if not arrivals:
+        return {}
+    way = record.geometry.length - record.geometry.position(arrivals[0].gauge)
+    return {run.id: arrivals[0].expected / max(way / bead, 0.5)}
