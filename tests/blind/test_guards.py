@@ -59,6 +59,25 @@ def test_hide_does_not_write_a_list_over_the_one_it_reads(refused, cases):
     assert "which is read here" in refused("blind", "hide", "--cases", cases, "--list", cases)
 
 
+@pytest.mark.parametrize("out", ["s.csv", "full/report.csv", "drawn.svg"])
+def test_a_page_is_not_written_over_what_it_shows(refused, tmp_path, out):
+    (tmp_path / "full").mkdir()
+    for name in ("s.csv", "full/report.csv", "drawn.svg"):
+        (tmp_path / name).write_text(name)
+    shown = ("--small", "s.csv", "--full", "full", "--picture", "drawn.svg")
+    assert "which is read here" in refused("blind", "page", *shown, "--out", out)
+
+
+def test_rivals_are_not_written_over_the_measurement(refused, tmp_path):
+    (tmp_path / "rec").mkdir()
+    for name in ("rec/record.yaml", "config.yaml"):
+        (tmp_path / name).write_text(name)
+    tables = ("map", "picture", "experiments", "relaxation", "losses")
+    written = [part for name in tables for part in (f"--{name}", name)]
+    call = ("paper", "rivals", *written, "--record", "rec/record.yaml", "--explained", "rec/record.yaml")
+    assert "which is read here" in refused(*call)
+
+
 def test_follow_keeps_off_verdicts_and_records(refused, cases, tmp_path):
     (tmp_path / "verdicts").mkdir()
     (tmp_path / "mine/a").mkdir(parents=True)

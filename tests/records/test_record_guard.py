@@ -95,6 +95,13 @@ def test_a_score_is_not_written_over_what_is_read(place, monkeypatch, capsys, ta
     assert "which is read here; give another place" in refused(monkeypatch, capsys, *call)
 
 
+@pytest.mark.parametrize("name", ["model.json", "verdict.json"])
+def test_an_export_is_not_written_over_what_discover_wrote(place, monkeypatch, capsys, name):
+    (place / "other/verdict.json").write_text("{}")
+    call = ("export", "other/model.json", "--record", "rec", "--out", f"other/{name}")
+    assert "which is read here" in refused(monkeypatch, capsys, *call)
+
+
 def test_a_page_is_not_written_into_a_record(place, monkeypatch, capsys):
     (place / "rec/verdict.json").write_text("{}")
     assert "is the folder of a record" in refused(monkeypatch, capsys, "page", "rec")

@@ -59,7 +59,7 @@ def export(words, record, law, to, error, out, as_json, own, speeds, **ball):
     from sonicvacuum.outputs import check_apart
 
     model = _path(words)
-    check_apart([out], [model, record, *own])
+    check_apart([out], [model, _beside(model), record, *own])
     known = catalogue(own)
     asked = _asked(model, record, law, speeds, ball, _given(words[1:] if model else words), known)
     names = tuple(session.SIMULATORS) if to == "all" else (to,)
@@ -89,7 +89,7 @@ def _asked(model, record, law, speeds, ball, parameters, known):
     effects = _law(law, parameters, known) if law else {}
     if record:
         found = read_model(model, known) if model else None
-        beside = Path(model).parent / "verdict.json" if model else None
+        beside = _beside(model)
         verdict = session.read_verdict(beside) if beside and beside.exists() else None
         asked = session.of_record(read(record), found, effects, verdict)
         return replace(asked, speeds=speeds) if speeds else asked
@@ -102,6 +102,11 @@ def _asked(model, record, law, speeds, ball, parameters, known):
     return session.by_hand(
         **(ball | {"wall": ball["wall"] or ball["material"]}), speeds=speeds, effects=effects
     )
+
+
+def _beside(model):
+    """The verdict that is read beside a model, if it is there."""
+    return Path(model).parent / "verdict.json" if model else None
 
 
 def _path(words):

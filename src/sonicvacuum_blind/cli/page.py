@@ -7,6 +7,7 @@ import click
 from sonicvacuum.cli import existing
 from sonicvacuum.cli.helped import PRESENT, WRITTEN, verb
 from sonicvacuum.files import replacing
+from sonicvacuum.outputs import check_apart
 
 
 @verb("sonicvacuum blind page --small results/blind/small/summary.csv --out blind.html")
@@ -16,6 +17,7 @@ from sonicvacuum.files import replacing
 @click.option("--out", required=True, type=WRITTEN, help="Page (HTML) to write.")
 def page(small, full, pictures, out):
     """Write the page of the blind studies."""
+    check_apart([out], [small, full, *pictures])
     from sonicvacuum_blind import kept
     from sonicvacuum_blind.page import build
 

@@ -28,7 +28,7 @@ def rivals(path, record, picture, contours, **out):
     from sonicvacuum import records
 
     out |= {"map": contours}
-    check_apart([*out.values(), picture], [path])
+    check_apart([*out.values(), picture], [path, record])
     cases, measured = configuration.read(path), records.read(record)
     # Long to load: what is wrong is said before.
     import pandas
