@@ -3,6 +3,7 @@ simulator."""
 
 import math
 from collections.abc import Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -17,10 +18,13 @@ from sonicvacuum.export.bounce import Subject, ball_of, subject
 from sonicvacuum.export.nearest import match
 from sonicvacuum.export.result import Export, Reference, for_simulator
 from sonicvacuum.export.table import coefficients, limits, measured
-from sonicvacuum.files import InputError, read_text
+from sonicvacuum.files import InputError, likely, read_text
+from sonicvacuum.laboratory import ranges
 from sonicvacuum.laboratory.blocks import material_of
 from sonicvacuum.laboratory.bodies import Bodies
+from sonicvacuum.laboratory.ranges import LaboratoryError
 from sonicvacuum.laboratory.specimen import Bead, Specimen, Striker
+from sonicvacuum.materials import MATERIALS
 from sonicvacuum.physics.assemble import assemble
 from sonicvacuum.physics.chain import Chain
 from sonicvacuum.records import Record
@@ -64,8 +68,12 @@ def export(
         catalogue: knows the effects.
 
     Raises:
-        InputError: for a chain of beads, parameters without meaning, or a ball that does not rebound.
+        InputError: for a chain of beads, parameters, speeds or an error without meaning, or a ball that does
+            not rebound.
     """
+    if not 0.0 < error <= 1.0:  # nan too
+        raise InputError(f"--error: is {error:g}; give an error of the restitution, above 0 and at most 1")
+    _check_speeds(asked.speeds)
     one = subject(asked.nominal, asked.effects, catalogue)
     low, high = min(asked.speeds), max(asked.speeds)
     ball = ball_of(one.chain, math.sqrt(low * high))
@@ -109,12 +117,40 @@ def of_record(
 def by_hand(
     mass_g: float, diameter_mm: float, material: str, wall: str, speeds: tuple[float, ...], effects
 ) -> Asked:
-    """A ball described on the command line; LaboratoryError for a material that is not in the table."""
-    surface, flat = (material_of(n, {}, key) for n, key in ((material, "--material"), (wall, "--wall")))
+    """A ball described on the command line.
+
+    Raises:
+        InputError: for a material that is not in the table, or a size, mass or speed that no ball has.
+    """
+    for option, name in (("material", material), ("wall", wall)):
+        if name not in MATERIALS:
+            meant = likely(name, list(MATERIALS)) or f"known are {', '.join(sorted(MATERIALS))}"
+            raise InputError(f"--{option}: {name!r} is not in the table of materials; {meant}")
+    with _options():
+        ranges.DIAMETER.check("diameter_mm", diameter_mm)
+        ranges.check_mass("ball", mass_g, diameter_mm)
+    _check_speeds(speeds)
+    surface, flat = (material_of(n, {}, "") for n in (material, wall))
     bead = Bead(diameter_m=diameter_mm / 1e3, mass_kg=mass_g / 1e3, surface=surface)
     striker = Striker(surface, mass_g / 1e3, speeds[0], radius_m=diameter_mm / 2e3)
     chain = assemble(Specimen(0, Bodies((bead,)), flat), [striker])
     return Asked(f"{diameter_mm:g} mm ball of {material} on {wall}", chain, effects, speeds)
+
+
+@contextmanager
+def _options():
+    """What no laboratory has is told by the name of the option that gave it."""
+    try:
+        yield
+    except LaboratoryError as error:
+        option = error.key.rpartition(".")[2]
+        raise InputError(f"--{option}{str(error).removeprefix(error.key)}") from None
+
+
+def _check_speeds(speeds):
+    with _options():
+        for speed in speeds:
+            ranges.SPEED.check("speeds", speed)
 
 
 def read_verdict(path: Path) -> Verdict:
