@@ -16,6 +16,7 @@ from ball import RECORD
 import sonicvacuum as sv
 from sonicvacuum import api, blas, builders
 from sonicvacuum.discover import session
+from sonicvacuum.effects import CATALOGUE
 from sonicvacuum.physics import solitary, theory
 from sonicvacuum.prediction import design, measure
 
@@ -73,6 +74,14 @@ def test_three_lines_give_a_verdict(ball):
     found = sv.discover(sv.read(ball), threads=1)
     assert found.verdict.named == []
     assert sv.discover.__name__ == "sonicvacuum.discover"  # a package and a function at once
+
+
+def test_it_takes_what_the_function_takes(ball):
+    """Limits and catalogue too; the package handed on nothing but `threads`."""
+    found = sv.discover(sv.read(ball), threads=1, limits=False, catalogue=CATALOGUE)
+    assert found.verdict.named == []
+    with pytest.raises(sv.InputError, match="give at least one"):
+        sv.discover()
 
 
 def test_the_lines_of_the_readme_run_as_they_stand(pytestconfig, tmp_path, monkeypatch, capsys):

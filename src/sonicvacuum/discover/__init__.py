@@ -16,9 +16,9 @@ from types import ModuleType
 class _Callable(ModuleType):
     """This package, which is also the public function of its name: `sonicvacuum.discover(record)`."""
 
-    def __call__(self, *records, threads=None):
-        """What `session.discover` returns."""
-        return import_module(f"{__name__}.session").discover(*records, threads=threads)
+    def __call__(self, *records, **how):
+        """What `session.discover` returns, which says what it takes."""
+        return import_module(f"{__name__}.session").discover(*records, **how)
 
 
 sys.modules[__name__].__class__ = _Callable

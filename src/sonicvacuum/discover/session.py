@@ -35,6 +35,7 @@ from sonicvacuum.discover.rounds import Investigation
 from sonicvacuum.discover.search.free_law import FreeLaw
 from sonicvacuum.discover.verdict import Verdict
 from sonicvacuum.effects import CATALOGUE, Catalogue
+from sonicvacuum.files import InputError
 from sonicvacuum.physics import validity
 from sonicvacuum.physics.run import available_threads
 from sonicvacuum.records import Record
@@ -96,8 +97,11 @@ def discover(
         that tables and pictures need.
 
     Raises:
-        InputError: for records that cannot be simulated, do not belong together, or (`limits`) ask too much.
+        InputError: for no record, or records that cannot be simulated, do not belong together, or (`limits`)
+            ask too much.
     """
+    if not records:
+        raise InputError("discover: is given no record; give at least one, as in discover(read(folder))")
     clock = Clock()
     ready, notes = zip(*map(window.fitted, records), strict=True)
     for one in ready if limits else ():
