@@ -5,6 +5,7 @@ place and size; nulls are not suspicious, and what is put right is the sound rec
 from dataclasses import replace
 from types import SimpleNamespace
 
+import msgspec
 import numpy as np
 import pytest
 from made_records import BEADS, SIGMA, made
@@ -40,6 +41,17 @@ SIZES = {
     "run-off": (lambda r: changes.strikers(r, "speed_m_s", -0.2, ("v1",)), "v1", np.exp(0.2)),
     "gain-common": (lambda r: changes.gains(r, -0.2), None, np.exp(0.2)),
 }
+
+
+def test_all_errors_in_the_unit_of_a_reading_go_with_its_gain(empty):
+    sensors = [
+        msgspec.structs.replace(s, baseline_sigma_N=0.02, drift_sigma_N=0.04) for s in empty.block.sensors
+    ]
+    given = replace(empty, block=msgspec.structs.replace(empty.block, sensors=sensors))
+    half = changes.gains(given, np.log(2.0))
+    for gauge, before in zip(half.gauges, given.gauges, strict=True):
+        for name in ("sigma", "baseline_sigma", "drift_sigma"):
+            assert getattr(gauge, name) == pytest.approx(0.5 * getattr(before, name)), name
 
 
 def search(record):

@@ -3,6 +3,7 @@
 Sizes are logarithms of ratios; numbers of beads, ids and shifts in microseconds are as they are.
 """
 
+import itertools
 import math
 from collections.abc import Mapping
 from dataclasses import replace
@@ -12,6 +13,7 @@ import numpy as np
 
 from sonicvacuum.gauges import KINDS
 from sonicvacuum.records import Record, Signals
+from sonicvacuum.records.blocks import SCALED, SUFFIXES
 
 # (run id, gauge id) → (T,) samples that must not be believed.
 Lost = dict[tuple[str, str], np.ndarray]
@@ -90,7 +92,7 @@ def runs_swapped(record: Record, one: str, two: str) -> Record:
 
 
 def gains(record: Record, log_ratio: float) -> Record:
-    """All readings over a ratio, with their noise."""
+    """All readings over a ratio, with the errors that are in their unit: noise, offset and drift."""
     ratio = math.exp(-log_ratio)
     sensors = [_scaled_noise(s, ratio) for s in record.block.sensors]
     signals = {
@@ -101,9 +103,8 @@ def gains(record: Record, log_ratio: float) -> Record:
 
 
 def _scaled_noise(sensor, ratio):
-    for key in sensor.__struct_fields__:
-        if key.startswith("sigma_"):
-            sensor = _scaled(sensor, key, ratio)
+    for key, suffix in itertools.product(SCALED, SUFFIXES):
+        sensor = _scaled(sensor, f"{key}_{suffix}", ratio)
     return sensor
 
 
