@@ -4,13 +4,20 @@ import json
 import math
 import sys
 
+import numpy as np
 import pytest
 
 import sonicvacuum as sv
 from sonicvacuum import cli
-from sonicvacuum.prediction.design import GAIN, STRENGTH, TARGET
+from sonicvacuum.prediction.design import _OPTIONS, GAIN, STRENGTH, TARGET, _place
 from sonicvacuum.prediction.design_text import content, text
+from sonicvacuum.prediction.setup import card_of
+from sonicvacuum.simulation import set_up
 
+SET_UP = dict.fromkeys(_OPTIONS) | {
+    "orientation": "horizontal", "striker": "sphere", "diameter": "5mm", "material": "brass", "speed": 0.5,
+    "aim": None,
+}  # fmt: skip
 CHAIN = {"beads": 12, "diameter": "5mm", "material": "bearing-steel", "speed": 0.5}
 
 
@@ -66,6 +73,25 @@ def test_a_loss_shows_the_further_from_the_striker_the_better(droop_or_loss):
     order = sorted(single)
     assert [single[b] for b in order] == sorted(single.values())
     assert droop_or_loss.enough
+
+
+@pytest.mark.parametrize(
+    ("effect", "changes"),
+    [("contact-gap", {"beads": 1, "gauges": "wall"}), ("sensor-offset", {"gauges": "wall,5"})],
+)
+def test_an_effect_sits_where_it_can(effect, changes):
+    """The only bead's contact, and a gauge in a bead though the first one is at the wall."""
+    found = sv.design(effects=effect, **CHAIN | changes)
+    assert found.advised.least > 0.0
+
+
+@pytest.mark.parametrize("beads", [1, 2, 11, 12])
+def test_a_place_is_in_the_middle(beads):
+    setup = set_up(card_of(**SET_UP | {"beads": beads, "gauges": "wall"}), np.array([0.5]))
+    assert _place(sv_effect("mass-defect"), setup) == beads // 2 + 1
+    assert _place(sv_effect("contact-gap"), setup) == max(1, beads // 2)
+    assert _place(sv_effect("sensor-gain"), setup) == 0
+    assert _place(sv_effect("kuwabara-kono"), setup) is None
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,7 @@
 Everything is simulated beforehand: each effect in turn is the truth, at a part of its typical strength, and
 every other one, or none, has to follow it with its own parameters and with what a laboratory does not know
 exactly (speeds, time zeros, gains, modulus). What it cannot follow, in standard errors, is how well the two
-are told apart: √χ² of `discover.next_experiment.separation`, for all sets of gauges and runs at once, since
+are told apart: √χ² of `discover.next_experiment.separations`, for all sets of gauges and runs at once, since
 χ² adds up over gauges and runs before the unknowns are taken out (Box & Hill, Technometrics 9, 57, 1967).
 """
 
@@ -261,11 +261,21 @@ class _Blocks:
 def _seen(forward, effect, setup, strength, zero):
     """Columns of every run with an effect at its strength."""
     free = tuple(coordinate(p, setup) for p in effect.parameters)
-    place = {"bead": forward.experiment.beads // 2 + 1, "contact": forward.experiment.beads // 2, "sensor": 0}
-    component = Component(effect, free, place=place.get(effect.places))
+    component = Component(effect, free, place=_place(effect, setup))
     values = [float(np.ravel(c.parameter.at(strength, setup))[0]) for c in free]
     u = np.array([[c.inverse(v) for c, v in zip(free, values, strict=True)]])
     return forward.columns(Hypothesis((component,)), u, zero)
+
+
+def _place(effect, setup):
+    """Where an effect sits that has a place: the first gauge, the middle bead, the contact behind which half
+    the beads are; None for one without.
+    """
+    possible = effect.candidates(setup)
+    if not possible:
+        return None
+    middle = len(possible) // 2
+    return possible[{"sensor": 0, "contact": max(0, middle - 1)}.get(effect.places, middle)]
 
 
 def _columns(with_effect, nominal):
