@@ -8,7 +8,7 @@ import msgspec
 from msgspec import Meta, Struct
 
 from sonicvacuum.card import Card, CaseBlock, ModelBlock, Name, merged, resolve, variant_names
-from sonicvacuum.files import InputError, check_values, convert, read_yaml
+from sonicvacuum.files import InputError, check_values, convert, explain, read_yaml
 from sonicvacuum.laboratory.ranges import LaboratoryError
 
 
@@ -78,7 +78,7 @@ def _check_folder(folder, key):
 
 
 def _check_model(config, case, variant, path):
-    wanted = model(config, case, variant)
+    wanted = model(config, case, variant, path)
     if wanted and wanted.record not in config.records:
         raise InputError(
             f"{path}: cases.{case}: variant {variant}: model.record: is {wanted.record!r}; "
@@ -86,10 +86,30 @@ def _check_model(config, case, variant, path):
         )
 
 
-def model(config: Config, case: str, variant: str) -> ModelBlock | None:
+def model(config: Config, case: str, variant: str, path="config.yaml") -> ModelBlock | None:
     """What a variant takes from the model of a record; None for most."""
     written = merged(config.cases[case], variant).get("model")
-    return convert(written, ModelBlock, "config.yaml", f"cases.{case}.model") if written else None
+    if not written:
+        return None
+    return convert(written, ModelBlock, path, f"{_written(config.cases[case], case, variant, 'model')}.model")
+
+
+def _written(block, case, variant, key):
+    """The block in which a key such as `chain.bead.mass_g` of a variant's case was written: the variant's
+    overrides, where these go as deep as the case does.
+    """
+    steps = re.split(r"[.\[]", key)
+
+    def depth(content):
+        for count, step in enumerate(steps):
+            if not isinstance(content, dict) or step not in content:
+                return count
+            content = content[step]
+        return len(steps)
+
+    own = depth((block.get("variants") or {}).get(variant))
+    place = f"cases.{case}"
+    return f"{place}.variants.{variant}" if 0 < own >= depth(block) else place
 
 
 def card(config: Config, case: str, variant: str, path="config.yaml") -> Card:
@@ -111,11 +131,22 @@ def card(config: Config, case: str, variant: str, path="config.yaml") -> Card:
     if variant not in variant_names(written):
         known = ", ".join(variant_names(written))
         raise InputError(f"{path}: cases.{case}: no variant {variant!r}; known: {known}")
-    block = convert(merged(written, variant), CaseBlock, path, f"cases.{case}")
+    block = _block(written, case, variant, path)
     try:
         return resolve(case, variant, block)
     except LaboratoryError as error:
-        raise InputError(f"{path}: cases.{case}.{error}") from None
+        raise InputError(f"{path}: {_written(written, case, variant, error.key)}.{error}") from None
+
+
+def _block(written, case, variant, path) -> CaseBlock:
+    """A case with the overrides of a variant; InputError where a key was written that is not sound."""
+    content = merged(written, variant)
+    try:
+        return msgspec.convert(content, CaseBlock)
+    except msgspec.ValidationError as error:
+        told = explain(error, content, "", "", CaseBlock).removeprefix(": ")
+        place = _written(written, case, variant, told.partition(":")[0])
+        raise InputError(f"{path}: {place}.{told}") from None
 
 
 def card_names(config: Config) -> list[str]:

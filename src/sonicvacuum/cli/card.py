@@ -58,7 +58,7 @@ def _text(config, path, name, model, own) -> bytes:
 
     case, _, variant = name.partition(".")
     resolved = configuration.card(config, case, variant, path)
-    wanted = configuration.model(config, case, variant)
+    wanted = configuration.model(config, case, variant, path)
     if (wanted is None) != (model is None):
         raise InputError(f"{path}: cases.{case}: variant {variant}: {_cure(wanted)}")
     if wanted:
