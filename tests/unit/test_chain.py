@@ -53,6 +53,10 @@ def test_reduced_values_are_symmetric_and_reject_what_is_not_physical():
         reduced_modulus(-1.0, 0.3, 1e9, 0.3)
     with pytest.raises(ValueError, match="Poisson"):
         reduced_modulus(1e9, 0.7, 1e9, 0.3)
+    with pytest.raises(ValueError, match="modulus is nan"):
+        reduced_modulus(math.nan, 0.3, 1e9, 0.3)
+    with pytest.raises(ValueError, match="Poisson's ratio is nan"):
+        reduced_modulus(1e9, math.nan, 1e9, 0.3)
     with pytest.raises(ValueError, match="two flats"):
         reduced_radius(math.inf, math.inf)
     with pytest.raises(ValueError, match="radii"):

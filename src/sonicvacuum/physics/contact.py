@@ -17,10 +17,11 @@ def reduced_modulus(modulus_a, poisson_a, modulus_b, poisson_b):
 
 
 def check_elastic(modulus, poisson):
-    """Raise ValueError for a modulus that is not positive or a Poisson's ratio outside (−1, 0.5]."""
-    if np.any(np.asarray(modulus) <= 0.0):
+    """ValueError for a modulus that is not positive, a Poisson's ratio outside (−1, 0.5], or for NaN."""
+    if not np.all(np.asarray(modulus) > 0.0):
         raise ValueError(f"modulus is {modulus} Pa; it must be positive")
-    if np.any(np.asarray(poisson) <= -1.0) or np.any(np.asarray(poisson) > 0.5):
+    poisson = np.asarray(poisson)
+    if not np.all((poisson > -1.0) & (poisson <= 0.5)):
         raise ValueError(f"Poisson's ratio is {poisson}; it must lie between −1 and 0.5")
 
 
