@@ -1,5 +1,6 @@
 """Compiled code is never stale, survives the process, and many processes may make it at once."""
 
+import errno
 import os
 import shutil
 import subprocess
@@ -135,6 +136,17 @@ def test_code_for_a_plain_processor_is_made_apart(crowd, copy, monkeypatch):
 def test_without_a_writable_folder_code_is_compiled_afresh(crowd, copy, tmp_path):
     (tmp_path / "file").write_text("no folder can be made here")
     assert finish(start(copy, tmp_path / "file" / "cache")) == (crowd[1][0][0], "2 True")
+
+
+@pytest.mark.parametrize("fault", [OSError(errno.ENOSPC, "No space left on device"), KeyboardInterrupt()])
+def test_nothing_is_left_of_a_file_that_could_not_be_written(monkeypatch, tmp_path, fault):
+    def full(*_):
+        raise fault
+
+    monkeypatch.setattr(os, "replace", full)
+    with pytest.raises(type(fault)):
+        compiled.write(tmp_path / "code.bin", b"code")
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_what_another_user_could_have_written_is_not_loaded(monkeypatch, tmp_path):

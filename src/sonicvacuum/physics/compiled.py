@@ -85,9 +85,15 @@ def _prune(folder):
 
 def write(path, content):
     """Write a file that is there whole or not at all."""
-    with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as file:
-        file.write(content)
-    os.replace(file.name, path)
+    descriptor, partial = tempfile.mkstemp(dir=path.parent)
+    try:
+        with open(descriptor, "wb") as file:
+            file.write(content)
+        os.replace(partial, path)
+    except BaseException:  # a full disk is not filled further by what nobody reads
+        with contextlib.suppress(OSError):
+            os.unlink(partial)
+        raise
 
 
 def own(path: Path) -> bytes:
