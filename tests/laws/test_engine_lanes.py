@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 from engine_cases import DURATION, coated
 
+from sonicvacuum.effects import CATALOGUE
+from sonicvacuum.effects.base import Setup
 from sonicvacuum.physics import lanes, run
 from sonicvacuum.physics.chain import Chain
 from sonicvacuum.physics.composition import Frame
@@ -32,6 +34,19 @@ def test_a_chain_does_not_depend_on_its_company(count):
     assert np.array_equal(h.force, ALL.force[..., :count])
     assert np.array_equal(h.step, ALL.step[:count])
     assert np.array_equal(h.striker_speed, ALL.striker_speed[:count])
+
+
+def test_beside_other_laws_a_chain_is_that_of_the_stepper_of_all():
+    """A damping of zero in one lane: bit for bit what the dissipative stepper makes of the chain alone."""
+    plain = coated(np.array([15e9, 15e9]))
+    effect = CATALOGUE.effect("hunt-crossley")
+    mixed = effect.apply(Setup(plain), damping_s_per_m=np.array([0.0, 0.05])).chain
+    beside = simulate(mixed, CONTACTS, DURATION, 1e-6).force[..., 0]
+    alone = simulate(plain.take([0]), CONTACTS, DURATION, 1e-6)
+    same = simulate(plain.take([0]), CONTACTS, DURATION, 1e-6, symplectic=False)
+    assert np.array_equal(beside, same.force[..., 0])
+    # What `simulate` says: the errors of two steppers.
+    assert 0.0 < np.abs(beside - alone.force[..., 0]).max() < 2e-6 * alone.force.max()
 
 
 @pytest.mark.parametrize("count", [1, 2])

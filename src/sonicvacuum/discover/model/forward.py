@@ -24,8 +24,8 @@ from sonicvacuum.effects import Setup
 from sonicvacuum.forward import Seen, see, virtual
 from sonicvacuum.physics.chain import Chain
 
-# Chains simulated at once, to bound the memory; however many processors there are, since the last digits of
-# a chain may depend on those beside it.
+# Chains simulated at once, to bound the memory; however many processors there are, since a chain depends on
+# those beside it where these have other laws (by 1e-6 of the peak, see `physics.run.simulate`).
 CHUNK = 256
 # Natural logarithm of a ratio at which a chain is none that a laboratory has: a speed, a modulus or a mass a
 # thousand times what was stated. A step that runs away to there would ask for steps without end.
