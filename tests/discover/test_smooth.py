@@ -222,6 +222,14 @@ def test_the_width_of_a_pulse_is_that_at_half_height():
     )
 
 
+@pytest.mark.parametrize("shown", [slice(None), slice(1, None), slice(None, -1), slice(1, -1)])
+def test_a_pulse_that_touches_the_edge_is_as_wide(shown):
+    """Five samples of half the peak or more, between two that are lower or beyond either end of the trace."""
+    trace = np.array([0.2, 0.6, 0.9, 1.0, 0.9, 0.6, 0.2])[shown]
+    assert discrepancy.width(trace) == 5
+    assert discrepancy.first_pulse(trace) == (int(trace.argmax()), 5)
+
+
 def test_records_of_one_laboratory_hand_on_what_was_hidden():
     """The helper itself: errors begin with the pulse and have the size asked for."""
     record, _ = made(noise=0.0)

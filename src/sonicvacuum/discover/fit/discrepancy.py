@@ -168,6 +168,6 @@ def width(trace: np.ndarray) -> int:
 def _width_at(trace, peak):
     low = np.flatnonzero(trace < 0.5 * trace[peak])
     before, after = low[low < peak], low[low > peak]
-    first = before[-1] if len(before) else 0
+    first = before[-1] if len(before) else -1  # the sample before the trace: as `last`, not one of the pulse
     last = after[0] if len(after) else len(trace)
     return max(3, int(last - first - 1))
