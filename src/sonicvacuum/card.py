@@ -100,7 +100,15 @@ class CardStriker(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
 
 
 class CardSensor(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A gauge as a card's file holds it: `gauge` is the gauge itself."""
+    """A gauge as a card's file holds it: `gauge` is the gauge itself.
+
+    Attributes:
+        id: its name.
+        kind: key of `gauges.KINDS`.
+        bead: its bead, from 1; None for a gauge in none.
+        droop_s: RC time of its discharge in s; None where there is none.
+        lowpass_s: time constant of its bandwidth in s; 0: unlimited.
+    """
 
     id: Name
     kind: str
@@ -110,12 +118,12 @@ class CardSensor(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     @property
     def droop_us(self) -> float | None:
-        """The same in us."""
+        """RC time of the discharge in us; None where there is none."""
         return None if self.droop_s is None else 1e6 * self.droop_s
 
     @property
     def lowpass_us(self) -> float:
-        """The same in us."""
+        """Time constant of the bandwidth in us; 0: unlimited."""
         return 1e6 * self.lowpass_s
 
     @property

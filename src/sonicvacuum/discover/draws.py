@@ -61,7 +61,7 @@ class Draws:
 
 
 def effective(weight: np.ndarray) -> float:
-    """(Σw)² / Σw², between 1 and the number of weights."""
+    """(Σw)² / Σw² of weights (n,), between 1 and n."""
     return float(weight.sum() ** 2 / np.square(weight).sum())
 
 

@@ -37,7 +37,7 @@ class Setup:
     catalogue: Catalogue = EMPTY
 
     def take(self, lanes: np.ndarray) -> "Setup":
-        """Some of the chains, with the sensors that read them."""
+        """Some of the chains, with the sensors that read them: `lanes` (n,) are their numbers, from 0."""
         sensors = tuple(sensor.take(lanes) for sensor in self.sensors)
         return replace(self, chain=self.chain.take(lanes), sensors=sensors)
 

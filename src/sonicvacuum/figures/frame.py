@@ -52,7 +52,7 @@ class Scale:
         return cls(low - more, high + more)
 
     def at(self, values) -> np.ndarray:
-        """Where values lie, 0 at the low end and 1 at the high one."""
+        """Where values (any shape) lie, 0 at the low end and 1 at the high one; of the same shape."""
         low, high = (math.log(self.low), math.log(self.high)) if self.log else (self.low, self.high)
         with np.errstate(divide="ignore", invalid="ignore"):
             values = np.log(values) if self.log else np.asarray(values, dtype=float)

@@ -13,7 +13,7 @@ from sonicvacuum.gauges.velocity import bodies
 
 
 def feel(gauge, motion, beads: int) -> np.ndarray:
-    """Acceleration of the bead in m/s²."""
+    """(S, ...) acceleration of the bead in m/s²."""
     return np.asarray(motion.acceleration_of(gauge.bead))
 
 

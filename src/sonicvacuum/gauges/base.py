@@ -155,7 +155,7 @@ class Gauge:
         return self.gain_rel_sigma if self.calibrated else UNKNOWN_GAIN
 
     def take(self, lanes: np.ndarray) -> "Gauge":
-        """The gauge as some of the chains have it."""
+        """The gauge as some of the chains have it: `lanes` (n,) are their numbers, from 0."""
         names = ("droop_s", "lowpass_s", "offset_fraction", "gain")
         numbers = {n: np.ravel(getattr(self, n)) for n in names}
         own = {n: v[lanes] if len(v) > 1 else float(v[0]) for n, v in numbers.items()}
@@ -247,15 +247,15 @@ class Recorded:
     acceleration: Mapping[int, np.ndarray] = field(default_factory=dict)
 
     def of(self, contact: int) -> np.ndarray:
-        """Force of a contact; ValueError where it was not recorded."""
+        """(S, ...) force of a contact in N; ValueError where it was not recorded."""
         return _found(self.force, contact, "force of contact")
 
     def velocity_of(self, body: int) -> np.ndarray:
-        """Velocity of a body; ValueError where it was not recorded."""
+        """(S, ...) velocity of a body in m/s; ValueError where it was not recorded."""
         return _found(self.velocity, body, "velocity of body")
 
     def acceleration_of(self, body: int) -> np.ndarray:
-        """Acceleration of a body; ValueError where it was not recorded."""
+        """(S, ...) acceleration of a body in m/s²; ValueError where it was not recorded."""
         return _found(self.acceleration, body, "acceleration of body")
 
 

@@ -16,7 +16,7 @@ def contacts(gauge, beads: int) -> tuple[int, ...]:
 
 
 def feel(gauge, motion, beads: int) -> np.ndarray:
-    """(½ + ε) F_before + (½ − ε) F_after in N."""
+    """(S, ...) N: (½ + ε) F_before + (½ − ε) F_after."""
     before, behind = (np.asarray(motion.of(c)) for c in contacts(gauge, beads))
     felt = (0.5 + gauge.offset_fraction) * before
     felt += (0.5 - gauge.offset_fraction) * behind

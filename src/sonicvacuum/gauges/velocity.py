@@ -12,7 +12,7 @@ def bodies(gauge, beads: int) -> tuple[int, ...]:
 
 
 def feel(gauge, motion, beads: int) -> np.ndarray:
-    """Velocity of the bead in m/s."""
+    """(S, ...) velocity of the bead in m/s."""
     return np.asarray(motion.velocity_of(gauge.bead))
 
 

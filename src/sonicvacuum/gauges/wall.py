@@ -11,7 +11,7 @@ def contacts(gauge, beads: int) -> tuple[int, ...]:
 
 
 def feel(gauge, motion, beads: int) -> np.ndarray:
-    """Force of the last contact in N."""
+    """(S, ...) force of the last contact in N."""
     return np.asarray(motion.of(beads))
 
 

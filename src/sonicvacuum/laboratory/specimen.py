@@ -12,7 +12,8 @@ from msgspec.structs import replace
 
 from sonicvacuum.laboratory.bodies import Bodies
 
-# Standard acceleration of free fall of all cases and records, m/s².
+# Acceleration of free fall of all cases and records, m/s²: the usual rounded value. The standard one is
+# 9.80665; places on Earth differ from it by up to 0.3 %.
 GRAVITY = 9.81
 
 Positive = Annotated[float, Meta(gt=0.0)]

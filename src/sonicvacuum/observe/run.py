@@ -110,7 +110,7 @@ class Together(Protocol):
         """Main pulse of each run at a gauge."""
 
     def crossings(self, sensor: str, level: float, rising: bool) -> np.ndarray:
-        """Time in s at which the main pulse of each run passes `level` × its peak."""
+        """(runs,) time in s at which the main pulse of each run passes `level` × its peak."""
 
 
 @dataclass(frozen=True, eq=False)

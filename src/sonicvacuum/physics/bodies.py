@@ -47,7 +47,7 @@ class Body:
 
     @property
     def curvature(self) -> np.ndarray:
-        """1/m, of the faces: 0 for flat ones."""
+        """Curvature of the faces in 1/m, () or (lanes,) as the radius is: 0 for flat ones."""
         return np.zeros_like(self.radius, dtype=float) if self.flat else 1.0 / np.asarray(self.radius, float)
 
     def mapped(self, change) -> "Body":
