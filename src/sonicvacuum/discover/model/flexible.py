@@ -1,8 +1,9 @@
 """A contact law and a drag of no particular form: small additions spanned by a few smooth functions.
 
-F_Hertz (1 + Σ a_ij B_i(δ) C_j(v)) with B = 1, √δ, δ and C = 1, v, |v|, two dampings that do not vanish with
-δ, and three drags of a bead. They stand for what no effect of the catalogue says, and bound what any such
-law can close.
+F_Hertz (1 + Σ a_ij B_i(δ) C_j(v)) with B = 1, √δ, δ and C = 1, v, |v|, four more of B = 1, √δ and C = |v|^½,
+|v|^½ sgn v, and two dampings that do not vanish with the Hertz force: the fifteen of `free_form.SHAPES`; and
+three drags of a bead. They stand for what no effect of the catalogue says, and bound what any such law can
+close.
 """
 
 import numpy as np
@@ -15,13 +16,16 @@ from sonicvacuum.physics.lanes import absolute
 from sonicvacuum.physics.laws import Term
 
 CONTACT, DRAG = len(COEFFICIENTS), 3
+# The third drag is the same at all velocities above this one, relative to the scale, and fades below it: a
+# friction that turns over at once at rest would be integrated less accurately than noise asks for.
+SLOW = 0.1
 
 
 def flexible_drag(velocity, pace, a, b, c):
     """Additional acceleration in m/s²; pace scales velocities to order 1."""
     w = velocity * pace
     s = absolute(w)
-    return -w * (a + b * s + c / (s + 0.1))
+    return -w * (a + b * s + c / (s + SLOW))
 
 
 CONTACT_TERM = Term(

@@ -72,17 +72,20 @@ class Coordinate:
         return 0.01
 
     def starts(self) -> np.ndarray:
-        """Values of u at which a search may start, over the whole range."""
-        if self.parameter.known:
+        """Values of u at which a search may start, over the whole range but its ends."""
+        if self.parameter.known:  # evenly over what the record allows
             return np.linspace(self.low, self.high, 5)[1:-1]
         if self.endless:
+            # Evenly in the logarithm, from the catalogue's bound on: what is weaker is reached from there.
             weakest = self.low + (math.log(TOWARDS_OFF) if self.parameter.switches else 0.0)
             return np.linspace(weakest, self.high, 14)[1:-1]
         if self.kind == "ratio":
+            # Logarithms of ratios, from 3 % to a factor of 16 to either side: the smaller, the denser.
             sizes = np.array([0.03, 0.1, 0.25, 0.45, 0.7, 1.0, 1.35, 1.75, 2.2, 2.8])
             return np.array([s for s in np.concatenate([-sizes, sizes]) if self.low < s < self.high])
-        if not self.two_sided:
+        if not self.two_sided:  # evenly
             return np.linspace(self.low, self.high, 9)[1:-1]
+        # Shares of the way from off to either bound, denser towards off.
         return np.array([s * b for b in (self.low, self.high) for s in (0.05, 0.15, 0.3, 0.5, 0.75)])
 
 
