@@ -141,6 +141,14 @@ def read_text(path: str | os.PathLike) -> str:
         raise InputError(f"{path}: not a text file (byte {error.start} is not UTF-8)") from None
 
 
+def read_json(path: str | os.PathLike, kind: type) -> Any:
+    """What discover wrote into a file, as an instance of a msgspec type; InputError where it is none."""
+    try:
+        return msgspec.json.decode(read_text(path), type=kind)
+    except (msgspec.DecodeError, msgspec.ValidationError) as error:
+        raise InputError(f"{path}: not what sonicvacuum discover writes ({error}); run it again") from None
+
+
 def read_yaml(path: str | os.PathLike) -> dict[str, Any]:
     """Mapping of a YAML file; InputError names the line at fault.
 

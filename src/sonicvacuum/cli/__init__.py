@@ -14,7 +14,7 @@ from pathlib import Path
 import click
 
 from sonicvacuum.blas import THREADS
-from sonicvacuum.cli.helped import BEGINNING, COMPLETION, EXIT_CODES, locked, strayed
+from sonicvacuum.cli.helped import BEGINNING, COMPLETION, EXIT_CODES, Checked, locked, strayed
 from sonicvacuum.cli.stage_lines import compiling_told
 from sonicvacuum.files import MACHINE, InputError, check_file, in_one_line
 
@@ -189,15 +189,6 @@ def progress():
             bar.close()
 
 
-class _File(click.Path):
-    """A path to an ordinary file: of a pipe or a device no reader would see the end."""
-
-    def convert(self, value, param, ctx):
-        path = super().convert(value, param, ctx)
-        check_file(path)
-        return path
-
-
 def existing(**options):
-    """Type of a path argument that must be a readable file."""
-    return _File(exists=True, dir_okay=False, readable=True, **options)
+    """Type of a path argument that must be a readable file: of a pipe no reader would see the end."""
+    return Checked(check_file, exists=True, dir_okay=False, readable=True, **options)

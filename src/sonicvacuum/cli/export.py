@@ -79,7 +79,9 @@ def _asked(model, record, law, speeds, ball, parameters, known):
     from dataclasses import replace
 
     from sonicvacuum.discover.compare import read_model
+    from sonicvacuum.discover.verdict import Verdict
     from sonicvacuum.export import session
+    from sonicvacuum.files import read_json
     from sonicvacuum.records import read
 
     if (model is None) == (law is None):
@@ -90,7 +92,7 @@ def _asked(model, record, law, speeds, ball, parameters, known):
     if record:
         found = read_model(model, known) if model else None
         beside = _beside(model)
-        verdict = session.read_verdict(beside) if beside and beside.exists() else None
+        verdict = read_json(beside, Verdict) if beside and beside.exists() else None
         asked = session.of_record(read(record), found, effects, verdict)
         return replace(asked, speeds=speeds) if speeds else asked
     if model:

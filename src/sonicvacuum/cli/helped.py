@@ -1,7 +1,7 @@
 """What verbs share: examples as they are typed, exit codes, completion, types of paths; the lock in use."""
 
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import click
@@ -26,18 +26,22 @@ Completion of verbs and options:
   eval "$(_SONICVACUUM_COMPLETE=bash_source sonicvacuum)"      # or zsh_source, fish_source"""
 
 
-class _Written(click.Path):
-    """A path for a file; what stands there and is none is told before anything is computed."""
+class Checked(click.Path):
+    """A path that a function looks at as well, before anything is computed."""
+
+    def __init__(self, check: Callable[[str], None], **options):
+        super().__init__(**options)
+        self.check = check
 
     def convert(self, value, param, ctx):
         path = super().convert(value, param, ctx)
-        check_written(path)
+        self.check(path)
         return path
 
 
 # Paths: a file to write, a folder to write, a folder to read, a file to write or the folder for
 # several; a file to read is `sonicvacuum.cli.existing`.
-WRITTEN = _Written(dir_okay=False)
+WRITTEN = Checked(check_written, dir_okay=False)
 FOLDER = click.Path(file_okay=False)
 PRESENT = click.Path(exists=True, file_okay=False)
 PLACE = click.Path()

@@ -7,10 +7,9 @@ folder of results says by itself what it came from. No time and no path enter it
 from importlib.metadata import version
 from pathlib import Path
 
-import msgspec
 from msgspec import Struct
 
-from sonicvacuum.files import InputError, read_text
+from sonicvacuum.files import read_json
 from sonicvacuum.records import Record
 from sonicvacuum.records.reader import parse
 from sonicvacuum.records.writer import dump
@@ -62,10 +61,7 @@ def read(folder: Path) -> tuple[Inputs, list[Record]] | None:
     path = Path(folder) / FILE
     if not path.exists():
         return None
-    try:
-        found = msgspec.json.decode(read_text(path), type=Inputs)
-    except (msgspec.DecodeError, msgspec.ValidationError) as error:
-        raise InputError(f"{path}: not what sonicvacuum discover writes ({error}); run it again") from None
+    found = read_json(path, Inputs)
     return found, [
         Record(parse(_numbered(g.record), path), name=g.name, digest=g.sha256) for g in found.records
     ]

@@ -12,6 +12,7 @@ import numpy as np
 
 from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.records.record import label_of
 
 FILE = "quantities.csv"
 HEADER = ("run", "quantity", "bound", "unit", "measured", "sigma", "nominal", "extended", "held_out")
@@ -37,18 +38,9 @@ def rows(null: tuple[Forward, Fit], extended: tuple[Forward, Fit]) -> list[tuple
             # Without it the prediction moves by share/(1 − share) of what the fit leaves.
             moved = (one.value - fitted) * share / (1.0 - share) if share < ALONE else math.nan
             numbers = (one.value, one.sigma, before[k][j], fitted, fitted - moved)
-            found.append((run.id, _label(one), one.bound or "", unit, *(n * scale for n in numbers)))
+            label = label_of(one.quantity.replace("_", " "), one.options)
+            found.append((run.id, label, one.bound or "", unit, *(n * scale for n in numbers)))
     return found
-
-
-def _label(one):
-    """`speed g9-g5`, with the force or the level that it is read at."""
-    o = one.options
-    where = "-".join(str(o[k]) for k in ("from", "to") if k in o)
-    force = f"{o['amplitude']:g} N" if "amplitude" in o else ""
-    level = next((f"at {o[k]:g}" for k in ("level", "threshold") if k in o), "")
-    words = (one.quantity.replace("_", " "), where, str(o.get("sensor", "")), force, level)
-    return " ".join(word for word in words if word)
 
 
 def _unit(experiment, one):

@@ -5,9 +5,7 @@ import math
 from collections.abc import Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from pathlib import Path
 
-import msgspec
 import numpy as np
 
 from sonicvacuum.discover.verdict import Model, Verdict
@@ -18,7 +16,7 @@ from sonicvacuum.export.bounce import Subject, ball_of, subject
 from sonicvacuum.export.nearest import match
 from sonicvacuum.export.result import Export, Reference, for_simulator
 from sonicvacuum.export.table import coefficients, limits, measured
-from sonicvacuum.files import InputError, likely, read_text
+from sonicvacuum.files import InputError, likely
 from sonicvacuum.laboratory import ranges
 from sonicvacuum.laboratory.blocks import material_of
 from sonicvacuum.laboratory.bodies import Bodies
@@ -151,14 +149,6 @@ def _check_speeds(speeds):
     with _options():
         for speed in speeds:
             ranges.SPEED.check("speeds", speed)
-
-
-def read_verdict(path: Path) -> Verdict:
-    """The verdict.json of a path; InputError where it is none."""
-    try:
-        return msgspec.json.decode(read_text(path), type=Verdict)
-    except (msgspec.DecodeError, msgspec.ValidationError) as error:
-        raise InputError(f"{path}: not what sonicvacuum discover writes ({error}); run it again") from None
 
 
 def _conditions(asked: Asked, one: Subject, catalogue) -> Conditions:

@@ -64,11 +64,15 @@ class Observable:
     @property
     def label(self) -> str:
         """`speed g9-g5`, `pulse_count wall at 0.08`, for tables and messages."""
-        o = self.options
-        where = "-".join(str(o[k]) for k in ("from", "to") if k in o)
-        force = f"{o['amplitude']:g} N" if "amplitude" in o else ""
-        level = next((f"at {o[k]:g}" for k in ("level", "threshold") if k in o), "")
-        return " ".join(p for p in (self.quantity, where, str(o.get("sensor", "")), force, level) if p)
+        return label_of(self.quantity, self.options)
+
+
+def label_of(name: str, options: Mapping[str, object]) -> str:
+    """The name of a quantity, with the gauges and the force or the level that it is read at."""
+    where = "-".join(str(options[k]) for k in ("from", "to") if k in options)
+    force = f"{options['amplitude']:g} N" if "amplitude" in options else ""
+    level = next((f"at {options[k]:g}" for k in ("level", "threshold") if k in options), "")
+    return " ".join(p for p in (name, where, str(options.get("sensor", "")), force, level) if p)
 
 
 @dataclass(frozen=True, eq=False)

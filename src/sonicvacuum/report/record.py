@@ -5,13 +5,11 @@ Made from the folder that `sonicvacuum discover` wrote; the same section stands 
 
 from pathlib import Path
 
-import msgspec
-
 from sonicvacuum.discover import draws, given, quantities
 from sonicvacuum.discover.compare import check_source
 from sonicvacuum.discover.verdict import Model, Verdict
 from sonicvacuum.effects import CATALOGUE, Catalogue
-from sonicvacuum.files import InputError, read_text, reading, replacing
+from sonicvacuum.files import read_json, reading, replacing
 from sonicvacuum.report import bench, inline, misfit, origin, plots, rows, words
 from sonicvacuum.report.sketch import sketch
 from sonicvacuum.tables import read_csv
@@ -72,7 +70,7 @@ def section(folder, catalogue: Catalogue = CATALOGUE) -> dict:
             needed.
     """
     folder = Path(folder)
-    verdict, model = _json(folder / "verdict.json", Verdict), _json(folder / "model.json", Model)
+    verdict, model = read_json(folder / "verdict.json", Verdict), read_json(folder / "model.json", Model)
     for name in verdict.parameters:
         check_source(folder / "verdict.json", name, verdict.sources, catalogue)
     tables = {name: _rows(folder / f"{name}.csv") for name in ("where", "candidates", "gap", "limits")}
@@ -133,13 +131,6 @@ def _told(folder, verdict, model, tables, catalogue, gauges):
         "warnings": verdict.warnings or [],
         "pictures": _pictures(folder, name),
     }
-
-
-def _json(path, kind):
-    try:
-        return msgspec.json.decode(read_text(path), type=kind)
-    except (msgspec.DecodeError, msgspec.ValidationError) as error:
-        raise InputError(f"{path}: not what sonicvacuum discover writes ({error}); run it again") from None
 
 
 def _quantities(folder):

@@ -202,6 +202,12 @@ def simulated(forward: Forward, hypothesis: Hypothesis, u, nu, places=None) -> n
     return sum(np.square(forward.data(run) - value).sum(axis=1) for run, value in enumerate(found))
 
 
+def predicted(forward: Forward, one: Fit) -> np.ndarray:
+    """(data,) whitened predictions of a fit, with what nuisances take up."""
+    found = forward.sampled(one.hypothesis, one.u[None], one.nu[None])
+    return np.concatenate([value[0] for value in found])
+
+
 def _promising(forward, hypothesis, begun, keep):
     """Starts of the lowest χ²."""
     if len(begun.u) <= keep:

@@ -17,7 +17,7 @@ from sonicvacuum.discover import policy
 from sonicvacuum.discover.fit import evidence
 from sonicvacuum.discover.fit.calibration import Calibration, of_package
 from sonicvacuum.discover.fit.evidence import Candidate, Combination
-from sonicvacuum.discover.fit.refit import Fit
+from sonicvacuum.discover.fit.refit import Fit, predicted
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.effects import IDS
 
@@ -53,20 +53,14 @@ def aliases(forward: Forward, null: Fit, found: list[Candidate]) -> list[str]:
     near = [c for c in others if abs(c.gain - best.gain) < policy.ALIAS_GAIN]
     if not near or best.gain < 1.0:
         return [best.effect]
-    base = _predicted(forward, null)
-    own = _predicted(forward, best.fit) - base
+    base = predicted(forward, null)
+    own = predicted(forward, best.fit) - base
     alike = [best.effect]
     for c in near:
-        change = _predicted(forward, c.fit) - base
+        change = predicted(forward, c.fit) - base
         if change @ own > policy.ALIAS_COSINE * np.linalg.norm(change) * np.linalg.norm(own):
             alike.append(c.effect)
     return alike
-
-
-def _predicted(forward, fit):
-    """Whitened predictions of all data, with what nuisances take up."""
-    found = forward.sampled(fit.hypothesis, fit.u[None], fit.nu[None])
-    return np.concatenate([value[0] for value in found])
 
 
 def log_weights(

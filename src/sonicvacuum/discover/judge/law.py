@@ -6,7 +6,7 @@ import numpy as np
 
 from sonicvacuum.discover.fit.evidence import Candidate
 from sonicvacuum.discover.fit.reach import TOUCHING, approaches
-from sonicvacuum.discover.fit.refit import Fit
+from sonicvacuum.discover.fit.refit import Fit, predicted
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import is_law
 from sonicvacuum.discover.search.free_law import FreeLaw
@@ -105,20 +105,15 @@ def nearest(law: FreeLaw, null: Fit, plain: Forward, found: list[Candidate]) -> 
     The distance is that of the changes which both make in all data, over that of the free-form law: 0 is the
     same law, 1 no better than the nominal one.
     """
-    base = _predicted(plain, null)
-    own = _predicted(law.forward, law.fit) - base
+    base = predicted(plain, null)
+    own = predicted(law.forward, law.fit) - base
     setup = setup_of(plain)
     distances = {}
     for c in found:
         if is_law(plain.experiment.catalogue.effect(c.effect), setup):
-            change = _predicted(plain, c.fit) - base
+            change = predicted(plain, c.fit) - base
             distances[c.effect] = float(np.linalg.norm(change - own) / np.linalg.norm(own))
     return sorted(distances.items(), key=lambda d: d[1])
-
-
-def _predicted(forward, one):
-    value = forward.sampled(one.hypothesis, one.u[None], one.nu[None])
-    return np.concatenate([v[0] for v in value])
 
 
 def formula(seen: Surface) -> str:
