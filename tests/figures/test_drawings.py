@@ -14,6 +14,7 @@ from matplotlib.transforms import Bbox
 from sonicvacuum.figures import style
 from sonicvacuum_paper import figures
 from sonicvacuum_paper.figures import traces
+from sonicvacuum_paper.figures.looks import look
 from sonicvacuum_paper.printed import PRINTED
 from sonicvacuum_paper.report import guide
 
@@ -166,21 +167,21 @@ def simulated_vision(color, kind):
 
 
 def test_moduli_are_told_apart_by_dashes_and_marks_and_by_colour_in_colour_blindness():
-    looks = [style.look(modulus) for modulus in ("matched", "membrane", "handbook", "layer")]
+    looks = [look(modulus) for modulus in ("matched", "membrane", "handbook", "layer")]
     for one, other in itertools.combinations(looks, 2):
         assert one.dashes != other.dashes
         assert one.marker != other.marker
         for kind in ("deuteranopia", "protanopia"):
             apart = np.linalg.norm(simulated_vision(one.color, kind) - simulated_vision(other.color, kind))
             assert apart > 0.2, (one.name, other.name, kind)  # of sqrt(3); 0.1 is seen side by side
-    for each in (*looks, style.look("nominal")):
+    for each in (*looks, look("nominal")):
         # Grey of at most 0.6 stands out from white paper by a contrast of about 3, the usual least for lines.
         assert simulated_vision(each.color, "grey")[0] <= 0.6, each.name
 
 
 def test_a_modulus_that_the_paper_does_not_mention_has_a_look_of_its_own():
-    known = {style.look(modulus).color for modulus in ("matched", "membrane", "handbook", "nominal")}
-    assert style.look("soft").color not in known
+    known = {look(modulus).color for modulus in ("matched", "membrane", "handbook", "nominal")}
+    assert look("soft").color not in known
 
 
 def test_labels_count_beads_as_the_paper_does():

@@ -22,7 +22,7 @@ from sonicvacuum.observe.pulse import main_pulse
 from sonicvacuum.physics import theory
 from sonicvacuum.simulation import Simulation
 from sonicvacuum_paper import digitised
-from sonicvacuum_paper.figures import traces
+from sonicvacuum_paper.figures import looks, traces
 from sonicvacuum_paper.one_run import OneRun
 from sonicvacuum_paper.printed import PRINTED
 
@@ -181,7 +181,7 @@ def _curves(axes, table):
     drawn = table[table.series.isin(["eq6", "eq7"])]
     for (series, model), curve in drawn.groupby(["series", "model"], sort=False):
         line = {"lw": 1.2, "ls": "-"} if series == "eq7" else {"lw": 0.8, "ls": (0, (4, 2))}
-        color = style.look(model).color
+        color = looks.look(model).color
         axes.plot(curve.force_N, curve.speed_m_s, color=color, **line, zorder=2, gid=f"{series}-{model}")
         if series == "eq7":
             end = curve.iloc[-1]
@@ -200,7 +200,7 @@ def _marks(axes, table):
     simulated = table[table.series == "simulated"]
     theory = set(table.model[table.series.isin(["eq6", "eq7"])])
     for (model, orientation), sweep in simulated.groupby(["model", "orientation"], sort=False):
-        look = style.look(model)
+        look = looks.look(model)
         axes.plot(
             sweep.force_N,
             sweep.speed_m_s,
@@ -250,7 +250,7 @@ def _legend(axes, table):
     handles = []
     simulated = table[table.series == "simulated"]
     for (model, orientation), _ in simulated.groupby(["model", "orientation"], sort=False):
-        look = style.look(model)
+        look = looks.look(model)
         label = look.name if orientation == "vertical" else f"{look.name}, no weight"
         face = look.color if orientation == "vertical" else "white"
         mark = {"ls": "none", "marker": look.marker, "ms": 3.4, "mew": 0.8, "color": look.color}

@@ -9,7 +9,7 @@ from matplotlib.lines import Line2D
 from sonicvacuum.figures import style
 from sonicvacuum.observe.pulse import PROMINENCE
 from sonicvacuum.simulation import Simulation
-from sonicvacuum_paper.figures import traces
+from sonicvacuum_paper.figures import looks, traces
 
 COLUMNS = traces.COLUMNS
 UNTIL_US = 600.0
@@ -67,7 +67,7 @@ def _panel(axes, table):
     models = list(dict.fromkeys(table.model))
     drawn = table[table.series.isin(["simulated", "reflected"])]
     for (model, series), part in drawn.groupby(["model", "series"], sort=False):
-        look = style.look(model)
+        look = looks.look(model)
         axes.plot(
             part.time_us,
             part.force_N,
@@ -81,5 +81,5 @@ def _handle(table, model):
     """Line of a model in the legend, with how many waves it makes."""
     peaks = table.force_N[(table.model == model) & (table.series == "peak")]
     waves = int((peaks >= COUNTED * peaks.max()).sum())
-    name = style.look(model).name
-    return Line2D([], [], **style.look(model).line, label=f"{name}: {waves} wave{'s' if waves > 1 else ''}")
+    name = looks.look(model).name
+    return Line2D([], [], **looks.look(model).line, label=f"{name}: {waves} wave{'s' if waves > 1 else ''}")

@@ -23,6 +23,7 @@ from sonicvacuum.observe.pulse import pulses
 from sonicvacuum.observe.shape import onset
 from sonicvacuum.simulation import Simulation
 from sonicvacuum_paper import digitised
+from sonicvacuum_paper.figures import looks
 from sonicvacuum_paper.one_run import OneRun
 from sonicvacuum_paper.printed import PRINTED
 
@@ -177,7 +178,7 @@ def legend(axes: Axes, table: pandas.DataFrame) -> None:
     """One line for each model, with its simulated speed, and one for the printed speed, above the panel."""
     handles = []
     for model, traces in table[table.series == "peak"].groupby("model", sort=False):
-        look, speed = style.look(model), traces.speed_m_s.dropna()
+        look, speed = looks.look(model), traces.speed_m_s.dropna()
         text = f": {speed.iloc[0]:.0f} m/s" if len(speed) else ""
         handles.append(Line2D([], [], **look.line, label=look.name + text))
     for mark in table[table.series == "paper-arrival"].itertuples():
@@ -225,7 +226,7 @@ def _lines(axes, table, bases):
     drawn = table[table.series.isin(["simulated", "reflected"])]
     models = list(dict.fromkeys(drawn.model))
     for (sensor, series, model), part in drawn.groupby(["sensor", "series", "model"], sort=False):
-        look = style.look(model)
+        look = looks.look(model)
         axes.plot(
             part.time_us,
             part.force_N + bases[sensor],
@@ -295,7 +296,7 @@ def number(axes: Axes, table: pandas.DataFrame, bases: dict[str, float]) -> None
                 textcoords="offset points",
                 ha="center",
                 va="bottom",
-                color=style.look(model).color,
+                color=looks.look(model).color,
                 fontweight="bold",
                 fontsize=7,
             )

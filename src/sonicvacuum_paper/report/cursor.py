@@ -6,10 +6,9 @@ themselves stay in the SVG, see `sonicvacuum.report.interactive`.
 
 from matplotlib.axes import Axes
 
-from sonicvacuum.figures import style
 from sonicvacuum.report.interactive import Line, Panel, scales
 from sonicvacuum_paper import figures
-from sonicvacuum_paper.figures import traces
+from sonicvacuum_paper.figures import looks, traces
 
 # Units of an SVG to the inch.
 _DOTS = 72.0
@@ -56,7 +55,7 @@ def _lines(name, axes, bases):
             yield Line(f"{name}-{gid}", _speed_line(series, rest))
             continue
         sensor, _, model = rest.partition("-")
-        told = style.look(model.removesuffix("-a").removesuffix("-b")).name
+        told = looks.look(model.removesuffix("-a").removesuffix("-b")).name
         told = told if name == "fig6" else f"{traces.label_of(sensor)}, {told}"
         told += ", reflected" if series == "reflected" else ""
         yield Line(f"{name}-{gid}", told, round(float(bases.get(sensor, 0.0)), 6))
@@ -65,6 +64,6 @@ def _lines(name, axes, bases):
 def _speed_line(series, rest):
     """What a line of Fig. 4 is called: an equation, or a model and how its chain hangs."""
     if series != "simulated":
-        return f"Eq. ({series[-1]}), {style.look(rest).name}"
+        return f"Eq. ({series[-1]}), {looks.look(rest).name}"
     model, _, orientation = rest.rpartition("-")
-    return style.look(model).name + (", no weight" if orientation == "horizontal" else "")
+    return looks.look(model).name + (", no weight" if orientation == "horizontal" else "")
