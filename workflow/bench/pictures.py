@@ -25,17 +25,6 @@ _LOOKS = {
 }
 _GOAL = 1e-6
 
-ACCURACY_CAPTION = style.paragraph("""
-Time of one computation on one core against the largest relative error of the peak force: (a) one chain of
-21 beads, (b) a thousand chains. Marks: steps halved from one to the next (engine), tolerances a factor of
-ten apart (others). Grey: error of 1e-6. The default setting of the engine is the ringed mark.
-""")
-COST_CAPTION = style.paragraph("""
-Time of one computation on one core: (a) one chain, 2 ms, against its length; codes that step all beads cost
-in proportion to it, the engine follows the wave; (b) chains of 21 beads, 0.6 ms, against their number; thin
-line: in proportion.
-""")
-
 
 def draw_accuracy(table: pandas.DataFrame) -> Figure:
     """Time against error for P1 and P3, from bench_accuracy.csv."""

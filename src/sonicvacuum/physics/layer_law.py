@@ -63,12 +63,6 @@ def coefficients(poisson: float, core, core_poisson: float) -> tuple[np.ndarray,
     return core, a[where]
 
 
-def faced(deep, a, facing):
-    """The same with a body of finite stiffness in series, `facing` (…) being E1'/E' of that body."""
-    own = 1.0 / (1.0 + np.asarray(facing, dtype=float))
-    return own * deep + (1.0 - own), own[..., None] * a
-
-
 # The same to the last bit whoever needs it first: what is kept is read by all.
 @one_thread
 def fitted(layer: Layer, refine: float = COARSE) -> np.ndarray:
