@@ -32,15 +32,14 @@ def test_the_catalogue_stands_where_it_was_written_for():
     assert all(sized(e, ratios_of(nominal().chain)) is e for e in CATALOGUE)
 
 
-@pytest.mark.parametrize("size", [1e-3, 300.0])
+@pytest.mark.parametrize("size", [1e-3, 1e3])
 @pytest.mark.parametrize("name", POWERS)
 def test_ranges_go_with_the_impact(name, size):
     id, parameter = name
     # Relative to a chain that is far off as well: the catalogue's own middle is no chain's exactly.
     one, other = (sized(effect(id), ratios_of(chain(s))).parameter(parameter) for s in (size, 3.0 * size))
     power = POWERS[name]
-    moved = size ** abs(power) >= 1e3 or size ** -abs(power) >= 1e3
-    for key in ("low", "high", "scale") if moved else ():
+    for key in ("low", "high", "scale"):
         assert getattr(other, key) / getattr(one, key) == pytest.approx(3.0**power, rel=1e-6)
     if not power:
         assert one == other == effect(id).parameter(parameter)
