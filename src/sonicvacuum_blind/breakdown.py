@@ -18,6 +18,8 @@ from sonicvacuum_blind.stated import Parameter
 from sonicvacuum_blind.study import STRENGTHS
 
 KINDS = ("single", "pair", "set", "null", "foreign")
+# Kinds of which one name is right: an effect, none or unknown.
+ONE_NAME = ("single", "null", "foreign")
 LEVELS = (0.5, 0.8, 0.9, 0.95)
 # More than one effect, or an effect and a rest that nothing explains.
 SEVERAL = "several"
@@ -131,7 +133,7 @@ def confusion(rows: Iterable[Row]) -> list[Confusion]:
     main list.
     """
     hidden = [*(e.id for e in catalogue.ENTRIES), NONE, UNKNOWN]
-    chosen = [r for r in rows if r.kind not in ("pair", "set", "beside") and not r.added]
+    chosen = [r for r in rows if r.kind in ONE_NAME and not r.added]
     counts = Counter((label_of_truth(r), label_of_verdict(r)) for r in chosen)
     total = Counter(label_of_truth(r) for r in chosen)
     return [

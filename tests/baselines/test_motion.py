@@ -1,6 +1,7 @@
 """The full motion and the terms made of it, against the record that was hidden and against Newton's law."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -33,6 +34,15 @@ def test_true_plan_gives_the_record_up_to_its_noise(hidden):
         rest = run.signals.readings[gauge.id] - (1.0 + gauge.gain_rel_sigma * error) * clean
         # 480 samples of unit variance: standard error of their mean square 0.065; five of them.
         assert np.mean((rest / gauge.sigma) ** 2) == pytest.approx(1.0, abs=0.33)
+
+
+def test_an_effect_beside_one_from_outside_is_in_the_motion_with_it(hidden):
+    record, truth = hidden
+    outside = {"id": "dimer", "parameters": {"contrast": 0.05}}
+    both = truth | {"kind": "beside", "hidden": [*truth["hidden"], outside]}
+    alone, beside = (motions.true_plan(record, record.runs[0], one) for one in (truth, both))
+    assert dict(beside.mass_ratios)[2] == pytest.approx(1.05)
+    assert replace(beside, mass_ratios=alone.mass_ratios) == alone
 
 
 def test_terms_with_their_true_coefficients_are_the_acceleration(hidden):

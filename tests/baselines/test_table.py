@@ -6,11 +6,11 @@ import math
 
 import pytest
 from click.testing import CliRunner
-from made_cases import case, single
+from made_cases import case, cell, single
 
 from sonicvacuum.cli import cli
 from sonicvacuum.files import InputError
-from sonicvacuum_blind.baselines import names, table
+from sonicvacuum_blind.baselines import forest, names, state, table
 from sonicvacuum_blind.score import Row
 from sonicvacuum_blind.shares import wilson
 
@@ -41,6 +41,19 @@ def test_each_rule_is_counted_on_the_cases_that_it_can_name():
     one = chi2[names.EXACT, names.SINGLES]
     assert (one.low, one.high) == wilson(1, 2)
     assert not found("nearest-shape", lines)
+
+
+@pytest.mark.parametrize("kind", ["pair", "set", "beside"])
+def test_rules_that_learn_are_given_no_case_of_several_effects(kind, monkeypatch):
+    """Each such case would be a class of its own: the forest could not share its classes out evenly."""
+    several = case([single("tsuji", 30.0)], [cell("r1", "g1", "tail", 1.0)], id="s", kind=kind)
+    seen = []
+    monkeypatch.setattr(forest, "cross_validated", lambda cases: seen.extend(cases) or {})
+    monkeypatch.setattr(forest, "trained", lambda known, cases: seen.extend([*known, *cases]) or {})
+    monkeypatch.setattr(state, "name", lambda case, quieter: seen.append(case) or "none")
+    alone = case([single("tsuji", 30.0)], [cell("r1", "g1", "tail", 1.0)], id="a")
+    table.compare([alone, several], [alone, several], ("forest", "state"), 10)
+    assert {c.row.id for c in seen} == {"a"}
 
 
 def test_method_and_ideal_rule_stand_first():

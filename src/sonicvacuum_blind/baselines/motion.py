@@ -73,7 +73,7 @@ def true_plan(record: Record, run: Run, truth: dict) -> Plan:
     speed = 1.0 + run.striker.speed_rel_sigma * errors["speeds"][place]
     stiffness = 1.0 + (record.modulus_rel_sigma(plan.bead.name) or 0.0) * errors["modulus"]
     plan = replace(plan, speed=plan.speed * speed, modulus_ratio=stiffness)
-    known = foreign.BY_ID if truth["kind"] == "foreign" else catalogue.BY_ID
+    known = catalogue.BY_ID | foreign.BY_ID
     for one in truth["hidden"]:
         entry = known[one["id"]]
         plan = entry.put(plan, one.get(entry.places) if entry.places else None, **one["parameters"])

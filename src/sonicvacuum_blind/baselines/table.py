@@ -1,7 +1,7 @@
 """The table of all rules on the same cases, with Wilson intervals.
 
 Counted are exact names on singles, false alarms on nulls, wrong names on cases from outside the catalogue.
-Pairs are left out: these rules name one effect or none.
+Records of several effects are left out: these rules name one effect or none.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -15,7 +15,7 @@ from sonicvacuum_blind.baselines import rules
 from sonicvacuum_blind.baselines.cases import Case
 from sonicvacuum_blind.baselines.line import Line
 from sonicvacuum_blind.baselines.names import ALARM, EXACT, NULLS, OUTSIDE, SINGLES, WRONG
-from sonicvacuum_blind.breakdown import label_of_verdict
+from sonicvacuum_blind.breakdown import ONE_NAME, label_of_verdict
 from sonicvacuum_blind.score import NONE, UNKNOWN, Row
 from sonicvacuum_blind.shares import share, strength_bin
 from sonicvacuum_blind.study import STRENGTHS
@@ -117,11 +117,15 @@ def _nearest(cases, training):
     return lines("nearest-shape", {c.row.id: rules.nearest_shape(c, least) for c in cases}, cases, note)
 
 
+def _one_name(cases):
+    """Those that hide no more than these rules can name."""
+    return [c for c in cases if c.row.kind in ONE_NAME]
+
+
 def _forest(cases, training):
     from sonicvacuum_blind.baselines import forest
 
-    plain = [c for c in cases if c.row.kind != "pair"]
-    known = [c for c in training if c.row.kind != "pair"]
+    plain, known = _one_name(cases), _one_name(training)
     note = f"learned from four fifths of the study's own {len(plain)} cases in turn"
     found = lines("forest, cross-validated", forest.cross_validated(plain), plain, note)
     if known:
@@ -133,7 +137,7 @@ def _forest(cases, training):
 def _state(cases, most):
     from sonicvacuum_blind.baselines import state
 
-    fit = [c for c in cases if c.row.kind != "pair" and any(cell.sensor for cell in c.cells)]
+    fit = [c for c in _one_name(cases) if any(cell.sensor for cell in c.cells)]
     chosen = fit[:: max(1, -(-len(fit) // most))]
     some = "all cases" if len(chosen) == len(fit) else f"{len(chosen)} of {len(fit)} cases"
     can = [c for c in chosen if c.row.kind == "single" and c.row.effects in state.EXPRESSIBLE]
