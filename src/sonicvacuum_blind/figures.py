@@ -145,7 +145,7 @@ def accuracy(table: pandas.DataFrame) -> Figure:
                 words, (k, 0), (0, -18), ("data", "axes fraction"), "offset points", ha="center", va="top"
             )
         side.set_xlim(-0.5, max(len(designs), 1) - 0.5)
-        bottom = min(0.4, *table.exact_low.astype(float) - 0.05)
+        bottom = min([0.4, *(table.exact_low.astype(float) - 0.05)])
         for one in (axes, side):
             one.set_ylim(max(bottom, 0.0), 1.02)
         side.set_yticklabels([])

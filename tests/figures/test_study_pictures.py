@@ -110,6 +110,13 @@ def test_empty_rows_of_a_small_study_are_drawn_too(folder, tmp_path):
     assert [p.name for p in paths] == ["accuracy.svg", "confusion.svg"]
 
 
+def test_a_study_of_empty_records_alone_is_drawn(tmp_path):
+    """Its accuracy.csv is a header: no record of it hides one effect."""
+    write_table([], breakdown.Accuracy, tmp_path / "accuracy.csv")
+    paths = study.draw(kept.read(tmp_path), tmp_path)
+    assert [p.name for p in paths] == ["accuracy.svg"]
+
+
 def test_missing_tables_are_named(tmp_path):
     with pytest.raises(InputError, match=r"accuracy\.csv is missing"):
         kept.read(tmp_path)
