@@ -5,11 +5,12 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from sonicvacuum_blind.extra_cases import SIZES
-from sonicvacuum_blind.score import UNKNOWN, Line, cases, confidently, load
+from sonicvacuum_blind.score import UNKNOWN, Line, cases, confidently, load, whole
 from sonicvacuum_blind.shares import quantile, share
 
 # What is hidden can be told from all else where an ideal test sees it by this d′.
 TELLING = 5.0
+CURE = "give truths of sonicvacuum blind extras, and verdicts of discover on their records"
 
 
 @dataclass(frozen=True)
@@ -71,15 +72,21 @@ def score(truth_folder, verdict_folder, partly: bool = False) -> list[ExtraRow]:
         partly: leave out cases that have no verdict yet.
 
     Raises:
-        InputError: where a case has no verdict.
+        InputError: where a case has no verdict, or its truth is not one of extras.
     """
-    found = cases(truth_folder, verdict_folder, partly)
-    rows = [row(load(truth), load(verdict)) for truth, verdict in found]
+    rows = []
+    for truth, verdict in cases(truth_folder, verdict_folder, partly):
+        with whole(f"{verdict} (truth: {truth})", CURE):
+            rows.append(row(load(truth), load(verdict)))
     return sorted(rows, key=lambda r: (r.kind, r.size, r.d_prime, r.effects, r.id))
 
 
 def row(truth: dict, verdict: dict) -> ExtraRow:
-    """One case."""
+    """One case.
+
+    Raises:
+        KeyError, TypeError, ValueError: where truth or verdict is not whole.
+    """
     effects, named = truth["effects"], verdict["named"]
     claimed = [n for n in named if n != UNKNOWN]
     wrong = [n for n in claimed if n not in effects]
@@ -90,10 +97,10 @@ def row(truth: dict, verdict: dict) -> ExtraRow:
         id=truth["id"],
         kind=truth["kind"],
         effects="+".join(effects),
-        size=truth["size"],
-        d_prime=truth["d_prime"],
+        size=float(truth["size"]),
+        d_prime=float(truth["d_prime"]),
         reached=min(truth["d_prime_hidden"], default=0.0),
-        ideal=ideal,
+        ideal=float(ideal),
         named="+".join(named),
         confidence=_probability(verdict),
         found=int(set(effects) <= set(claimed)),
@@ -106,7 +113,7 @@ def row(truth: dict, verdict: dict) -> ExtraRow:
         after=fitted["after"],
         floor=floor,
         closed=_closed(fitted, floor) if effects else math.nan,
-        seconds=verdict["timing_s"]["total"],
+        seconds=float(verdict["timing_s"]["total"]),
     )
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from sonicvacuum.files import InputError
 from sonicvacuum_blind import TRUTH
-from sonicvacuum_blind.score import Line, found_in
+from sonicvacuum_blind.score import Line, found_in, whole
 from sonicvacuum_blind.shares import counted, quantile, ratio_of_sums
 from sonicvacuum_blind.stated import load
 
@@ -62,29 +62,27 @@ def foretold(truth_folder, verdict_folder, compared_folder) -> list[Foretold]:
     rows = []
     for id in sorted(compared):
         truth, verdict, one = load(truths[id]), load(verdicts[id]), load(compared[id])
-        try:
-            named, law = verdict["named"], verdict.get("law")
-            exact = int(set(named) == set(truth["effects"]))
-            sizes = one["gap"]["before"], one["gap"]["after"]
-            rows.append(
-                Foretold(
-                    id,
-                    truth["kind"],
-                    "+".join(truth["effects"]),
-                    truth["d_prime"],
-                    "+".join(named),
-                    exact,
-                    int(law is not None),
-                    _nearest(law["nearest"] if law else []),
-                    one["data"],
-                    *sizes,
-                )
-            )
-        except KeyError as error:
-            raise InputError(
-                f"{compared[id]}: {error.args[0]}: missing; run sonicvacuum compare again"
-            ) from None
+        files = f"{compared[id]} (truth: {truths[id]}, verdict: {verdicts[id]})"
+        with whole(files, "run sonicvacuum discover and compare again"):
+            rows.append(_row(id, truth, verdict, one))
     return rows
+
+
+def _row(id, truth, verdict, one):
+    named, law, gap = verdict["named"], verdict.get("law"), one["gap"]
+    return Foretold(
+        id,
+        truth["kind"],
+        "+".join(truth["effects"]),
+        float(truth["d_prime"]),
+        "+".join(named),
+        int(set(named) == set(truth["effects"])),
+        int(law is not None),
+        _nearest(law["nearest"] if law else []),
+        int(one["data"]),
+        float(gap["before"]),
+        float(gap["after"]),
+    )
 
 
 def _nearest(near):

@@ -11,7 +11,7 @@ import numpy as np
 from sonicvacuum.files import InputError
 from sonicvacuum_blind import TRUTH
 from sonicvacuum_blind.followup import CHOICES, FILE
-from sonicvacuum_blind.score import Line, found_in, load
+from sonicvacuum_blind.score import Line, found_in, load, whole
 from sonicvacuum_blind.shares import counted, ratio_of_sums
 
 # Effect → general laws of which it is a limit, which therefore no run can rule out: a contact that relaxes
@@ -79,14 +79,13 @@ def resolved(truth_folder, verdict_folder, choice: str, record_folder, joint_fol
 
 def _row(choice, change_path, truth_path, verdict_path, joint_path):
     change, truth, first, joint = map(load, (change_path, truth_path, verdict_path, joint_path))
-    if change["choice"] != choice:
+    if change.get("choice") != choice:
         raise InputError(
-            f"{change_path}: choice is {change['choice']}, not {choice}; give the folder of these"
+            f"{change_path}: choice is {change.get('choice')}, not {choice}; give the folder of these"
         )
-    try:
+    files = f"{joint_path} (truth: {truth_path}, first verdict: {verdict_path}, change: {change_path})"
+    with whole(files, "run sonicvacuum discover and blind follow again"):
         return row(truth, first, change, joint)
-    except KeyError as error:
-        raise InputError(f"{joint_path}: {error.args[0]}: missing; this key is required") from None
 
 
 def row(truth: dict, first: dict, change: dict, joint: dict) -> Followed:

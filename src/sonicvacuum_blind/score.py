@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Container
+from contextlib import contextmanager
 from dataclasses import MISSING, asdict, dataclass, fields, replace
 from pathlib import Path
 
@@ -122,7 +123,8 @@ def intervals(truth_folder, verdict_folder) -> list[stated.Parameter]:
     """Stated intervals of all cases, with what was hidden; InputError as from `score`."""
     found = []
     for truth, path in cases(truth_folder, verdict_folder):
-        found += stated.parameters(load(truth), load(path), path.parent)
+        with whole(f"{path} (truth: {truth})"):
+            found += stated.parameters(load(truth), load(path), path.parent)
     return found
 
 
@@ -149,6 +151,21 @@ def found_in(folder, name: str) -> dict[str, Path]:
     return {path.parent.name: path for path in Path(folder).rglob(name)}
 
 
+@contextmanager
+def whole(path, cure: str = "run sonicvacuum discover again, or hide"):
+    """Turn a key that files of a case lack, or what does not belong there, into one InputError.
+
+    Args:
+        path: of the files, for the message.
+        cure: what gives files that are whole.
+    """
+    with reading(path, cure):
+        try:
+            yield
+        except KeyError as error:
+            raise InputError(f"{path}: {error.args[0]}: missing; this key is required: {cure}") from None
+
+
 def row(truth: dict, verdict: dict, path="verdict.json", folder: Path | None = None, ideal=None) -> Row:
     """One case.
 
@@ -162,11 +179,8 @@ def row(truth: dict, verdict: dict, path="verdict.json", folder: Path | None = N
         InputError: where the verdict lacks a key that is needed, which the message names, or one of the two
             holds what does not belong there.
     """
-    with reading(path, "run sonicvacuum discover again, or hide"):
-        try:
-            return _row(truth, verdict, folder, ideal)
-        except KeyError as error:
-            raise InputError(f"{path}: {error.args[0]}: missing; this key is required") from None
+    with whole(path):
+        return _row(truth, verdict, folder, ideal)
 
 
 def _row(truth, verdict, folder, ideal):

@@ -4,12 +4,13 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from sonicvacuum_blind.score import LIKELY, UNKNOWN, Line, cases, confidently, load
+from sonicvacuum_blind.score import LIKELY, UNKNOWN, Line, cases, confidently, load, whole
 from sonicvacuum_blind.shares import counted, quantile
 from sonicvacuum_blind.slips import SLIPS
 
 # A slip that the record's own errors explain up to this d′ cannot be told from them.
 PLAIN = 10.0
+CURE = "give truths of sonicvacuum blind slips, and verdicts of discover on their records"
 
 
 @dataclass(frozen=True)
@@ -63,16 +64,23 @@ def score(truth_folder, verdict_folder, partly: bool = False) -> list[SlipRow]:
         partly: leave out cases that have no verdict yet.
 
     Raises:
-        InputError: where a case has no verdict.
+        InputError: where a case has no verdict, or its truth is not one of slips.
     """
-    found = cases(truth_folder, verdict_folder, partly)
-    rows = [row(load(truth), load(verdict)) for truth, verdict in found]
-    order = list(SLIPS)
+    rows, order = [], list(SLIPS)
+    for truth, verdict in cases(truth_folder, verdict_folder, partly):
+        with whole(f"{verdict} (truth: {truth})", CURE):
+            rows.append(row(load(truth), load(verdict)))
     return sorted(rows, key=lambda r: (order.index(r.slip), r.setup, r.effect))
 
 
 def row(truth: dict, verdict: dict) -> SlipRow:
-    """One case."""
+    """One case.
+
+    Raises:
+        KeyError, TypeError, ValueError: where truth or verdict is not whole.
+    """
+    if truth["slip"] not in SLIPS:
+        raise ValueError(f"slip {truth['slip']!r} is not one of {', '.join(SLIPS)}")
     slip, named, effects = SLIPS[truth["slip"]], verdict["named"], truth["effects"]
     own = [f for f in verdict["faults"] if f["fault"] in slip.faults and _at(f, truth)]
     called = any(name in slip.effects for name in named)
@@ -81,11 +89,11 @@ def row(truth: dict, verdict: dict) -> SlipRow:
     is_named = called or any(f in own for f in likely)
     return SlipRow(
         id=truth["id"],
-        setup=truth["setup"],
+        setup=int(truth["setup"]),
         slip=slip.id,
         effect="+".join(effects),
         place=" ".join(filter(None, [truth["run"], *(truth["sensor"] or [])])),
-        d_prime=math.nan if truth["d_prime"] is None else truth["d_prime"],
+        d_prime=math.nan if truth["d_prime"] is None else float(truth["d_prime"]),
         named="+".join(named),
         confidence=_probability(verdict),
         faults="; ".join(map(_told, verdict["faults"])),
@@ -94,7 +102,7 @@ def row(truth: dict, verdict: dict) -> SlipRow:
         wrong_slip=int(bool(likely) and not is_named),
         confident_wrong=int(UNKNOWN not in named and confidently(verdict["probabilities"], wrong)),
         effect_named=int(bool(effects) and set(effects) <= set(named)),
-        seconds=verdict["timing_s"]["total"],
+        seconds=float(verdict["timing_s"]["total"]),
     )
 
 

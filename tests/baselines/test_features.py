@@ -7,6 +7,7 @@ import pytest
 import yaml
 from made_cases import case, cell
 
+from sonicvacuum.files import InputError
 from sonicvacuum_blind.baselines import features
 
 
@@ -17,6 +18,12 @@ def record(tmp_path):
     content = {"runs": runs, "chain": {"beads": 20}, "sensors": [{}, {}, {}]}
     (tmp_path / "record.yaml").write_text(yaml.safe_dump(content))
     return tmp_path
+
+
+def test_a_record_without_what_is_needed_of_it_is_named(record):
+    (record / "record.yaml").write_text("runs: []\n")
+    with pytest.raises(InputError, match=r"record\.yaml: chain: missing"):
+        features.vector(case(record=record))
 
 
 def entry(vector, key, which):

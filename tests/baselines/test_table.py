@@ -137,5 +137,23 @@ def test_command_names_the_missing_table(study):
     assert "where.csv" in str(failed.exception)
 
 
+@pytest.mark.parametrize(
+    "name, text",
+    [
+        ("candidates", "effects,delta_chi2,parameters\ntsuji,much,\n"),
+        ("gap", "run,data,before\nall,many,1.1\n"),
+        ("where", "run,sensor,feature,z_before,size\nr1,g1,delay,large,\n"),
+        *((name, "name,price\ntea,2\n") for name in ("candidates", "gap", "where")),
+    ],
+)
+def test_command_names_the_foreign_table(study, name, text):
+    path = study / "verdicts" / "0" / "x" / f"{name}.csv"
+    path.write_text(text)
+    failed = run(study)
+    assert isinstance(failed.exception, InputError), failed.exception
+    assert str(path) in str(failed.exception)
+    assert not (study / "out.csv").exists()
+
+
 def test_rows_of_cases_are_scores():
     assert isinstance(case().row, Row)

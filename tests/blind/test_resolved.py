@@ -5,6 +5,7 @@ import json
 import math
 
 import pytest
+from case_files import put
 from click.testing import CliRunner
 
 from sonicvacuum.cli import cli
@@ -70,11 +71,6 @@ def test_shares_by_choice():
     assert ratio.low <= 3.0 <= ratio.high
     exact = {g: line.value for (m, g), line in found.items() if m.startswith("exact name")}
     assert exact == pytest.approx({"before": 0.0, "proposed": 1.0, "random": 2 / 3})
-
-
-def put(folder, id, name, content):
-    (folder / id).mkdir(parents=True)
-    (folder / id / name).write_text(json.dumps(content))
 
 
 @pytest.fixture

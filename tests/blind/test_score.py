@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from case_files import put
 from click.testing import CliRunner
 from scipy import stats
 
@@ -275,11 +276,6 @@ def test_interval_of_a_median():
     1.07 % below 2 and 5.47 % up to 2, so 2 and 8 are its 2.5 % and 97.5 % points.
     """
     assert quantile(range(10), 0.5) == (10, 4.5, 2.0, 8.0)
-
-
-def put(folder, id, name, content):
-    (folder / id).mkdir(parents=True)
-    (folder / id / name).write_text(json.dumps(content))
 
 
 def test_command_writes_both_tables(tmp_path):

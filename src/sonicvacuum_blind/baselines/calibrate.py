@@ -17,15 +17,16 @@ from sonicvacuum.blas import one_thread
 from sonicvacuum.discover.fit.calibration import Calibration, of_package
 from sonicvacuum.discover.fit.evidence import unknown_odds
 from sonicvacuum.discover.judge import explanations
-from sonicvacuum.files import InputError, replacing
+from sonicvacuum.files import InputError, reading, replacing
 from sonicvacuum.tables import read_csv
 from sonicvacuum_blind import TRUTH
-from sonicvacuum_blind.score import NONE, UNKNOWN, found_in, load
+from sonicvacuum_blind.score import NONE, UNKNOWN, found_in, load, whole
 
 # No probability counts as smaller: one freak case must not decide.
 _LEAST = 1e-4
 # Width of the normal priors of all four numbers about no change.
 _WIDTH = 2.0
+_CURE = "run sonicvacuum discover on its record again"
 
 
 @dataclass(frozen=True)
@@ -42,23 +43,29 @@ def outcomes(truth_folder, verdict_folder) -> list[Outcome]:
     """All cases below two folders.
 
     Raises:
-        InputError: where a case lacks verdict or table.
+        InputError: where a case lacks verdict or table, or one of these is not what it should be.
     """
     truths, verdicts = found_in(truth_folder, TRUTH), found_in(verdict_folder, "verdict.json")
     result = []
     for id, path in sorted(truths.items()):
-        truth = load(path)
         if id not in verdicts:
             raise InputError(f"{verdict_folder}: no verdict for {id}; run sonicvacuum discover on its record")
-        result.append(_outcome(truth, load(verdicts[id]), verdicts[id].parent / "candidates.csv"))
+        found = _evidence(verdicts[id].parent / "candidates.csv")
+        with whole(f"{verdicts[id]} (truth: {path})", _CURE):
+            result.append(_outcome(load(path), load(verdicts[id]), found))
     if not result:
         raise InputError(f"{truth_folder}: no case")
     return result
 
 
-def _outcome(truth, verdict, table: Path):
-    rows = read_csv(table, "sonicvacuum discover writes it")
-    found = {tuple(r["effects"].split("+")): float(r["log10_bayes"]) * math.log(10.0) for r in rows}
+def _evidence(table: Path):
+    """Effects, one or several → ln of their evidence over that of none."""
+    rows = read_csv(table, _CURE, ("effects", "log10_bayes"))
+    with reading(table, _CURE):
+        return {tuple(r["effects"].split("+")): float(r["log10_bayes"]) * math.log(10.0) for r in rows}
+
+
+def _outcome(truth, verdict, found):
     alone = [SimpleNamespace(effect=names[0], log_bayes=x) for names, x in found.items() if len(names) == 1]
     sets = [SimpleNamespace(effects=names, log_bayes=x) for names, x in found.items() if len(names) > 1]
     logs, alarms = explanations.log_weights(alone, sets), verdict["alarms"]

@@ -4,11 +4,13 @@ import math
 from dataclasses import dataclass
 from pathlib import Path
 
-from sonicvacuum.files import InputError
+from sonicvacuum.files import InputError, reading
 from sonicvacuum.tables import read_csv
 from sonicvacuum_blind import TRUTH, score
 from sonicvacuum_blind.score import Row
 from sonicvacuum_blind.study import added
+
+_CURE = "run sonicvacuum discover on the record again"
 
 
 @dataclass(frozen=True)
@@ -73,17 +75,22 @@ def read(records, truths, verdicts, ideal=()) -> list[Case]:
 
 
 def _case(row, record, verdict, truth):
-    singles = [_single(line) for line in _table(verdict / "candidates.csv") if "+" not in line["effects"]]
-    whole = next((line for line in _table(verdict / "gap.csv") if line["run"] == "all"), None)
-    if whole is None:
-        raise InputError(f"{verdict / 'gap.csv'}: has no row 'all'; run sonicvacuum discover on it again")
-    cells = [_cell(line) for line in _table(verdict / "where.csv")]
-    return Case(
-        row, tuple(singles), int(float(whole["data"])), float(whole["before"]), tuple(cells), record, truth
-    )
+    singles = _table(verdict / "candidates.csv", ("effects", "delta_chi2", "parameters"), _single)
+    whole = _table(verdict / "gap.csv", ("run", "data", "before"), _all_runs)
+    if not whole:
+        raise InputError(f"{verdict / 'gap.csv'}: has no row 'all'; {_CURE}")
+    cells = _table(verdict / "where.csv", ("run", "sensor", "feature", "z_before", "size"), _cell)
+    return Case(row, singles, *whole[0], cells, record, truth)
+
+
+def _all_runs(line):
+    """Number of data and misfit of all runs together."""
+    return (int(float(line["data"])), float(line["before"])) if line["run"] == "all" else None
 
 
 def _single(line):
+    if "+" in line["effects"]:
+        return None
     names = {part.split()[1] for part in line["parameters"].split(";") if part.strip()}
     cosine = float(line.get("cosine") or math.nan)
     return Single(line["effects"], float(line["delta_chi2"]), len(names), cosine)
@@ -94,5 +101,8 @@ def _cell(line):
     return Cell(line["run"], line["sensor"], line["feature"], *numbers)
 
 
-def _table(path):
-    return read_csv(path, "run sonicvacuum discover on the record again")
+def _table(path, columns, made):
+    """What is made of each line of a table, but for those of which nothing is made."""
+    lines = read_csv(path, _CURE, columns)
+    with reading(path, _CURE):
+        return tuple(one for one in map(made, lines) if one is not None)

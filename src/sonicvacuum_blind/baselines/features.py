@@ -13,6 +13,7 @@ import numpy as np
 from sonicvacuum.discover.judge.locate import FEATURES
 from sonicvacuum.files import read_yaml
 from sonicvacuum_blind.baselines.cases import Case, Cell
+from sonicvacuum_blind.score import whole
 
 ROLES = ("first", "inner", "last")
 QUANTITIES = ("speed", "amplitude", "duration", "decay", "restitution", "contact_duration")
@@ -24,7 +25,13 @@ WIDTH = (len(FEATURES) * len(ROLES) + len(QUANTITIES) * OCCURRENCES) * PER_CELL 
 
 def vector(case: Case) -> np.ndarray:
     """(WIDTH,) features of one case."""
-    setting = read_yaml(case.record / "record.yaml")
+    path = case.record / "record.yaml"
+    setting = read_yaml(path)
+    with whole(path, "give the records that the verdicts are on"):
+        return _vector(case, setting)
+
+
+def _vector(case, setting):
     speeds = {run["id"]: math.log(run["striker"]["speed_m_s"]) for run in setting["runs"]}
     total = math.sqrt(sum(c.z**2 for c in case.cells if not math.isnan(c.z))) or 1.0
     groups = _grouped(case.cells)

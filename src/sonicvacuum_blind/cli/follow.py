@@ -56,7 +56,7 @@ def _chosen(specs, verdicts, choice):
     where one has no verdict, or not a whole one.
     """
     from sonicvacuum_blind.followup import FRESH, ambiguous
-    from sonicvacuum_blind.score import found_in, load
+    from sonicvacuum_blind.score import found_in, load, whole
 
     paths = found_in(verdicts, "verdict.json")
     missing = [spec.id for spec in specs if spec.id not in paths]
@@ -67,9 +67,7 @@ def _chosen(specs, verdicts, choice):
         )
     for spec in specs:
         verdict = load(paths[spec.id])
-        try:
+        with whole(paths[spec.id], "run sonicvacuum discover again"):
             chosen = spec.effects and spec.design in TRACED if choice == FRESH else ambiguous(spec, verdict)
-        except KeyError as error:
-            raise InputError(f"{paths[spec.id]}: {error.args[0]}: missing; this key is required") from None
         if chosen:
             yield spec, verdict

@@ -27,10 +27,12 @@ def score(truth, verdicts, out, summary, ideal, tables):
     from sonicvacuum_blind.study import added
 
     check_apart([out, summary, *_paths(tables).values()], [truth, verdicts, *ideal])
-    scoring.write_table(scoring.score(truth, verdicts, ideal, added), scoring.Row, out)
+    # All is read before anything is written.
+    scored, intervals = scoring.score(truth, verdicts, ideal, added), scoring.intervals(truth, verdicts)
+    scoring.write_table(scored, scoring.Row, out)
     # The tables are of what is written, digit by digit, so that they can be made of it again.
     rows = scoring.read_table(scoring.Row, out)
-    _tabulate(rows, scoring.intervals(truth, verdicts), summary, tables)
+    _tabulate(rows, intervals, summary, tables)
 
 
 @verb("sonicvacuum blind tables scored --out tables")
