@@ -6,6 +6,7 @@ The record goes to one folder, the truth to another; nothing in the record says 
 
 import itertools
 import json
+import math
 from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
@@ -80,6 +81,11 @@ class Spec:
             known = foreign.BY_ID if name in self.outside else catalogue.BY_ID
             if name not in known:
                 raise ValueError(f"case {self.id}: effect {name!r} is not one of {', '.join(known)}")
+        if not 0.0 <= self.d_prime < math.inf:
+            raise ValueError(f"case {self.id}: d_prime is {self.d_prime}; use a finite number from 0 on")
+        for name, value in (("seed", self.seed), ("place", self.place)):
+            if value < 0:
+                raise ValueError(f"case {self.id}: {name} is {value}; use a whole number from 0 on")
 
     @property
     def outside(self) -> tuple[str, ...]:
@@ -161,7 +167,8 @@ def laboratory(spec: Spec) -> Laboratory:
 def hide(spec: Spec) -> tuple[records.Record, dict]:
     """A record with something hidden in it, and the truth.
 
-    The same spec gives the same record, bit for bit: every draw comes from `SeedSequence(seed, place)`.
+    The same spec gives the same record, bit for bit: every draw comes from
+    `SeedSequence(seed, spawn_key=(place,))`.
 
     Raises:
         ValueError: where no drawn design lets the effects act.
@@ -213,7 +220,9 @@ def _case(spec, random):
         if least >= ENOUGH * spec.d_prime:
             break
     if best is None:
-        raise ValueError(f"case {spec.id}: {', '.join(spec.effects)} cannot act in designs {spec.design}")
+        raise ValueError(
+            f"case {spec.id}: {', '.join(spec.effects)} cannot act in designs {spec.design}; give another"
+        )
     return best, correlation
 
 

@@ -11,7 +11,7 @@ from functools import cache
 import numpy as np
 
 from sonicvacuum.files import InputError
-from sonicvacuum.tables import read_csv, write_csv
+from sonicvacuum.tables import read_numbered, write_csv
 from sonicvacuum_blind import catalogue, foreign
 from sonicvacuum_blind.hide import Spec
 
@@ -264,11 +264,11 @@ def read_cases(path) -> list[Spec]:
         InputError: naming file and line of what is wrong.
     """
     names = [f.name for f in fields(Spec)]
-    rows = read_csv(path, f"write {','.join(names)} and one line for each case", names)
+    rows = read_numbered(path, f"write {','.join(names)} and one line for each case", names)
     seen: dict[str, int] = {}
-    for line, row in enumerate(rows, start=2):
+    for line, row in rows:
         _check_id(row["id"], seen.setdefault(row["id"].lower(), line), path, line)
-    return [_spec(row, path, line) for line, row in enumerate(rows, start=2)]
+    return [_spec(row, path, line) for line, row in rows]
 
 
 def _check_id(name, first, path, line):

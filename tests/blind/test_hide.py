@@ -7,10 +7,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
 from sonicvacuum import records
+from sonicvacuum.cli import cli
 from sonicvacuum.files import InputError
-from sonicvacuum_blind import catalogue, design, foreign, study
+from sonicvacuum_blind import catalogue, design, extra_cases, foreign, study
 from sonicvacuum_blind.hide import Spec, hide, write
 
 CASES = [
@@ -121,6 +123,11 @@ def test_quantised_readings_are_whole_steps(made):
         ({"noise": "pink"}, "noise is 'pink'"),
         ({"effects": ()}, "hides 1 effects"),
         ({"effects": ("magic",)}, "effect 'magic'"),
+        ({"seed": -1}, "seed is -1"),
+        ({"place": -1}, "place is -1"),
+        ({"d_prime": -5.0}, "d_prime is -5"),
+        ({"d_prime": float("nan")}, "d_prime is nan"),
+        ({"d_prime": float("inf")}, "d_prime is inf"),
     ],
 )
 def test_bad_specs_are_refused(change, message):
@@ -224,6 +231,53 @@ def test_bad_case_lists_name_the_line(tmp_path):
     path.write_text(path.read_text().replace("ar1", "pink"))
     with pytest.raises(Exception, match=r"line 3: case b: noise is 'pink'"):
         study.read_cases(path)
+
+
+@pytest.mark.parametrize(
+    "old, new, words",
+    [
+        (",ar1,", ",pink,", "line 5: case b: noise is 'pink'"),
+        (",5,1\n", ",-5,1\n", "line 5: case b: seed is -5"),
+        (",0.0,", ",nan,", "line 5: case b: d_prime is nan"),
+        ("\nb,", "\na,", "line 5: id a stands in line 3 already"),
+        (",5,1\n", ",5\n", "line 5 has another number of cells"),
+    ],
+)
+def test_lines_are_counted_as_an_editor_counts_them(tmp_path, old, new, words):
+    path = tmp_path / "cases.csv"
+    study.write_cases(CASES[:2], path)
+    header, *lines = path.read_text().replace(old, new).splitlines()
+    path.write_text("\n\n".join([header, *lines]) + "\n")
+    with pytest.raises(InputError, match=words):
+        study.read_cases(path)
+
+
+@pytest.mark.parametrize("verb", ["hide", "ideal", "follow"])
+def test_a_case_that_cannot_be_made_is_named_with_its_list(tmp_path, verb):
+    """Gravity acts in chains alone: no design of one ball that is drawn lets it act."""
+    path = tmp_path / "cases.csv"
+    study.write_cases([Spec("x", "single", "ball", "white", ("gravity",), 10.0, 1, 0)], path)
+    outputs = {
+        "hide": [f"--records={tmp_path / 'records'}", f"--truth={tmp_path / 'truth'}"],
+        "ideal": [f"--out={tmp_path / 'ideal.csv'}"],
+        "follow": [f"--records={tmp_path / 'more'}", f"--verdicts={tmp_path / 'found'}", "--choice=proposed"],
+    }
+    (tmp_path / "found" / "x").mkdir(parents=True)
+    proposal = {"named": ["gravity"], "confusable": [["gravity", "tsuji"]], "next_experiment": {"change": {}}}
+    (tmp_path / "found" / "x" / "verdict.json").write_text(json.dumps(proposal))
+    done = CliRunner().invoke(cli, ["blind", verb, f"--cases={path}", *outputs[verb]])
+    assert isinstance(done.exception, InputError), done.exception
+    assert str(done.exception).startswith(f"{path}: case x: gravity cannot act in designs ball")
+    assert not (tmp_path / "ideal.csv").exists()
+
+
+def test_extras_that_cannot_be_made_are_named(tmp_path, monkeypatch):
+    case = extra_cases.ExtraCase(Spec("x", "single", "ball", "white", ("gravity",), 10.0, 1, 0), 0.0)
+    monkeypatch.setattr(extra_cases, "cases", lambda seed: [case])
+    folders = [f"--records={tmp_path / 'records'}", f"--truth={tmp_path / 'truth'}"]
+    done = CliRunner().invoke(cli, ["blind", "extras", "--seed=1", *folders])
+    assert isinstance(done.exception, InputError), done.exception
+    assert "case x: gravity cannot act" in str(done.exception)
 
 
 @pytest.mark.parametrize("name", ["../../a", "/a", "..", "", "a/b", "a\nb", "a\n", "A"])

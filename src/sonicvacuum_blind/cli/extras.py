@@ -10,7 +10,15 @@ from sonicvacuum.cli.helped import verb
 from sonicvacuum.outputs import check_apart
 from sonicvacuum_blind import TRUTH
 from sonicvacuum_blind.cli.hide import check_truth
-from sonicvacuum_blind.cli.options import batch_of, counted_into, held_against, keep, made_into, partly
+from sonicvacuum_blind.cli.options import (
+    batch_of,
+    counted_into,
+    held_against,
+    keep,
+    made_into,
+    making,
+    partly,
+)
 
 
 @verb("sonicvacuum blind extras --records extras/records --truth extras/truth --first 40")
@@ -30,7 +38,8 @@ def extras(batch, first, seed, records_folder, truth_folder):
     check_truth(truth_folder, records_folder)
     check_collection(records_folder, [c.id for c in chosen], lambda name: Path(truth_folder) / name / TRUTH)
     for case in chosen:
-        extra_cases.write(case, records_folder, truth_folder)
+        with making():
+            extra_cases.write(case, records_folder, truth_folder)
         click.echo(case.id)
 
 

@@ -6,7 +6,7 @@ import click
 
 from sonicvacuum.cli.helped import FOLDER, PRESENT, verb
 from sonicvacuum.files import InputError
-from sonicvacuum_blind.cli.options import batch_of, of_cases
+from sonicvacuum_blind.cli.options import batch_of, making, of_cases
 
 # Designs whose records all have traces, so that a further run can be asked for.
 TRACED = ("traces", "one-speed")
@@ -38,10 +38,8 @@ def follow(study, path, verdicts, out, choice, batch):
     # The folder stands for the batch also where nothing in it is ambiguous.
     Path(out).mkdir(parents=True, exist_ok=True)
     for spec, verdict in _chosen(specs, verdicts, choice):
-        try:
+        with making(path):
             followup.write(spec, verdict, choice, out)
-        except ValueError as error:
-            raise InputError(str(error)) from None
         click.echo(spec.id)
 
 

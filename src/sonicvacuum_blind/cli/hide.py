@@ -8,7 +8,7 @@ from sonicvacuum.cli.helped import FOLDER, WRITTEN, verb
 from sonicvacuum.files import InputError
 from sonicvacuum.outputs import check_apart
 from sonicvacuum_blind import TRUTH
-from sonicvacuum_blind.cli.options import batch_of, of_cases
+from sonicvacuum_blind.cli.options import batch_of, making, of_cases
 
 
 @verb(
@@ -38,10 +38,8 @@ def hide(study, path, listing, batch, records_folder, truth_folder):
     check_truth(truth_folder, records_folder)
     check_collection(records_folder, [s.id for s in specs], lambda name: Path(truth_folder) / name / TRUTH)
     for spec in specs:
-        try:
+        with making(path):
             write(spec, records_folder, truth_folder)
-        except ValueError as error:
-            raise InputError(str(error)) from None
         click.echo(spec.id)
 
 

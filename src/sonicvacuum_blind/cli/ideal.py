@@ -3,7 +3,7 @@
 import click
 
 from sonicvacuum.cli.helped import WRITTEN, verb
-from sonicvacuum_blind.cli.options import batch_of, of_cases
+from sonicvacuum_blind.cli.options import batch_of, making, of_cases
 
 
 @verb("sonicvacuum blind ideal --study small --batch 0/4 --out ideal.csv")
@@ -19,5 +19,8 @@ def ideal(study, path, batch, out):
     from sonicvacuum_blind.score import write_table
     from sonicvacuum_blind.study import chosen
 
-    lines = [rule.line(spec) for spec in chosen(study, path, *batch_of(batch))]
+    lines = []
+    for spec in chosen(study, path, *batch_of(batch)):
+        with making(path):
+            lines.append(rule.line(spec))
     write_table(lines, rule.Line, out)

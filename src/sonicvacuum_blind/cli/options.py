@@ -1,6 +1,7 @@
 """Options that several verbs of the blind test share."""
 
 import re
+from contextlib import contextmanager
 
 import click
 
@@ -17,6 +18,15 @@ def batch_of(text: str) -> tuple[int, int]:
     if not found or not int(found[1]) < int(found[2]):
         raise InputError(f"--batch: is {text!r}; write k/n with k from 0 to n - 1, such as 0/4")
     return int(found[1]), int(found[2])
+
+
+@contextmanager
+def making(path=None):
+    """Turn a case that cannot be made, or asked about, into one InputError; with the list that it is from."""
+    try:
+        yield
+    except ValueError as error:
+        raise InputError(f"{path}: {error}" if path else str(error)) from None
 
 
 def _all_of(*options):

@@ -10,7 +10,15 @@ from sonicvacuum.cli.helped import verb
 from sonicvacuum.outputs import check_apart
 from sonicvacuum_blind import TRUTH
 from sonicvacuum_blind.cli.hide import check_truth
-from sonicvacuum_blind.cli.options import batch_of, counted_into, held_against, keep, made_into, partly
+from sonicvacuum_blind.cli.options import (
+    batch_of,
+    counted_into,
+    held_against,
+    keep,
+    made_into,
+    making,
+    partly,
+)
 
 
 @verb("sonicvacuum blind slips --records slips/records --truth slips/truth --batch 0/8")
@@ -26,7 +34,8 @@ def slips(batch, records_folder, truth_folder, smooth):
     check_truth(truth_folder, records_folder)
     check_collection(records_folder, [c.id for c in chosen], lambda name: Path(truth_folder) / name / TRUTH)
     for case in filter(slip_cases.possible, chosen):
-        slip_cases.write(case, records_folder, truth_folder)
+        with making():
+            slip_cases.write(case, records_folder, truth_folder)
         click.echo(case.id)
 
 
