@@ -11,7 +11,7 @@ from sonicvacuum.files import InputError
 from sonicvacuum_blind import TRUTH
 from sonicvacuum_blind.score import Line, found_in, whole
 from sonicvacuum_blind.shares import counted, quantile, ratio_of_sums
-from sonicvacuum_blind.stated import load
+from sonicvacuum_blind.stated import load, right_names
 
 # Names told of a law of no particular form.
 NEAREST = 3
@@ -26,7 +26,7 @@ class Foretold:
     Attributes:
         id, kind, effects, d_prime: of the case.
         named: in its verdict, joined by `+`.
-        exact: whether that is exactly what is hidden.
+        exact: whether that is exactly what is hidden; for beside, the effect and unknown.
         law: whether the verdict holds a contact law of no particular form.
         nearest: names of the catalogue that come nearest to that law, with their distances.
         data: number of readings.
@@ -76,13 +76,18 @@ def _row(id, truth, verdict, one):
         "+".join(truth["effects"]),
         float(truth["d_prime"]),
         "+".join(named),
-        int(set(named) == set(truth["effects"])),
+        int(set(named) == set(_hidden(truth))),
         int(law is not None),
         _nearest(law["nearest"] if law else []),
         int(one["data"]),
         float(gap["before"]),
         float(gap["after"]),
     )
+
+
+def _hidden(truth):
+    """Names that make a verdict exact; of what is from outside the catalogue alone, none does."""
+    return right_names(truth) if truth["kind"] == "beside" else truth["effects"]
 
 
 def _nearest(near):
@@ -92,7 +97,7 @@ def _nearest(near):
 def summary(rows: Iterable[Foretold]) -> list[Line]:
     """Medians of both models by kind of record, and the share of the gap that is closed, gaps added up."""
     lines, rows = [], list(rows)
-    for kind in ("single", "pair", "set", "foreign"):
+    for kind in ("single", "pair", "set", "foreign", "beside"):
         chosen = [r for r in rows if r.kind == kind]
         if not chosen:
             continue

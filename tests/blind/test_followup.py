@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from case_files import put
 from click.testing import CliRunner
 
 from sonicvacuum import records
@@ -220,6 +221,23 @@ def test_fresh_runs_are_held_against_both_models(tmp_path):
     assert lines["single, model found, names exact, median"].value == pytest.approx(1.1)
     with pytest.raises(InputError, match="is empty"):
         foretold(tmp_path / "truth", tmp_path / "found", tmp_path / "truth")
+
+
+def test_an_effect_beside_one_from_outside_has_lines_of_its_own(tmp_path):
+    for id, named in (("a", ["tsuji", "unknown"]), ("b", ["tsuji"])):
+        put(
+            tmp_path / "truth",
+            id,
+            "truth.json",
+            {"kind": "beside", "effects": ["tsuji", "dimer"], "d_prime": 20},
+        )
+        put(tmp_path / "found", id, "verdict.json", {"named": named})
+        put(tmp_path / "fresh", id, "compared.json", {"data": 100, "gap": {"before": 1.5, "after": 1.1}})
+    lines = {
+        one.group: one for one in summary(foretold(*(tmp_path / n for n in ("truth", "found", "fresh"))))
+    }
+    assert lines["beside, gaps added up"].value == pytest.approx(0.8)
+    assert lines["beside, model found, names exact, median"].count == 1
 
 
 def test_laws_of_no_particular_form_are_told_with_what_they_close(tmp_path):
