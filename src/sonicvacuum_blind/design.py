@@ -5,7 +5,7 @@ gain, trigger and modulus, noise, the hidden effect) is added in `hide`.
 """
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -68,7 +68,6 @@ class Design:
     gain_sigma: float = 0.02
     modulus_sigma: float = 0.05
     trigger_sigma: float = 1e-6
-    meta: dict = field(default_factory=dict)
 
     @property
     def reference(self) -> Plan:
