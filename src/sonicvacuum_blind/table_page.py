@@ -22,16 +22,20 @@ def _told(line):
     return f"| {line.measure} | {line.group} | {line.count} | {line.value:.3g} | {between} | {goal} |"
 
 
-def write(lines: Iterable[Line], page) -> None:
-    """The page (Markdown) with its table replaced, all else as it is.
+def around(page) -> tuple[str, str]:
+    """What stands before the page's table, and behind it.
 
     Raises:
         InputError: where the page does not say where its table stands.
     """
     text = read_text(page)
-    if text.count(BEGIN) != 1 or text.count(END) != 1:
-        raise InputError(f"{page}: write {BEGIN} and {END} once each, on lines of their own")
-    before, rest = text.split(BEGIN)
-    after = rest.split(END)[1]
+    if text.count(BEGIN) != 1 or text.count(END) != 1 or text.index(END) < text.index(BEGIN):
+        raise InputError(f"{page}: write {BEGIN} and after it {END}, once each, on lines of their own")
+    return text.split(BEGIN)[0], text.split(END)[1]
+
+
+def write(lines: Iterable[Line], page) -> None:
+    """The page (Markdown) with its table replaced, all else as it is; InputError as from `around`."""
+    before, after = around(page)
     with replacing(Path(page)) as out:
         out.write(f"{before}{BEGIN}\n{table(lines)}\n{END}{after}")

@@ -4,11 +4,16 @@ import math
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
 from sonicvacuum.blas import one_thread
+from sonicvacuum.cli import cli
 from sonicvacuum.files import InputError
 from sonicvacuum_blind import extra_cases, extra_score, table_page
 from sonicvacuum_blind.catalogue import STUDIED
+from sonicvacuum_blind.cli.options import keep
+from sonicvacuum_blind.score import Row, write_table
+from sonicvacuum_blind.stated import Parameter
 from sonicvacuum_blind.systematics import Smooth
 
 SPEEDS = np.array([0.2, 0.4, 0.8])
@@ -121,6 +126,35 @@ def test_the_page_has_its_table_and_keeps_its_words(tmp_path):
     told = page.read_text()
     assert told.startswith("Before.") and told.endswith("After.\n") and "old" not in told
     assert "| truth among what is named | systematic errors, singles | 1 | 1 | 0.207 to 1 | ≥ 0.9 |" in told
-    page.write_text("no place for a table")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "no place for a table",
+        f"{table_page.END}\n{table_page.BEGIN}\n",
+        f"{table_page.BEGIN}\n{table_page.END}\n" * 2,
+    ],
+)
+def test_a_page_without_a_place_for_its_table_is_refused_before_anything_is_written(tmp_path, text):
+    page, rows = tmp_path / "page.md", [extra_score.row(TRUTH, VERDICT | {"named": [], "probabilities": {}})]
+    page.write_text(text)
     with pytest.raises(InputError, match="end of table"):
-        table_page.write(extra_score.summary(rows), page)
+        keep(
+            rows,
+            extra_score.ExtraRow,
+            extra_score.summary(rows),
+            tmp_path / "a.csv",
+            tmp_path / "b.csv",
+            page,
+        )
+    study = tmp_path / "study"
+    study.mkdir()
+    write_table([], Row, study / "score.csv")
+    write_table([], Parameter, study / "parameters.csv")
+    done = CliRunner().invoke(
+        cli, ["blind", "tables", str(study), f"--out={tmp_path / 'out'}", f"--page={page}"]
+    )
+    assert isinstance(done.exception, InputError) and "end of table" in str(done.exception)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["page.md", "study"]
+    assert page.read_text() == text

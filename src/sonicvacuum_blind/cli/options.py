@@ -94,6 +94,9 @@ def keep(rows, kind: type, lines, out, summary, page=None) -> None:
     from sonicvacuum_blind import table_page
     from sonicvacuum_blind.score import Line, write_table
 
+    if page:
+        # A page without a place for the table is found out before anything is written.
+        table_page.around(page)
     write_table(rows, kind, out)
     write_table(lines, Line, summary)
     if page:

@@ -44,9 +44,12 @@ def tables(folders, out, page):
     several studies, tables of all their records together.
     """
     from sonicvacuum_blind import score as scoring
+    from sonicvacuum_blind import table_page
     from sonicvacuum_blind.stated import Parameter
 
     check_apart([Path(out) / "summary.csv", *_paths(out).values()], folders)
+    if page:
+        table_page.around(page)
 
     def read(kind, name):
         first, *others = [scoring.read_table(kind, Path(folder) / name) for folder in folders]
@@ -56,8 +59,6 @@ def tables(folders, out, page):
     rows, intervals = read(scoring.Row, "score.csv"), read(Parameter, "parameters.csv")
     lines = _tabulate(rows, intervals, Path(out) / "summary.csv", out)
     if page:
-        from sonicvacuum_blind import table_page
-
         table_page.write(lines, page)
 
 
