@@ -127,21 +127,67 @@ def test_a_folder_whose_name_a_shell_would_run_is_only_a_folder(finished):
     assert list(finished.rglob("pwned")) == []
 
 
-def test_every_interpolation_of_a_shell_command_is_quoted(pytestconfig):
-    """In all rules, {x:q} and never {x}: a name may hold what a shell would run."""
+@pytest.fixture(scope="module")
+def commands(pytestconfig):
+    """[(file of rules, shell command of a rule as it stands there)]."""
     files = [pytestconfig.rootpath / "Snakefile", *(pytestconfig.rootpath / "workflow/rules").glob("*.smk")]
-    commands = [
+    found = [
         (path.name, command)
         for path in files
         for command in re.findall(r"^ +shell:\n((?: +[\"'].*\n)+)", path.read_text() + "\n", re.MULTILINE)
     ]
     rules_with_commands = sum(path.read_text().count("    shell:\n") for path in files)
-    assert len(commands) == rules_with_commands > 20
+    assert len(found) == rules_with_commands > 20
+    return found
+
+
+def test_every_interpolation_of_a_shell_command_is_quoted(commands):
+    """In all rules, {x:q} and never {x}: a name may hold what a shell would run."""
     fields = [(name, field) for name, text in commands for field in re.findall(r"\{([^{}]*)\}", text)]
     assert len(fields) > 100
     assert [(name, field) for name, field in fields if not field.endswith(":q")] == []
     loose = [(n, v) for n, text in commands for v in re.findall(r'(?<!")\$\w+', text)]
     assert loose == []
+
+
+def test_the_log_is_of_all_parts_of_a_command(commands):
+    """Without parentheses `a && b > log` keeps what b says, and a's complaint is lost."""
+    several = [
+        (name, text) for name, text in commands if re.search("&&|;", text) and "> {log:q} 2>&1" in text
+    ]
+    assert len(several) > 5
+    assert [(name, text) for name, text in several if not re.match(r" +[\"']\(", text)] == []
+
+
+def test_what_searches_and_compares_takes_the_threads_of_its_job(commands):
+    searching = [(n, text) for n, text in commands if re.search("sonicvacuum (discover|compare) ", text)]
+    assert len(searching) > 4
+    assert [(name, text) for name, text in searching if "--threads {threads:q}" not in text] == []
+
+
+def write_config(folder):
+    """A configuration in a folder of its own, with the records that it names."""
+    (folder / "own.yaml").write_text(CONFIG)
+    for name in ("ball", ODD):
+        (folder / "records" / name).mkdir(parents=True)
+        (folder / "records" / name / "record.yaml").write_text(RECORD)
+
+
+@pytest.mark.parametrize("rule", ["publish_study", "publish_again"])
+def test_what_is_kept_in_git_is_that_of_the_project_wherever_the_workflow_is_used(
+    rule, tmp_path, pytestconfig, snakemake
+):
+    root = pytestconfig.rootpath
+    write_config(tmp_path)
+    done = snakemake(
+        tmp_path,
+        *("--snakefile", str(root / "workflow/Snakefile"), "--config", "configuration=own.yaml"),
+        *("--dry-run", "--printshellcmds", rule),
+    )
+    assert done.returncode == 0, done.said
+    (command,) = re.findall(r"sonicvacuum blind (?:publish|tables) .*--page .*", done.said)
+    written = re.findall(r"--(?:page|readme|keep) (\S+)", command)
+    assert written and all(path.startswith(f"{root}/") for path in written), command
 
 
 def test_touching_without_changing_plans_nothing(project, planned):
@@ -276,10 +322,7 @@ def test_the_root_makes_by_default_all_that_the_workflow_makes(pytestconfig, sna
 
 def test_another_workflow_can_use_this_one_as_a_module(tmp_path, pytestconfig, planned):
     """Config and records are the other's, code and resources stay here."""
-    (tmp_path / "own.yaml").write_text(CONFIG)
-    for name in ("ball", ODD):
-        (tmp_path / "records" / name).mkdir(parents=True)
-        (tmp_path / "records" / name / "record.yaml").write_text(RECORD)
+    write_config(tmp_path)
     (tmp_path / "Snakefile").write_text(
         f"""
 module sonicvacuum:

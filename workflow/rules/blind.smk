@@ -222,8 +222,8 @@ rule publish_study:
     conda:
         ENVIRONMENT
     params:
-        page="docs/study.md",
-        readme="README.md",
+        page=home("docs/study.md"),
+        readme=home("README.md"),
         folder=lambda wildcards, input: Path(input.tables[0]).parent,
         keep=STUDY_TABLES,
     message:
@@ -271,10 +271,10 @@ rule discover_followed:
     message:
         "Discovering with {wildcards.choice} runs in batch {wildcards.batch} of the {wildcards.study} study"
     shell:
-        'mkdir -p {output:q}; for run in {input.followed:q}/*/; do [ -d "$run" ] || continue;'
+        '(mkdir -p {output:q}; for run in {input.followed:q}/*/; do [ -d "$run" ] || continue;'
         ' id=$(basename "$run");'
-        ' sonicvacuum discover --together {input.records:q}/"$id" "$run" --out {output:q}/"$id" --no-figures;'
-        " done > {log:q} 2>&1"
+        ' sonicvacuum discover --together {input.records:q}/"$id" "$run" --out {output:q}/"$id" --no-figures'
+        " --threads {threads:q}; done) > {log:q} 2>&1"
 
 
 rule resolved:
@@ -324,10 +324,10 @@ rule compare_fresh:
     message:
         "Comparing models with fresh runs in batch {wildcards.batch} of the {wildcards.study} study"
     shell:
-        'mkdir -p {output:q}; for run in {input.followed:q}/*/; do [ -d "$run" ] || continue;'
+        '(mkdir -p {output:q}; for run in {input.followed:q}/*/; do [ -d "$run" ] || continue;'
         ' id=$(basename "$run"); mkdir -p {output:q}/"$id";'
         ' sonicvacuum compare --model {input.verdicts:q}/"$id/model.json" "$run" --threads {threads:q}'
-        ' --json {output:q}/"$id/compared.json"; done > {log:q} 2>&1'
+        ' --json {output:q}/"$id/compared.json"; done) > {log:q} 2>&1'
 
 
 rule foretold:
@@ -383,14 +383,14 @@ rule publish_again:
     conda:
         ENVIRONMENT
     params:
-        page="docs/again.md",
+        page=home("docs/again.md"),
         keep=home("workflow/resources/reference/blind_again"),
         again="results/blind/again/again",
     message:
         "Keeping the fresh sample of the study in git and in docs/again.md"
     shell:
-        "mkdir -p {params.keep:q} && cp {input.tables:q} {params.keep:q}"
-        " && sonicvacuum blind tables {params.keep:q} --out {params.again:q} --page {params.page:q} > {log:q} 2>&1"
+        "(mkdir -p {params.keep:q} && cp {input.tables:q} {params.keep:q}"
+        " && sonicvacuum blind tables {params.keep:q} --out {params.again:q} --page {params.page:q}) > {log:q} 2>&1"
 
 
 # Run on purpose, as publish_study is.
@@ -408,5 +408,5 @@ rule publish_laws:
     message:
         "Keeping the tables of laws outside the catalogue in git"
     shell:
-        "mkdir -p {params.keep:q} && cp {input.rows:q} {params.keep:q}/records.csv"
-        " && cp {input.summary:q} {params.keep:q}/summary.csv > {log:q} 2>&1"
+        "(mkdir -p {params.keep:q} && cp {input.rows:q} {params.keep:q}/records.csv"
+        " && cp {input.summary:q} {params.keep:q}/summary.csv) > {log:q} 2>&1"

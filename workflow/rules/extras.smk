@@ -84,4 +84,4 @@ rule publish_extras:
     message:
         "Keeping the tables of systematic errors and sets in git"
     shell:
-        "mkdir -p {params.keep:q} && cp {input.rows:q} {input.summary:q} {params.keep:q} > {log:q} 2>&1"
+        "(mkdir -p {params.keep:q} && cp {input.rows:q} {input.summary:q} {params.keep:q}) > {log:q} 2>&1"

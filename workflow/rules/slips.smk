@@ -84,4 +84,4 @@ rule publish_slips:
     message:
         "Keeping the tables of the slips in git"
     shell:
-        "mkdir -p {params.keep:q} && cp {input.rows:q} {input.summary:q} {params.keep:q} > {log:q} 2>&1"
+        "(mkdir -p {params.keep:q} && cp {input.rows:q} {input.summary:q} {params.keep:q}) > {log:q} 2>&1"
