@@ -5,8 +5,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from sonicvacuum_blind.extra_cases import SIZES
-from sonicvacuum_blind.score import UNKNOWN, Line, cases, confidently, load, whole
-from sonicvacuum_blind.shares import quantile, share
+from sonicvacuum_blind.score import UNKNOWN, SummaryLine, cases, confidently, load, whole
+from sonicvacuum_blind.shares import counted_of, quantile
+from sonicvacuum_blind.stated import of_named
 
 # What is hidden can be told from all else where an ideal test sees it by this d′.
 TELLING = 5.0
@@ -102,7 +103,7 @@ def row(truth: dict, verdict: dict) -> ExtraRow:
         reached=min(truth["d_prime_hidden"], default=0.0),
         ideal=float(ideal),
         named="+".join(named),
-        confidence=_probability(verdict),
+        confidence=of_named(verdict),
         found=int(set(effects) <= set(claimed)),
         exact=int(set(effects) == set(claimed)),
         wrong=int(bool(wrong)),
@@ -128,13 +129,7 @@ def _closed(fitted, floor):
     return min(1.0, (fitted["before"] - fitted["after"]) / gap) if gap > 0.0 else math.nan
 
 
-def _probability(verdict):
-    known = sorted(n for n in verdict["named"] if n != UNKNOWN)
-    key = " + ".join([*known, *([UNKNOWN] if UNKNOWN in verdict["named"] else [])])
-    return verdict["probabilities"].get(key or "none", 0.0)
-
-
-def summary(rows: Iterable[ExtraRow]) -> list[Line]:
+def summary(rows: Iterable[ExtraRow]) -> list[SummaryLine]:
     """Shares with their 95 % intervals (Wilson): with systematic errors, by size, and of sets; seconds."""
     rows = list(rows)
     smooth, sets = [r for r in rows if r.kind != "set"], [r for r in rows if r.kind == "set"]
@@ -143,9 +138,9 @@ def summary(rows: Iterable[ExtraRow]) -> list[Line]:
         lines += _smooth([r for r in smooth if r.size == size], f"{100.0 * size:g} %")
     telling = [r for r in sets if r.telling]
     for group, own in (("sets", sets), (f"sets of d′ ≥ {TELLING:g} to an ideal test", telling)):
-        lines.append(_share("all found", group, own, "found", ">= 0.75"))
-        lines.append(_share("wrong name", group, own, "wrong", "<= 0.05"))
-        lines.append(_share("exactly these", group, own, "exact"))
+        lines.append(counted_of("all found", group, own, "found", ">= 0.75"))
+        lines.append(counted_of("wrong name", group, own, "wrong", "<= 0.05"))
+        lines.append(counted_of("exactly these", group, own, "exact"))
     closed = _quantile("gap closed, median", "sets", [r.closed for r in sets], 0.5)
     seconds = [r.seconds for r in rows]
     return [
@@ -162,12 +157,12 @@ def _smooth(rows, group):
     telling = [r for r in singles if r.telling]
     named = [r for r in singles if r.found]
     return [
-        _share("wrong name", f"{group}, nulls and singles", rows, "wrong", "<= 0.02"),
-        _share("wrong name", f"{group}, nulls", nulls, "wrong"),
-        _share("wrong name not called confusable", f"{group}, nulls and singles", rows, "wrong_class"),
-        _share("confident wrong name", f"{group}, nulls and singles", rows, "confident_wrong"),
-        _share("truth among what is named", f"{group}, singles", singles, "found", ">= 0.9"),
-        _share(
+        counted_of("wrong name", f"{group}, nulls and singles", rows, "wrong", "<= 0.02"),
+        counted_of("wrong name", f"{group}, nulls", nulls, "wrong"),
+        counted_of("wrong name not called confusable", f"{group}, nulls and singles", rows, "wrong_class"),
+        counted_of("confident wrong name", f"{group}, nulls and singles", rows, "confident_wrong"),
+        counted_of("truth among what is named", f"{group}, singles", singles, "found", ">= 0.9"),
+        counted_of(
             "truth among what is named",
             f"{group}, singles of d′ ≥ {TELLING:g} beside it",
             telling,
@@ -178,10 +173,5 @@ def _smooth(rows, group):
     ]
 
 
-def _share(measure, group, rows, what, goal=""):
-    found = share(sum(getattr(r, what) for r in rows), len(rows))
-    return Line(measure, group, len(rows), *found, math.nan, math.nan, goal)
-
-
 def _quantile(measure, group, values, level):
-    return Line(measure, group, *quantile(values, level), math.nan, math.nan, "")
+    return SummaryLine(measure, group, *quantile(values, level))

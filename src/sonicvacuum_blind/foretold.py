@@ -9,7 +9,7 @@ import numpy as np
 
 from sonicvacuum.files import InputError
 from sonicvacuum_blind import TRUTH
-from sonicvacuum_blind.score import Line, found_in, whole
+from sonicvacuum_blind.score import SummaryLine, found_in, whole
 from sonicvacuum_blind.shares import counted, quantile, ratio_of_sums
 from sonicvacuum_blind.stated import load, right_names
 
@@ -94,7 +94,7 @@ def _nearest(near):
     return " ".join(f"{n['effect']} {n['distance']:.2f}" for n in near[:NEAREST])
 
 
-def summary(rows: Iterable[Foretold]) -> list[Line]:
+def summary(rows: Iterable[Foretold]) -> list[SummaryLine]:
     """Medians of both models by kind of record, and the share of the gap that is closed, gaps added up."""
     lines, rows = [], list(rows)
     for kind in ("single", "pair", "set", "foreign", "beside"):
@@ -106,7 +106,9 @@ def summary(rows: Iterable[Foretold]) -> list[Line]:
             ("model found", [r.after for r in chosen]),
             ("model found, names exact", [r.after for r in chosen if r.exact]),
         ):
-            lines.append(Line("chi2/N of a fresh run", f"{kind}, {model}, median", *quantile(values, 0.5)))
+            lines.append(
+                SummaryLine("chi2/N of a fresh run", f"{kind}, {model}, median", *quantile(values, 0.5))
+            )
         lines.append(_closed(kind, chosen))
     return lines + _laws([r for r in rows if r.kind == "foreign"])
 
@@ -114,13 +116,13 @@ def summary(rows: Iterable[Foretold]) -> list[Line]:
 def _closed(group, rows):
     gaps = np.array([(r.data * (r.before - 1.0), r.data * (r.after - 1.0)) for r in rows])
     found = ratio_of_sums(gaps[:, 0] - gaps[:, 1], gaps[:, 0])
-    return Line("gap closed on fresh runs", f"{group}, gaps added up", len(rows), *found)
+    return SummaryLine("gap closed on fresh runs", f"{group}, gaps added up", len(rows), *found)
 
 
 def _each(group, rows):
     """The share of a record's own gap, in the median: strong effects do not decide it."""
     shares = [(r.before - r.after) / (r.before - 1.0) for r in rows if r.before > LEAST]
-    return Line("gap closed on fresh runs", f"{group}, median", *quantile(shares, 0.5))
+    return SummaryLine("gap closed on fresh runs", f"{group}, median", *quantile(shares, 0.5))
 
 
 def _laws(rows):

@@ -303,7 +303,7 @@ def _missed(frame, truth, shapes, x, tolerance=TOLERANCE):
 
 
 @dataclass(frozen=True)
-class Line:
+class IdealLine:
     """What of a case is known before any verdict.
 
     Attributes:
@@ -322,7 +322,7 @@ class Line:
 
 
 @one_thread
-def line(spec: Spec) -> Line:
+def line(spec: Spec) -> IdealLine:
     """The line of a case; ValueError where no drawn design lets its effects act."""
     own = laboratory(spec)
     ideal = share(own, spec, stream(spec, "rule")) if spec.kind in ("single", "pair") else math.nan
@@ -331,7 +331,7 @@ def line(spec: Spec) -> Line:
     errors = seen[len(frame.base) :]
     before = float(np.sqrt(np.mean(errors**2)))
     cells = " ".join(f"{name}={size:.4g}" for name, size in _cells(frame, seen[: len(frame.base)]).items())
-    return Line(spec.id, ideal, before, cells)
+    return IdealLine(spec.id, ideal, before, cells)
 
 
 def _cells(frame, rest):

@@ -14,12 +14,12 @@ import pandas as pd
 
 from sonicvacuum.report import tables
 from sonicvacuum_blind import words
-from sonicvacuum_blind.baselines.line import Line as Baseline
+from sonicvacuum_blind.baselines.line import RuleLine
 from sonicvacuum_blind.baselines.names import PANELS, RULES
-from sonicvacuum_blind.score import Line, Row
+from sonicvacuum_blind.score import Row, SummaryLine
 
-SUMMARY = [f.name for f in fields(Line)]
-BASELINES = [f.name for f in fields(Baseline)]
+SUMMARY = [f.name for f in fields(SummaryLine)]
+BASELINES = [f.name for f in fields(RuleLine)]
 # Columns of both that hold numbers, and of the first.
 SHARES = ("value", "low", "high")
 NUMBERS = (*SHARES, "ideal", "of_ideal")

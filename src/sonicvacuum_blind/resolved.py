@@ -11,7 +11,7 @@ import numpy as np
 from sonicvacuum.files import InputError
 from sonicvacuum_blind import TRUTH
 from sonicvacuum_blind.followup import CHOICES, FILE
-from sonicvacuum_blind.score import Line, found_in, load, whole
+from sonicvacuum_blind.score import SummaryLine, found_in, load, whole
 from sonicvacuum_blind.shares import counted, ratio_of_sums
 
 # Effect → general laws of which it is a limit, which therefore no run can rule out: a contact that relaxes
@@ -120,7 +120,7 @@ def _left(verdict):
     return sorted({name for names in verdict["confusable"] for name in names} - set(verdict["named"]))
 
 
-def summary(rows: Iterable[Followed]) -> list[Line]:
+def summary(rows: Iterable[Followed]) -> list[SummaryLine]:
     """Shares with 95 % intervals: resolved by each choice, by it alone; how much oftener by the proposed run;
     exact names before and after.
     """
@@ -143,7 +143,7 @@ def summary(rows: Iterable[Followed]) -> list[Line]:
     if any(of["random"][id].resolved for id in both):
         hits = (np.array([of[c][id].resolved for id in both]) for c in CHOICES)
         found = ratio_of_sums(*hits)
-        lines.append(Line("resolved, ratio", "proposed over random", len(both), *found, goal=">= 2.5"))
+        lines.append(SummaryLine("resolved, ratio", "proposed over random", len(both), *found, goal=">= 2.5"))
     for one, other in (CHOICES, CHOICES[::-1]):
         alone = [of[one][id].resolved and not of[other][id].resolved for id in both]
         lines.append(counted("resolved by this run alone", one, alone))

@@ -277,7 +277,7 @@ def _class_level(effects, named, confusable):
 
 
 @dataclass(frozen=True)
-class Line:
+class SummaryLine:
     """One line: a share or a median of so many cases, its 95 % interval, and what it is measured against.
 
     Attributes:

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 import numpy as np
 import scipy
 
-from sonicvacuum_blind.score import Line, Row
+from sonicvacuum_blind.score import Row, SummaryLine
 from sonicvacuum_blind.study import STRENGTHS
 
 CONFIDENCE = 0.95
@@ -25,10 +25,15 @@ def share(hits: int, count: int) -> tuple[float, float, float]:
     return (hits / count if count else math.nan, *wilson(hits, count))
 
 
-def counted(measure: str, group: str, hits: Iterable[int], goal: str = "") -> Line:
+def counted(measure: str, group: str, hits: Iterable[int], goal: str = "") -> SummaryLine:
     """A line of a summary: the share of ones among hits, 1 or 0 for each case."""
     hits = list(hits)
-    return Line(measure, group, len(hits), *share(int(sum(hits)), len(hits)), goal=goal)
+    return SummaryLine(measure, group, len(hits), *share(int(sum(hits)), len(hits)), goal=goal)
+
+
+def counted_of(measure: str, group: str, rows: Iterable, what: str, goal: str = "") -> SummaryLine:
+    """The same of an attribute of rows, 1 or 0."""
+    return counted(measure, group, (int(getattr(row, what)) for row in rows), goal)
 
 
 def quantile(values, level: float) -> tuple[int, float, float, float]:
@@ -74,9 +79,5 @@ def _ratio(upper, lower, axis):
 
 def strength_bin(row: Row) -> float:
     """The study's strength that is nearest to the d′ reached, on a logarithmic scale; 0 below 2.4."""
-    return bin_of(row.reached)
-
-
-def bin_of(d_prime: float) -> float:
-    """The same of a number."""
+    d_prime = row.reached
     return min(STRENGTHS, key=lambda s: abs(math.log(d_prime / s))) if d_prime >= 2.4 else 0.0

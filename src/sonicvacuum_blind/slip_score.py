@@ -4,9 +4,10 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from sonicvacuum_blind.score import LIKELY, UNKNOWN, Line, cases, confidently, load, whole
-from sonicvacuum_blind.shares import counted, quantile
+from sonicvacuum_blind.score import LIKELY, UNKNOWN, SummaryLine, cases, confidently, load, whole
+from sonicvacuum_blind.shares import counted_of, quantile
 from sonicvacuum_blind.slips import SLIPS
+from sonicvacuum_blind.stated import of_named
 
 # A slip that the record's own errors explain up to this d′ cannot be told from them.
 PLAIN = 10.0
@@ -95,8 +96,8 @@ def row(truth: dict, verdict: dict) -> SlipRow:
         place=" ".join(filter(None, [truth["run"], *(truth["sensor"] or [])])),
         d_prime=math.nan if truth["d_prime"] is None else float(truth["d_prime"]),
         named="+".join(named),
-        confidence=_probability(verdict),
-        faults="; ".join(map(_told, verdict["faults"])),
+        confidence=of_named(verdict),
+        faults="; ".join(map(_format_fault, verdict["faults"])),
         slip_named=int(is_named),
         slip_listed=int(called or bool(own)),
         wrong_slip=int(bool(likely) and not is_named),
@@ -113,41 +114,32 @@ def _at(fault, truth):
     return run and (truth["sensor"] is None or set(sensors) == set(truth["sensor"]))
 
 
-def _probability(verdict):
-    key = " + ".join([*sorted(n for n in verdict["named"] if n != UNKNOWN), UNKNOWN][: len(verdict["named"])])
-    return verdict["probabilities"].get(key or "none", 0.0)
-
-
-def _told(fault):
+def _format_fault(fault):
     sensors = fault["sensor"] if isinstance(fault["sensor"], list) else [fault["sensor"]]
     where = " ".join(filter(None, [fault["run"], *sensors]))
     return f"{fault['fault']}{where and f' ({where})'} {fault['probability']:.3f}"
 
 
-def summary(rows: Iterable[SlipRow]) -> list[Line]:
+def summary(rows: Iterable[SlipRow]) -> list[SummaryLine]:
     """Shares with their 95 % intervals: over all slips, of each kind, of sound records; seconds."""
     rows = list(rows)
     slipped, sound = [r for r in rows if r.slip != "sound"], [r for r in rows if r.slip == "sound"]
     plain = [r for r in slipped if r.plain]
     hidden = [r for r in plain if r.effect and SLIPS[r.slip].correctable]
     return [
-        _share("slip named", "that the data can show", plain, "slip_named", ">= 0.8"),
-        _share("slip named", "all", slipped, "slip_named"),
-        _share("another slip named", "all", slipped, "wrong_slip"),
-        _share("confident wrong effect", "all", slipped, "confident_wrong", "<= 0.01"),
-        _share("true effect named", "slip that can be put right", hidden, "effect_named", ">= 0.8"),
-        _share("true effect named", "no slip", [r for r in sound if r.effect], "effect_named"),
-        _share("slip named", "no slip", sound, "wrong_slip"),
-        _share("confident wrong effect", "no slip", sound, "confident_wrong"),
-        *(_share("slip named", s, [r for r in plain if r.slip == s], "slip_named") for s in SLIPS),
+        counted_of("slip named", "that the data can show", plain, "slip_named", ">= 0.8"),
+        counted_of("slip named", "all", slipped, "slip_named"),
+        counted_of("another slip named", "all", slipped, "wrong_slip"),
+        counted_of("confident wrong effect", "all", slipped, "confident_wrong", "<= 0.01"),
+        counted_of("true effect named", "slip that can be put right", hidden, "effect_named", ">= 0.8"),
+        counted_of("true effect named", "no slip", [r for r in sound if r.effect], "effect_named"),
+        counted_of("slip named", "no slip", sound, "wrong_slip"),
+        counted_of("confident wrong effect", "no slip", sound, "confident_wrong"),
+        *(counted_of("slip named", s, [r for r in plain if r.slip == s], "slip_named") for s in SLIPS),
         _seconds(rows, "median", 0.5),
         _seconds(rows, "90th percentile", 0.9),
     ]
 
 
-def _share(measure, group, rows, what, goal=""):
-    return counted(measure, group, (getattr(r, what) for r in rows), goal)
-
-
 def _seconds(rows, group, level):
-    return Line("seconds per record", group, *quantile([r.seconds for r in rows], level))
+    return SummaryLine("seconds per record", group, *quantile([r.seconds for r in rows], level))

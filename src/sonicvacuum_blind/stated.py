@@ -103,6 +103,11 @@ def key_of(names) -> str:
     return " + ".join([*known, *([UNKNOWN] if UNKNOWN in names else [])]) or "none"
 
 
+def of_named(verdict: dict) -> float:
+    """The probability that a verdict states of what it names."""
+    return verdict["probabilities"].get(key_of(verdict["named"]), 0.0)
+
+
 def credible_set(probabilities: dict[str, float]) -> list[str]:
     """The likeliest explanations that together have `CREDIBLE` of the probability."""
     order = sorted(probabilities, key=lambda name: (-probabilities[name], name))
@@ -192,7 +197,7 @@ def located(cells: str, folder: Path | None) -> tuple[int, int, int, int]:
     """(cells found where something is left, found where nothing is, found of the large ones, large ones).
 
     Args:
-        cells: of the case, as `ideal.Line` has them.
+        cells: of the case, as `ideal.IdealLine` has them.
         folder: of the verdict.
     """
     path = _beside(folder, "where.csv")

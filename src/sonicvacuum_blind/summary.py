@@ -9,8 +9,8 @@ import numpy as np
 from sonicvacuum_blind import design
 from sonicvacuum_blind.breakdown import KINDS, coverage, ideal_share, pit
 from sonicvacuum_blind.calibration import BASE_RATES, ece, honest, resampled
-from sonicvacuum_blind.score import UNKNOWN, Line, Row
-from sonicvacuum_blind.shares import counted, quantile, ratio_of_sums, share, strength_bin
+from sonicvacuum_blind.score import UNKNOWN, Row, SummaryLine
+from sonicvacuum_blind.shares import counted, counted_of, quantile, ratio_of_sums, share, strength_bin
 from sonicvacuum_blind.stated import CREDIBLE, Parameter
 from sonicvacuum_blind.study import STRENGTHS
 
@@ -22,7 +22,7 @@ BESIDE = "beside"
 ADDED, HONEST = "with the records added", "right probabilities"
 
 
-def summary(rows: Iterable[Row], parameters: Iterable[Parameter] = ()) -> list[Line]:
+def summary(rows: Iterable[Row], parameters: Iterable[Parameter] = ()) -> list[SummaryLine]:
     """The table, a line for each goal and some without.
 
     What is added up over unlike records is so over the main list alone, whose shares are fixed; records that
@@ -68,97 +68,103 @@ def _judged(measure, group, rows, goal):
     """The share of all; where some have no ideal rule, the goal is one of the rest."""
     known = [r for r in rows if not math.isnan(r.ideal)]
     if known and len(known) < len(rows):
-        yield _share(measure, group, rows, "exact")
+        yield counted_of(measure, group, rows, "exact")
         group += ", where an ideal rule is known"
-    found, ideal = _share(measure, group, known or rows, "exact", goal), ideal_share(known)
+    found, ideal = counted_of(measure, group, known or rows, "exact", goal), ideal_share(known)
     yield replace(found, ideal=ideal, of_ideal=found.value / ideal if ideal else math.nan)
 
 
 def _places(rows):
     chosen = [r for r in rows if not math.isnan(r.place)]
     strong = [r for r in chosen if r.reached >= STRONG]
-    yield _share("place right", "d' 10 and more", strong, "place", ">= 0.95")
-    yield _share("place right", "d' below 10", [r for r in chosen if r.reached < STRONG], "place")
+    yield counted_of("place right", "d' 10 and more", strong, "place", ">= 0.95")
+    yield counted_of("place right", "d' below 10", [r for r in chosen if r.reached < STRONG], "place")
 
 
 def _classes(of):
     for kind in KINDS:
-        yield _share(f"truth in the {100 * CREDIBLE:.0f} % credible set", kind, of[kind], "credible")
+        yield counted_of(f"truth in the {100 * CREDIBLE:.0f} % credible set", kind, of[kind], "credible")
         sizes = [float(r.credible_size) for r in of[kind]]
-        yield Line("size of that set", f"{kind}, median", *quantile(sizes, 0.5))
+        yield SummaryLine("size of that set", f"{kind}, median", *quantile(sizes, 0.5))
 
 
 def _nulls(rows):
     for noise in ("white", "ar1", "quantised"):
         chosen = [r for r in rows if r.noise == noise]
-        yield _share("named on null", noise, chosen, "false_alarm", "<= 0.01")
-        yield _share("slip named on null", noise, chosen, "slip", "<= 0.01")
-    yield _share("unknown on null", "all", rows, "says_unknown")
+        yield counted_of("named on null", noise, chosen, "false_alarm", "<= 0.01")
+        yield counted_of("slip named on null", noise, chosen, "slip", "<= 0.01")
+    yield counted_of("unknown on null", "all", rows, "says_unknown")
 
 
 def _outside(rows):
     group = "outside the catalogue, leftover d' 8 and more"
     chosen = [r for r in rows if r.leftover >= LEFTOVER]
-    yield _share("says unknown", group, chosen, "says_unknown", ">= 0.90")
-    yield _share("wrong name, unqualified", "outside the catalogue", rows, "wrong", "<= 0.05")
+    yield counted_of("says unknown", group, chosen, "says_unknown", ">= 0.90")
+    yield counted_of("wrong name, unqualified", "outside the catalogue", rows, "wrong", "<= 0.05")
     for name in sorted({r.effects for r in rows}):
         own = [r for r in chosen if r.effects == name]
         if own:
-            yield _share("says unknown", f"outside, {name}", own, "says_unknown")
-            yield _share("wrong name, unqualified", f"outside, {name}", own, "wrong")
+            yield counted_of("says unknown", f"outside, {name}", own, "says_unknown")
+            yield counted_of("wrong name, unqualified", f"outside, {name}", own, "wrong")
 
 
 def _beside(rows):
     """An effect of the catalogue and one from outside, hidden together: what is said of either."""
     if not rows:
         return
-    yield _share("exact name and unknown", BESIDE, rows, "exact")
-    yield _share("says unknown", BESIDE, rows, "says_unknown")
+    yield counted_of("exact name and unknown", BESIDE, rows, "exact")
+    yield counted_of("says unknown", BESIDE, rows, "says_unknown")
     named = [r for r in rows if r.says_unknown and r.named != UNKNOWN]
     told = [int(r.effects.split("+")[0] in r.named.split("+")) for r in named]
     yield counted("effect named beside unknown is there", BESIDE, told)
     yield counted("no other effect is named", BESIDE, [1 - r.false_alarm for r in named])
-    yield _share("wrong name, unqualified", BESIDE, rows, "wrong")
+    yield counted_of("wrong name, unqualified", BESIDE, rows, "wrong")
 
 
 def _wrong(of):
     for kind in ("single", "pair", "set", "foreign"):
         if kind != "foreign":
-            yield _share("wrong name, unqualified", kind, of[kind], "wrong")
-        yield _share("the same with probability 0.9", kind, of[kind], "confident_wrong")
-        yield _share("slip named where none is", kind, of[kind], "slip")
+            yield counted_of("wrong name, unqualified", kind, of[kind], "wrong")
+        yield counted_of("the same with probability 0.9", kind, of[kind], "confident_wrong")
+        yield counted_of("slip named where none is", kind, of[kind], "slip")
 
 
 def _probabilities(rows, with_added):
-    yield Line("calibration error (ECE)", "all", *ece(rows), goal="<= 0.02")
+    yield SummaryLine("calibration error (ECE)", "all", *ece(rows), goal="<= 0.02")
     below = [r for r in rows if r.stated < 0.9]
-    yield Line("calibration error (ECE)", "stated below 0.9", *ece(below), goal="<= 0.05")
+    yield SummaryLine("calibration error (ECE)", "stated below 0.9", *ece(below), goal="<= 0.05")
     for group, chosen in (("all", rows), ("stated below 0.9", below)):
-        yield Line("calibration error (ECE)", f"{group}, {HONEST}", *honest(chosen))
+        yield SummaryLine("calibration error (ECE)", f"{group}, {HONEST}", *honest(chosen))
     if len(with_added) > len(rows):
-        yield Line("calibration error (ECE)", ADDED, *ece(with_added))
+        yield SummaryLine("calibration error (ECE)", ADDED, *ece(with_added))
     for name, rates in BASE_RATES.items():
         chosen = [r for r in rows if r.kind in rates]
-        yield Line("calibration error (ECE)", f"base rates: {name}", *ece(chosen, rates))
+        yield SummaryLine("calibration error (ECE)", f"base rates: {name}", *ece(chosen, rates))
     scores = np.array([r.brier for r in rows])
-    yield Line("Brier score", "all", len(rows), *resampled(lambda k: float(scores[k].mean()), len(rows)))
+    yield SummaryLine(
+        "Brier score", "all", len(rows), *resampled(lambda k: float(scores[k].mean()), len(rows))
+    )
 
 
 def _intervals(rows, parameters):
     known = [line for line in pit(parameters) if line.count]
     for line in known[:1]:
         inside = int(line.inside == "yes")
-        yield Line("PIT-ECDF inside its band", "all parameters", line.count, inside, math.nan, math.nan)
+        yield SummaryLine(
+            "PIT-ECDF inside its band", "all parameters", line.count, inside, math.nan, math.nan
+        )
     effects = known[1:]
     outside = sum(line.inside == "no" for line in effects)
     group = "effects whose ECDF leaves it"
-    yield Line("PIT-ECDF inside its band", group, len(effects), outside, math.nan, math.nan, goal="<= 0")
+    yield SummaryLine(
+        "PIT-ECDF inside its band", group, len(effects), outside, math.nan, math.nan, goal="<= 0"
+    )
     for one in coverage(parameters)[:4]:
-        yield Line(
+        yield SummaryLine(
             f"{100 * one.level:.0f} % interval holds truth", "all", one.count, one.value, one.low, one.high
         )
     held, count = sum(r.held for r in rows), sum(r.limits for r in rows)
-    yield Line("upper limit holds truth", "hidden, not named", count, *share(held, count))
+    yield SummaryLine("upper limit holds truth", "hidden, not named", count, *share(held, count))
 
 
 def _located(rows):
@@ -177,8 +183,8 @@ def _located(rows):
         right, wrong = used[index].sum(axis=0)[:2]
         return wrong / (right + wrong)
 
-    yield Line("localisation F1", "cells", len(used), *resampled(f1, len(used)), goal=">= 0.9")
-    yield Line("false discoveries", "cells", len(used), *resampled(false, len(used)), goal="<= 0.05")
+    yield SummaryLine("localisation F1", "cells", len(used), *resampled(f1, len(used)), goal=">= 0.9")
+    yield SummaryLine("false discoveries", "cells", len(used), *resampled(false, len(used)), goal="<= 0.05")
 
 
 def _errors(rows):
@@ -186,13 +192,13 @@ def _errors(rows):
     chosen = [r for r in rows if r.kind in ("single", "pair", "set") and r.exact]
     for when, of in (("moved if nothing is named", "before"), ("off beside what is named", "after")):
         values = [getattr(r, f"errors_{of}") for r in chosen]
-        yield Line("record's own errors, in stated ones", f"{when}, median", *quantile(values, 0.5))
+        yield SummaryLine("record's own errors, in stated ones", f"{when}, median", *quantile(values, 0.5))
 
 
 def _gaps(rows):
     group = "d' 10 and more, median"
-    yield Line("held-out gap closed", group, *quantile([r.closed for r in rows], 0.5))
-    yield Line("held-out chi2/N", group, *quantile([r.chi2 for r in rows], 0.5))
+    yield SummaryLine("held-out gap closed", group, *quantile([r.closed for r in rows], 0.5))
+    yield SummaryLine("held-out chi2/N", group, *quantile([r.chi2 for r in rows], 0.5))
 
 
 def _gaps_together(rows):
@@ -205,15 +211,11 @@ def _gaps_together(rows):
         gaps = np.array([(r.before - 1.0, r.chi2 - 1.0) for r in chosen]).reshape(-1, 2)
         found = ratio_of_sums(gaps[:, 0] - gaps[:, 1], gaps[:, 0])
         group = f"white noise, d' {strength:g}, gaps added up"
-        yield Line("held-out gap closed", group, len(chosen), *found)
+        yield SummaryLine("held-out gap closed", group, len(chosen), *found)
 
 
 def _seconds(of):
     for kind in KINDS:
         times = [r.seconds for r in of[kind]]
-        yield Line("seconds per record", f"{kind}, median", *quantile(times, 0.5))
-        yield Line("seconds per record", f"{kind}, 90th percentile", *quantile(times, 0.9))
-
-
-def _share(measure, group, rows: list[Row], what: str, goal=""):
-    return counted(measure, group, (int(getattr(r, what)) for r in rows), goal)
+        yield SummaryLine("seconds per record", f"{kind}, median", *quantile(times, 0.5))
+        yield SummaryLine("seconds per record", f"{kind}, 90th percentile", *quantile(times, 0.9))

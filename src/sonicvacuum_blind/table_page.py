@@ -5,18 +5,18 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from sonicvacuum.files import InputError, read_text, replacing
-from sonicvacuum_blind.score import Line
+from sonicvacuum_blind.score import SummaryLine
 
 BEGIN, END = "<!-- table -->", "<!-- end of table -->"
 HEAD = "| asked | of | records | value | 95 % | goal |\n| --- | --- | ---: | ---: | ---: | --- |"
 
 
-def table(lines: Iterable[Line]) -> str:
+def table(lines: Iterable[SummaryLine]) -> str:
     """Markdown of all lines that some record stands behind."""
-    return "\n".join([HEAD, *(_told(line) for line in lines if line.count)])
+    return "\n".join([HEAD, *(_format(line) for line in lines if line.count)])
 
 
-def _told(line):
+def _format(line):
     goal = line.goal.replace(">=", "≥").replace("<=", "≤")
     between = "" if math.isnan(line.low) else f"{line.low:.3g} to {line.high:.3g}"
     return f"| {line.measure} | {line.group} | {line.count} | {line.value:.3g} | {between} | {goal} |"
@@ -34,7 +34,7 @@ def around(page) -> tuple[str, str]:
     return text.split(BEGIN)[0], text.split(END)[1]
 
 
-def write(lines: Iterable[Line], page) -> None:
+def write(lines: Iterable[SummaryLine], page) -> None:
     """The page (Markdown) with its table replaced, all else as it is; InputError as from `around`."""
     before, after = around(page)
     with replacing(Path(page)) as out:

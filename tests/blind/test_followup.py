@@ -20,7 +20,7 @@ from sonicvacuum_blind.followup import ambiguous, follow, offers, random_change,
 from sonicvacuum_blind.foretold import foretold, summary
 from sonicvacuum_blind.hide import TOLERANCE, Spec, hide, laboratory
 from sonicvacuum_blind.prediction import predict
-from sonicvacuum_blind.score import Line, read_table
+from sonicvacuum_blind.score import SummaryLine, read_table
 
 SPEC = Spec("a", "single", "one-speed", "white", ("sensor-gain",), 10.0, 5, 40)
 SCALARS = Spec("s", "null", "scalars", "white", (), 0.0, 5, 41)
@@ -216,7 +216,7 @@ def test_fresh_runs_are_held_against_both_models(tmp_path):
     call = [str(tmp_path / part) if part.endswith(".csv") else part for part in call]
     done = CliRunner().invoke(cli, call, catch_exceptions=False)
     assert done.exit_code == 0
-    lines = {one.group: one for one in read_table(Line, tmp_path / "fresh.csv")}
+    lines = {one.group: one for one in read_table(SummaryLine, tmp_path / "fresh.csv")}
     assert lines["single, gaps added up"].value == pytest.approx(0.75)
     assert lines["single, model found, names exact, median"].value == pytest.approx(1.1)
     with pytest.raises(InputError, match="is empty"):

@@ -12,7 +12,7 @@ from sonicvacuum.files import InputError
 from sonicvacuum_blind import breakdown, catalogue, kept
 from sonicvacuum_blind import figures as study
 from sonicvacuum_blind.baselines import names
-from sonicvacuum_blind.baselines.table import Line
+from sonicvacuum_blind.baselines.table import RuleLine
 from sonicvacuum_blind.score import write_table
 
 IDS = [e.id for e in catalogue.ENTRIES]
@@ -46,7 +46,7 @@ def reliability():
 
 def baselines():
     return [
-        Line(rule, measure, group, 1118, 0.93, 0.91, 0.95, "made up")
+        RuleLine(rule, measure, group, 1118, 0.93, 0.91, 0.95, "made up")
         for rule in names.RULES
         for measure, group, *_ in names.PANELS
     ]
@@ -60,7 +60,7 @@ def folder(tmp_path_factory):
         "confusion": (confusion(), breakdown.Confusion),
         "accuracy": (accuracy(), breakdown.Accuracy),
         "reliability": (reliability(), breakdown.Bin),
-        "baselines": (baselines(), Line),
+        "baselines": (baselines(), RuleLine),
     }
     for name, (rows, kind) in tables.items():
         write_table(rows, kind, made / f"{name}.csv")

@@ -11,9 +11,9 @@ from sonicvacuum.files import InputError
 from sonicvacuum_blind import published, words
 from sonicvacuum_blind import report as study
 from sonicvacuum_blind.baselines import names
-from sonicvacuum_blind.baselines.table import Line as Baseline
+from sonicvacuum_blind.baselines.table import RuleLine as Baseline
 from sonicvacuum_blind.kept import TABLES
-from sonicvacuum_blind.score import Line, write_table
+from sonicvacuum_blind.score import SummaryLine, write_table
 
 NAN = math.nan
 README = f"# Title\n\n{published.BEGIN}\nformer text\n{published.END}\n\nafter\n"
@@ -23,14 +23,16 @@ README = f"# Title\n\n{published.BEGIN}\nformer text\n{published.END}\n\nafter\n
 def folder(tmp_path):
     """Folder with all tables of a study."""
     lines = [
-        Line("exact name", "traces, d' 10", 200, 0.96, 0.92, 0.98, 0.97, 0.99, ">= 0.95"),
-        Line("exact name", "traces, d' 20", 200, 0.97, 0.94, 0.985, 0.98, 0.99, ">= 0.99"),
-        Line("named on null", "white", 300, 0.02, 0.01, 0.05, NAN, NAN, "<= 0.01"),
-        Line("90 % interval holds truth", "named rightly", 50, 0.9, 0.8, 0.96, NAN, NAN, "0.87 to 0.93"),
-        Line("exact name", "scalars", 0, NAN, NAN, NAN, NAN, NAN, ">= 0.83"),
-        Line("seconds per record", "single, median", 220, 3.0, 2.8, 3.2, NAN, NAN, "<= 5"),
-        Line("seconds per record", "single, 90th percentile", 220, 6.0, 5.0, 7.0, NAN, NAN, ""),
-        Line("seconds per record", "null, median", 300, 2.0, 1.8, 2.2, NAN, NAN, ""),
+        SummaryLine("exact name", "traces, d' 10", 200, 0.96, 0.92, 0.98, 0.97, 0.99, ">= 0.95"),
+        SummaryLine("exact name", "traces, d' 20", 200, 0.97, 0.94, 0.985, 0.98, 0.99, ">= 0.99"),
+        SummaryLine("named on null", "white", 300, 0.02, 0.01, 0.05, NAN, NAN, "<= 0.01"),
+        SummaryLine(
+            "90 % interval holds truth", "named rightly", 50, 0.9, 0.8, 0.96, NAN, NAN, "0.87 to 0.93"
+        ),
+        SummaryLine("exact name", "scalars", 0, NAN, NAN, NAN, NAN, NAN, ">= 0.83"),
+        SummaryLine("seconds per record", "single, median", 220, 3.0, 2.8, 3.2, NAN, NAN, "<= 5"),
+        SummaryLine("seconds per record", "single, 90th percentile", 220, 6.0, 5.0, 7.0, NAN, NAN, ""),
+        SummaryLine("seconds per record", "null, median", 300, 2.0, 1.8, 2.2, NAN, NAN, ""),
     ]
     rivals = [
         Baseline("sonicvacuum", names.EXACT, names.SINGLES, 220, 0.955, 0.92, 0.975, ""),
@@ -39,14 +41,14 @@ def folder(tmp_path):
         Baseline("ideal rule", names.EXACT, names.SINGLES, 220, 0.97, NAN, NAN, "computed"),
     ]
     followed = [
-        Line("resolved by one more run", "proposed", 40, 0.85, 0.71, 0.93, NAN, NAN, ">= 0.8"),
-        Line("resolved by one more run", "random", 40, 0.4, 0.26, 0.55, NAN, NAN, ""),
+        SummaryLine("resolved by one more run", "proposed", 40, 0.85, 0.71, 0.93, NAN, NAN, ">= 0.8"),
+        SummaryLine("resolved by one more run", "random", 40, 0.4, 0.26, 0.55, NAN, NAN, ""),
     ]
     made = tmp_path / "made"
     for name, rows, kind in (
-        ("summary", lines, Line),
+        ("summary", lines, SummaryLine),
         ("baselines", rivals, Baseline),
-        ("resolved_summary", followed, Line),
+        ("resolved_summary", followed, SummaryLine),
     ):
         write_table(rows, kind, made / f"{name}.csv")
     for name in ("confusion", "accuracy", "reliability", "coverage"):

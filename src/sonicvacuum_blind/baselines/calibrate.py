@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from types import SimpleNamespace
 
-import msgspec
 import numpy as np
 import scipy
 
@@ -17,10 +16,13 @@ from sonicvacuum.blas import one_thread
 from sonicvacuum.discover.fit.calibration import Calibration, of_package
 from sonicvacuum.discover.fit.evidence import unknown_odds
 from sonicvacuum.discover.judge import explanations
-from sonicvacuum.files import InputError, reading, replacing
+from sonicvacuum.discover.verdict import write_json
+from sonicvacuum.files import InputError, reading
 from sonicvacuum.tables import read_csv
 from sonicvacuum_blind import TRUTH
 from sonicvacuum_blind.score import NONE, UNKNOWN, found_in, load, whole
+
+__all__ = ["Outcome", "calibrate", "outcomes", "write_json"]
 
 # No probability counts as smaller: one freak case must not decide.
 _LEAST = 1e-4
@@ -96,9 +98,3 @@ def calibrate(cases: list[Outcome]) -> Calibration:
     temper, none, unknown, slope = (float(n) for n in found.x)
     rounded = (round(x, 4) for x in (math.exp(temper), none, unknown, math.exp(slope)))
     return Calibration(*rounded, len(cases), kept)
-
-
-def write(calibration: Calibration, path) -> None:
-    """As JSON."""
-    with replacing(path, "wb") as stream:
-        stream.write(msgspec.json.format(msgspec.json.encode(calibration), indent=1) + b"\n")

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
-class Line:
+class RuleLine:
     """Share of a group of cases: the name is exact (singles), there is a name (nulls, foreign).
 
     Attributes:

@@ -13,7 +13,7 @@ from sonicvacuum.files import InputError
 from sonicvacuum_blind import design
 from sonicvacuum_blind.baselines import rules
 from sonicvacuum_blind.baselines.cases import Case
-from sonicvacuum_blind.baselines.line import Line
+from sonicvacuum_blind.baselines.line import RuleLine
 from sonicvacuum_blind.baselines.names import ALARM, EXACT, NULLS, OUTSIDE, SINGLES, WRONG
 from sonicvacuum_blind.breakdown import ONE_NAME, label_of_verdict
 from sonicvacuum_blind.score import NONE, UNKNOWN, Row
@@ -27,14 +27,14 @@ QUIETER = 100.0
 RULES = ("best-chi2", "bic", "nearest-shape", "forest", "state")
 
 
-def lines(rule: str, names: Mapping[str, str], cases: Iterable[Case], note: str = "") -> list[Line]:
+def lines(rule: str, names: Mapping[str, str], cases: Iterable[Case], note: str = "") -> list[RuleLine]:
     """Lines of one rule: names by case id; cases without a name are left out."""
     rows = [c.row for c in cases if c.row.id in names]
     found = []
     for measure, group, chosen, right in _groups(rows):
         hits = sum(right(row, names[row.id]) for row in chosen)
         if chosen:
-            found.append(Line(rule, measure, group, len(chosen), *share(hits, len(chosen)), note))
+            found.append(RuleLine(rule, measure, group, len(chosen), *share(hits, len(chosen)), note))
     return found
 
 
@@ -62,19 +62,21 @@ def _named(row, name):
     return name not in (NONE, UNKNOWN)
 
 
-def ideal(cases: Iterable[Case]) -> list[Line]:
+def ideal(cases: Iterable[Case]) -> list[RuleLine]:
     """The ideal rule's share on singles, as computed for each record."""
     rows = [c.row for c in cases if not np.isnan(c.row.ideal)]
     found = []
     for measure, group, chosen, _ in _groups(rows):
         if chosen and measure == EXACT:
             value = float(np.mean([r.ideal for r in chosen]))
-            found.append(Line(IDEAL, measure, group, len(chosen), value, np.nan, np.nan, "computed"))
+            found.append(RuleLine(IDEAL, measure, group, len(chosen), value, np.nan, np.nan, "computed"))
     return found
 
 
 @one_thread
-def compare(cases: list[Case], training: list[Case], wanted: Iterable[str], state_cases: int) -> list[Line]:
+def compare(
+    cases: list[Case], training: list[Case], wanted: Iterable[str], state_cases: int
+) -> list[RuleLine]:
     """All lines: the method's own, the ideal rule's, then those of the wanted rules in their order.
 
     Args:

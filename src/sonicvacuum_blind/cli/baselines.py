@@ -44,7 +44,7 @@ def baselines(records, truth, verdicts, out, ideal, training, wanted, state_case
     from sonicvacuum_blind.score import write_table
 
     lines = table.compare(cases, known, wanted or table.RULES, state_cases)
-    write_table(lines, table.Line, out)
+    write_table(lines, table.RuleLine, out)
     for line in lines:
         text = f"{line.rule}, {line.measure}, {line.group}: {line.value:.3f}"
         click.echo(f"{text} [{line.low:.3f}, {line.high:.3f}] of {line.count}")

@@ -17,5 +17,5 @@ def calibrate(truth, verdicts, out):
     check_apart([out], [truth, verdicts])
     cases = calibration.outcomes(truth, verdicts)
     found = calibration.calibrate(cases)
-    calibration.write(found, out)
+    calibration.write_json(found, out)
     click.echo(f"temper {found.temper:g}, unknown {found.unknown:+g} and x{found.unknown_slope:g}")

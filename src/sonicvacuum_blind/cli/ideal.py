@@ -23,4 +23,4 @@ def ideal(study, path, batch, out):
     for spec in chosen(study, path, *batch_of(batch)):
         with making(path):
             lines.append(rule.line(spec))
-    write_table(lines, rule.Line, out)
+    write_table(lines, rule.IdealLine, out)

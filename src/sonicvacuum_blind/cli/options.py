@@ -92,13 +92,13 @@ def say(lines) -> None:
 def keep(rows, kind: type, lines, out, summary, page=None) -> None:
     """Write rows of a dataclass and the lines of their summary, renew the page's table, print the lines."""
     from sonicvacuum_blind import table_page
-    from sonicvacuum_blind.score import Line, write_table
+    from sonicvacuum_blind.score import SummaryLine, write_table
 
     if page:
         # A page without a place for the table is found out before anything is written.
         table_page.around(page)
     write_table(rows, kind, out)
-    write_table(lines, Line, summary)
+    write_table(lines, SummaryLine, summary)
     if page:
         table_page.write(lines, page)
     say(lines)

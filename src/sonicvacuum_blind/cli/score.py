@@ -82,7 +82,7 @@ def _tabulate(rows, intervals, summary, folder):
         scoring.write_table(intervals, Parameter, paths["parameters"])
         intervals = scoring.read_table(Parameter, paths["parameters"])
     lines = summarise(rows, intervals)
-    scoring.write_table(lines, scoring.Line, summary)
+    scoring.write_table(lines, scoring.SummaryLine, summary)
     for tables, given in ((breakdown.TABLES, rows), (breakdown.INTERVALS, intervals)):
         for name, (kind, table) in tables.items():
             if folder:
