@@ -101,5 +101,5 @@ def _reason(a, rows, values, verdicts):
     if len({rows[c].key for c in verdicts}) == 1:
         shown = f"{values[next(iter(verdicts))]:.4g}"
     else:
-        shown = ", ".join(f"{title(c)}: {values[c]:.4g}" for c in verdicts)
+        shown = "; ".join(f"{title(c)}: {values[c]:.4g}" for c in verdicts)
     return f"{shown} against {bound}{unit}."

@@ -217,7 +217,7 @@ def test_assumption_verdicts(handbook, matched, verdict):
     rows = [Row(f"fig3a.{c}", "depth", "", v, "1") for c, v in (("handbook", handbook), ("matched", matched))]
     row = assumptions.build(Metrics(rows, COLUMNS), [assumption()])[0]
     assert row.verdict == verdict
-    assert row.reason == f"Hertz, 2.76 GPa: {handbook:g}, Hertz, 15 GPa: {matched:g} against at most 0.1."
+    assert row.reason == f"Hertz, 2.76 GPa: {handbook:g}; Hertz, 15 GPa: {matched:g} against at most 0.1."
 
 
 def test_assumption_without_metric_or_value():

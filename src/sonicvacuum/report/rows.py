@@ -104,7 +104,7 @@ def in_words(parameters, catalogue):
         if effect in catalogue and name in {p.name for p in catalogue.effect(effect).parameters}:
             p = catalogue.effect(effect).parameter(name)
             told.append(f"{p.help} = {_apart(value, off(p), 2)}{unit_of(p.unit)}")
-    return ", ".join(told)
+    return "; ".join(told)  # help texts hold commas
 
 
 def present(verdict, model, catalogue) -> str:

@@ -42,7 +42,8 @@ def read_ledger(path) -> pd.DataFrame:
 
 def shown(excluded: str) -> str:
     """The models that a row excludes, called as people read them."""
-    return ", ".join(f"{title(c)} ({d} σ)" if d else title(c) for c, d in members(excluded).items())
+    # Titles hold commas.
+    return "; ".join(f"{title(c)}: {d} σ" if d else title(c) for c, d in members(excluded).items())
 
 
 def headline(ledger: pd.DataFrame) -> str:

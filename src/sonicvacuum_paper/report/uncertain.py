@@ -13,7 +13,7 @@ IMPROBABLE = 0.05
 
 def shown(probability: str) -> str:
     """The probabilities in a cell of the ledger, models called as people read them."""
-    return ", ".join(f"{title(c)} {number(p, 2)}" for c, p in members(probability).items())
+    return "; ".join(f"{title(c)}: {number(p, 2)}" for c, p in members(probability).items())
 
 
 def context(ledger: pd.DataFrame) -> dict:
