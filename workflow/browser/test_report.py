@@ -7,7 +7,7 @@ from conftest import WIDTHS, height, pages_of, sideways, unfold
 
 PAGES = ("report.html", "sure.html", "runs.html", "blind.html")
 # px at a width of 1300, every fold open.
-TALLEST = 6000
+TALLEST = 9000
 
 
 @pytest.mark.parametrize("name", PAGES)
