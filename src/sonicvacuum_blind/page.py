@@ -47,7 +47,7 @@ def _picture(svg, caption) -> dict:
     narrow = inline.is_narrow(svg)
     return {
         "name": name,
-        "svg": inline.svg(svg, name),
+        "svg": inline.svg(svg, name, caption),
         "narrow": narrow,
         "caption": inline.with_subscripts(caption),
     }

@@ -81,8 +81,9 @@ def test_text_is_legible_in_print_and_the_width_is_that_of_a_page(drawn, name):
 @pytest.mark.parametrize("name", ["fig3", "fig5"])
 def test_the_scale_bars_are_as_long_as_their_labels_say(drawn, name):
     _, figure = drawn[name]
-    for axes, force in zip(figure.axes, (PRINTED.coated_bar, PRINTED.steel_bar), strict=True):
-        upright, level = lines(axes)["force-bar"], lines(axes)["time-bar"]
+    forces = {"a": PRINTED.coated_bar, "b": PRINTED.steel_bar}
+    for axes, (panel, force) in zip(figure.axes, forces.items(), strict=True):
+        upright, level = (lines(axes)[f"{kind}-bar-{panel}"] for kind in ("force", "time"))
         assert np.ptp(upright.get_ydata()) == pytest.approx(force)
         assert np.ptp(upright.get_xdata()) == np.ptp(level.get_ydata()) == 0.0
         written = [t.get_text() for t in axes.texts]
@@ -123,6 +124,25 @@ def test_fig4_and_fig6_draw_the_numbers_of_the_csv(drawn):
             assert np.array_equal(
                 lines(axes)[f"simulated-wall-{modulus}-{panel}"].get_xydata(), trace[["time_us", "force_N"]]
             )
+
+
+def test_what_is_weak_in_fig6_stands_whole_in_an_inset(drawn):
+    table, figure = drawn["fig6"]
+    light, heavy = figure.axes
+    assert not heavy.child_axes
+    (inset,) = light.child_axes
+    highest = table[table.panel == "a"].groupby("model").force_N.max()
+    weak = {"layer-loss", "layer-loss-geometry"}
+    assert set(highest.index[highest < 0.2 * highest.max()]) == weak
+    assert set(lines(inset)) == {f"simulated-wall-{model}-a-inset" for model in weak}
+    last, top = inset.get_xlim()[1], inset.get_ylim()[1]
+    for line in lines(inset).values():
+        time, force = line.get_xydata().T
+        assert force.max() < top and time.max() <= last
+        assert abs(force[time < inset.get_xlim()[0]]).max() < 0.01 * force.max()
+    for axes in figure.axes:  # nor does a panel cut anything
+        for line in lines(axes).values():
+            assert line.get_ydata().max() < axes.get_ylim()[1]
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -221,5 +241,5 @@ def test_captions_say_what_is_simulated_printed_and_not_available(name):
     assert "not available" in caption
     assert "paper" in caption
     assert "  " not in caption
-    assert len(caption.split()) <= 60
+    assert len(caption.split()) <= 80
     assert caption.endswith(".")

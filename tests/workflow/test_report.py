@@ -92,6 +92,11 @@ def test_no_id_stands_twice(page):
     assert "url(#fig4-c)" in page
 
 
+def test_every_drawing_is_told_to_a_screen_reader(page):
+    body = page[: page.index("<script>")]
+    assert len(re.findall(r'<svg role="img" aria-label="[^"]+"', body)) == body.count("<svg") == 2
+
+
 def test_every_claim_stands_on_the_page(page):
     for row in _ROWS:
         assert row[0] in page
@@ -122,8 +127,9 @@ def test_the_committed_figures_tell_their_values(pytestconfig):
     folder = pytestconfig.rootpath / "figures"
     for name in ("fig3", "fig4", "fig5", "fig6"):
         panels = json.loads(cursor.of_figure(name, folder / f"{name}.csv"))["panels"]
-        assert len(panels) == 2
+        assert len(panels) == 2 + (name == "fig6")  # with its inset
         ids = Page((folder / f"{name}.svg").read_text()).ids
+        assert len(ids) == len(set(ids))
         for panel in panels:
             left, top, right, bottom = panel["box"]
             assert 0 < left < right < 496.1 and 0 < top < bottom  # the page is 175 mm wide

@@ -15,12 +15,17 @@ COLUMNS = traces.COLUMNS
 UNTIL_US = 600.0
 # Lowest later peak that the paper would call a pulse, of the main one; as in the ledger, and so is its rise.
 COUNTED = 0.15
+# Models whose highest peak is below this part of the panel's stand in an inset as well: its frame, as parts
+# of the panel, and its times in µs.
+WEAK = 0.2
+INSET, INSET_US = (0.52, 0.26, 0.46, 0.56), (200.0, UNTIL_US)
 _TITLES = {"a": "(a) Steel ball, 0.036 g", "b": "(b) PTFE ball, 0.123 g"}
 
 CAPTION = style.paragraph("""
 Wall below 22 small coated beads struck at 0.89 m/s by (a) steel, (b) PTFE balls, simulated: models
-as in Fig. 3, the lossy one also with masses by geometry (bead 0.056 g). In words: what the paper
-saw; its traces are not available. Legends: waves of at least 0.15 of the first.
+as in Fig. 3, the lossy one also with masses by geometry (bead 0.056 g). Each panel has its own scale of
+force; inset: the models with loss, enlarged. In words: what the paper saw; its traces are not available.
+Legends: waves of at least 0.15 of the first.
 """)
 # What the paper says of each panel.
 _SEEN = {"a": "paper: one solitary wave", "b": "paper: one shock-like pulse"}
@@ -44,10 +49,11 @@ def draw(table: pandas.DataFrame) -> Figure:
     """The figure of these numbers."""
     with style.context():
         figure = style.canvas(style.DOUBLE, 84.0)
-        highest = 1.12 * table.force_N.max()
         for panel, left in (("a", 13.0), ("b", 101.0)):
             axes, part = style.panel(figure, (left, 10.0, 70.0, 49.0)), table[table.panel == panel]
+            highest = 1.12 * part.force_N.max()
             _panel(axes, part)
+            _inset(axes, part)
             traces.points(axes, part, {"wall": 0.0})
             axes.set(xlim=(0, UNTIL_US), ylim=(-0.03 * highest, highest))
             axes.set_xlabel("Time after impact (µs)")
@@ -62,7 +68,19 @@ def draw(table: pandas.DataFrame) -> Figure:
     return figure
 
 
-def _panel(axes, table):
+def _inset(axes, table):
+    """What is weak beside the highest pulse, with its own scale of force; nothing where none is."""
+    highest = table.groupby("model").force_N.max()
+    weak = highest[highest < WEAK * highest.max()]
+    if weak.empty:
+        return
+    inset, top = axes.inset_axes(INSET), 1.12 * weak.max()
+    _panel(inset, table[table.model.isin(weak.index)], "-inset")
+    inset.set(xlim=INSET_US, ylim=(-0.1 * top, top))
+    inset.tick_params(labelsize=7)
+
+
+def _panel(axes, table, name=""):
     axes.axhline(0.0, color=traces.BASE_LINE, lw=0.5, zorder=0.5)
     models = list(dict.fromkeys(table.model))
     drawn = table[table.series.isin(["simulated", "reflected"])]
@@ -73,7 +91,7 @@ def _panel(axes, table):
             part.force_N,
             **(look.line if series == "simulated" else look.pale),
             zorder=3.0 - 0.1 * models.index(model),
-            gid=f"{series}-wall-{model}-{part.panel.iloc[0]}",
+            gid=f"{series}-wall-{model}-{part.panel.iloc[0]}{name}",
         )
 
 

@@ -170,7 +170,7 @@ def draw_panel(axes: Axes, table: pandas.DataFrame, force_bar: float, time_bar: 
     axes.set(xlim=(0.0, until), ylim=(-0.06 * top, top), yticks=[])
     axes.set_xlabel("Time after impact (µs)")
     axes.spines["left"].set_visible(False)
-    _scale_bars(axes, until, bases, force_bar, time_bar)
+    _scale_bars(axes, table.panel.iloc[0], until, bases, force_bar, time_bar)
     return bases
 
 
@@ -302,13 +302,13 @@ def number(axes: Axes, table: pandas.DataFrame, bases: dict[str, float]) -> None
             )
 
 
-def _scale_bars(axes, until, bases, force, time):
+def _scale_bars(axes, panel, until, bases, force, time):
     """An upright bar of `force` N and a level one of `time` µs from one corner, left of the wall's pulse."""
     x = 0.1 * until
     y = min(bases.values()) + 0.12 * axes.get_ylim()[1]
     line = {"color": "black", "lw": 1.2, "solid_capstyle": "butt"}
-    axes.plot([x, x], [y, y + force], **line, gid="force-bar")
-    axes.plot([x, x + time], [y, y], **line, gid="time-bar")
+    axes.plot([x, x], [y, y + force], **line, gid=f"force-bar-{panel}")
+    axes.plot([x, x + time], [y, y], **line, gid=f"time-bar-{panel}")
     near = {"textcoords": "offset points", "fontsize": 7}
     axes.annotate(f"{force:g} N", (x, y + force / 2), (-3, 0), ha="right", va="center", **near)
     axes.annotate(f"{time:g} µs", (x + time / 2, y), (0, -2), ha="center", va="top", **near)

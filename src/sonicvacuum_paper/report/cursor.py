@@ -4,6 +4,8 @@ The figure is drawn again from its CSV, which takes a part of a second, and aske
 themselves stay in the SVG, see `sonicvacuum.report.interactive`.
 """
 
+import re
+
 from matplotlib.axes import Axes
 
 from sonicvacuum.report.interactive import Line, Panel, scales
@@ -28,9 +30,11 @@ def of_figure(name: str, path) -> str:
         part = table[table.panel == letter]
         stacked = name in ("fig3", "fig5")
         bases = traces.base_lines(part) if stacked else {}
-        lines = tuple(_lines(name, axes, bases))
         units = ("N", "m/s") if name == "fig4" else ("µs", "N")
-        panels.append(Panel(_box(axes, width, height), _scale(axes, "x"), _scale(axes, "y"), *units, lines))
+        for frame in (*axes.child_axes, axes):  # an inset lies on its panel
+            lines = tuple(_lines(name, frame, bases))
+            box = _box(frame, width, height)
+            panels.append(Panel(box, _scale(frame, "x"), _scale(frame, "y"), *units, lines))
     return scales(panels)
 
 
@@ -55,7 +59,7 @@ def _lines(name, axes, bases):
             yield Line(f"{name}-{gid}", _speed_line(series, rest))
             continue
         sensor, _, model = rest.partition("-")
-        told = looks.look(model.removesuffix("-a").removesuffix("-b")).name
+        told = looks.look(re.sub(r"-[ab](-inset)?$", "", model)).name
         told = told if name == "fig6" else f"{traces.label_of(sensor)}, {told}"
         told += ", reflected" if series == "reflected" else ""
         yield Line(f"{name}-{gid}", told, round(float(bases.get(sensor, 0.0)), 6))

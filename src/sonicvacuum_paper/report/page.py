@@ -180,7 +180,7 @@ def _figure(svg: Path, told: str | None = None) -> dict:
     return {
         "name": name,
         "number": name.removeprefix("fig"),
-        "svg": inline.svg(svg, name),
+        "svg": inline.svg(svg, name, told or caption(name)),
         "caption": inline.with_subscripts(told or caption(name)),
         "scales": cursor.of_figure(name, table) if table.exists() and not told else "",
     }
