@@ -20,7 +20,8 @@ CAPTIONS = {
     "confusion": style.paragraph("""
         What is hidden (rows, with the number of cases) and what is named (columns): number of cases, shade by
         share of the row. Rows none: nothing hidden; unknown: an effect from outside the catalogue. Column
-        several: two effects, or an effect with a rest that nothing explains.
+        several: two effects, or an effect with a rest that nothing explains. Records of the main list only;
+        1600 further empty ones count in false alarms.
     """),
     "accuracy": style.paragraph("""
         Share of records with one hidden effect that are given its exact name, against the effect's
@@ -32,14 +33,15 @@ CAPTIONS = {
     """),
     "reliability": style.paragraph("""
         Stated probability against the share of cases in which what is named with it is right, with 95 %
-        intervals; below, the number of cases. On the dashed line probabilities mean what they say.
+        intervals; below, the number of cases. Dashed: perfect calibration.
     """),
     "pit": style.paragraph("""
         Posterior probability below the truth (PIT) of the parameters of effects hidden and named: its
-        cumulative distribution (ECDF) less the diagonal, all parameters together (a) and by effect (b), in
-        units of the half width of the band that right intervals stay in: everywhere, in 95 % of studies, in
-        all effects at once. Grey: that band; orange: effects that leave it. Above the line, stated values are
-        too large; above on the left and below on the right, intervals are too narrow.
+        cumulative distribution (ECDF) less the diagonal, of all parameters together (a) and of each effect's
+        by a dashed line of its own (b), in units of the half width of the band. Grey: the band in which
+        correctly stated intervals stay in 95 % of studies, in (b) for all effects at once; orange: effects
+        that leave it. Above the line, stated values are too large; above on the left and below on the right,
+        intervals are too narrow.
     """),
     "baselines": style.paragraph("""
         Simpler rules on the same records: (a) exact names of single hidden effects of all strengths and kinds

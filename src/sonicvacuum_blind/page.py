@@ -7,6 +7,9 @@ from sonicvacuum.report import inline, interactive
 from sonicvacuum.report.tables import read
 from sonicvacuum_blind import published, report
 
+# Groups of fresh runs with fewer records have no interval to speak of.
+FEWEST = 5
+
 
 def build(small_path=None, full_folder=None, pictures: Iterable = ()) -> str:
     """The page as HTML text.
@@ -31,14 +34,25 @@ def build(small_path=None, full_folder=None, pictures: Iterable = ()) -> str:
 def _full(found: report.Study) -> dict:
     """What the page shows of the full study."""
     return {
-        "told": published.told(found),
+        "told": _told(found),
         "meant": "" if found.score is None else published.MEANT,
         "results": report.results(found.summary),
         "held_out": published.HELD_OUT,
         "baselines": None if found.baselines is None else report.rivals(found.baselines),
-        "fresh": None if found.fresh is None else report.followed(found.fresh),
+        "fresh": None if found.fresh is None else report.followed(found.fresh, FEWEST),
+        "fewest": FEWEST,
         "followed": None if found.resolved is None else report.followed(found.resolved),
     }
+
+
+def _told(found: report.Study) -> str:
+    """Records, goals, and when one is met."""
+    met, undecided, missed = found.goals
+    return (
+        f"{found.cases} records. Of {met + undecided + missed} goals {met} are met, {undecided} open and "
+        f"{missed} missed. A goal is met if the whole 95 % interval fulfils it, missed if none of it does, "
+        "and open otherwise."
+    )
 
 
 def _picture(svg, caption) -> dict:

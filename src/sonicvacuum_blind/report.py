@@ -111,10 +111,10 @@ def findings(summary: pd.DataFrame) -> Table:
     return Table(header, [_result(row)[:6] for row in rows], 4)
 
 
-def followed(resolved: pd.DataFrame) -> Table:
-    """What one more run decides."""
+def followed(resolved: pd.DataFrame, fewest: int = 1) -> Table:
+    """What one more run decides; lines with fewer cases are left out."""
     header = ["asked", "run", "cases", "found", "95 %", "goal", ""]
-    rows = [_result(row) for row in _filled(resolved)]
+    rows = [_result(row) for row in _filled(resolved) if int(row["count"]) >= fewest]
     return Table(header, [[*row[:5], *row[6:]] for row in rows], 4)
 
 

@@ -1,6 +1,7 @@
 """The blind study's tables in README and report."""
 
 import math
+import re
 
 import pandas as pd
 import pytest
@@ -8,7 +9,7 @@ from click.testing import CliRunner
 
 from sonicvacuum.cli import cli
 from sonicvacuum.files import InputError
-from sonicvacuum_blind import published, words
+from sonicvacuum_blind import kept, page, published, words
 from sonicvacuum_blind import report as study
 from sonicvacuum_blind.baselines import names
 from sonicvacuum_blind.baselines.table import RuleLine as Baseline
@@ -188,3 +189,21 @@ def test_no_key_of_the_tables_is_shown_to_readers(pytestconfig):
         assert words.asked(measure) != measure
         parts = set(words.group(group).split(", "))
         assert not parts & {"single", "pair", "set", "null", "foreign", "white", "ar1", "quantised", "cells"}
+
+
+def test_the_page_leaves_out_groups_too_small_for_an_interval_and_says_when_a_goal_is_met(pytestconfig):
+    text = page.build(full_folder=pytestconfig.rootpath / TABLES)
+    fresh = text[text.index("Fresh runs foretold") : text.index('id="small"')]
+    counts = [int(n) for n in re.findall(r'<td class="n">(\d+)</td><td class="n">[^<]*</td>', fresh)]
+    all_counts = study.read(pytestconfig.rootpath / TABLES).fresh["count"].astype(int)
+    assert sorted(counts) == sorted(all_counts[all_counts >= page.FEWEST])
+    assert "missed if none of it does, and open otherwise" in text
+
+
+def test_the_caption_counts_the_empty_records_that_its_picture_leaves_out(pytestconfig):
+    folder = pytestconfig.rootpath / TABLES
+    rows = pd.read_csv(folder / "confusion.csv", keep_default_na=False)
+    shown = rows.loc[rows["hidden"] == "none", "count"].sum()
+    rivals = study.read(folder).baselines
+    every = rivals.loc[(rivals["rule"] == "sonicvacuum") & (rivals["group"] == names.NULLS), "count"].item()
+    assert f" {int(every) - shown} further empty ones" in kept.caption("blind_confusion")
