@@ -300,11 +300,12 @@ def test_a_law_without_a_name_is_told_and_drawn(folder):
 
 def test_formulas_are_set():
     assert inline.formula("F = K delta^{3/2} v, A < 1") == "F = K δ<sup>3/2</sup> v, A &lt; 1"
-    assert inline.formula("F = K delta^1.5 v^-0.5.") == "F = K δ<sup>1.5</sup> v<sup>-0.5</sup>."
+    assert inline.formula("F = K delta^1.5 v^-0.5.") == "F = K δ<sup>1.5</sup> v<sup>−0.5</sup>."
     assert inline.formula("m_j -> r m_j, 1 - c, 5 us") == "m<sub>j</sub> → r m<sub>j</sub>, 1 − c, 5 µs"
     assert inline.typeset("10^-3: 3 ± 1 us (-4.1 σ), fig3a-width, 1e-6") == (
-        "10^-3: 3 ± 1 µs (−4.1 σ), fig3a-width, 1e-6"
+        "10⁻³: 3 ± 1 µs (−4.1 σ), fig3a-width, 1e-6"
     )
+    assert inline.typeset("+-1 mm, 0.07 uN at 7.8 g/cm3, 10^3 us") == "±1 mm, 0.07 µN at 7.8 g/cm³, 10³ µs"
     assert inline.formula("m u'^2/tau") == "m u&#39;<sup>2</sup>/τ"
 
 
@@ -351,7 +352,18 @@ def test_quantities_are_told_with_unit_and_level():
     assert told("duration g9 at 0.02", "us") == ("duration g9, above 0.02 of the peak", "130 ± 14 µs")
     assert told("pulse count wall at 0.15", "1")[0] == "pulse count wall, above 0.15 of the first peak"
     assert told("speed at amplitude g9 0.25 N", "m/s") == ("speed where g9 reads 0.25 N", "130 ± 14 m/s")
+    assert told("width g9-g5 g9 at 0.02", "1")[0] == (
+        "width at g9, by the speed g9–g5, above 0.02 of the peak"
+    )
+    assert (told("speed g9-g5", "m/s")[0], told("decay g9-g5", "1")[0]) == ("speed g9–g5", "decay g9–g5")
     assert told("amplitude g9", "N", "at_most") == ("amplitude g9", "at most 130 ± 14 N")
+
+
+def test_the_place_of_an_effect_is_told_by_the_name_of_its_gauge():
+    told = rows.placed("sensor-gain gain_ratio 5; sensor-gain sensor 1", ["g9", "wall"], CATALOGUE)
+    assert told == "sensor-gain gain_ratio 5; sensor-gain gauge wall"
+    assert rows.placed("contact-gap gap_um 5; contact-gap contact 1", ["g9"], CATALOGUE).endswith("contact 1")
+    assert rows.placed("sensor-gain sensor 1", (), CATALOGUE) == "sensor-gain sensor 1"
 
 
 def test_data_that_test_nothing_leave_every_effect_open():

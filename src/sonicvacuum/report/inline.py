@@ -27,7 +27,7 @@ def environment(*packages: str) -> jinja2.Environment:
         lstrip_blocks=True,
         bytecode_cache=_Kept(),
     )
-    found.filters["number"] = tables.number
+    found.filters["number"] = lambda text, digits=4: typeset(tables.number(text, digits))
     found.filters["unit"] = tables.unit_of
     found.filters["formula"] = formula
     found.filters["typeset"] = typeset
@@ -94,14 +94,20 @@ _GREEK = {"delta": "δ", "tau": "τ", "alpha": "α", "gamma": "γ", "epsilon": "
 # Typed → set; `>` is escaped by then.
 _SIGNS = {"-&gt;": "→", "sqrt(": "√(", " - ": " − ", "...": "…"}
 
+_MINUS = re.compile(r"(?<![\w.^-])-(?=\d)")
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
 
 def typeset(text) -> str:
-    """A sentence of a table, typed in plain letters, with the signs of print: micro, minus, chi square."""
-    return re.sub(r"(?<![\w.^-])-(?=\d)", "−", _micro(str(text))).replace("chi2", "χ²")
+    """A sentence of a table, typed in plain letters, with the signs of print: micro, minus, plus or minus,
+    powers of ten and of units, chi square."""
+    told = _micro(str(text)).replace("+-", "±").replace("chi2", "χ²").replace("g/cm3", "g/cm³")
+    told = re.sub(r"\b10\^(-?\d+)", lambda m: f"10{m[1].translate(_RAISED)}", told)
+    return _MINUS.sub("−", told)
 
 
 def _micro(text):
-    return re.sub(r"(?<=\d) u(?=[sm]\b)", " µ", text)
+    return re.sub(r"(?<=\d) u(?=[smN]\b)", " µ", text)
 
 
 def formula(text: str) -> Markup:
@@ -112,8 +118,8 @@ def formula(text: str) -> Markup:
     plain = re.sub(
         "|".join(rf"(?<![A-Za-z]){name}(?![a-z])" for name in _GREEK), lambda m: _GREEK[m[0]], plain
     )
-    plain = _micro(plain)
-    plain = re.sub(r"\^\{([^}]*)\}|\^(-?\w+(?:\.\d+)?)", lambda m: f"<sup>{m[1] or m[2]}</sup>", plain)
+    plain = re.sub(r"(?<![\w.])-(?=\d)", "−", _micro(plain))
+    plain = re.sub(r"\^\{([^}]*)\}|\^([-−]?\w+(?:\.\d+)?)", lambda m: f"<sup>{m[1] or m[2]}</sup>", plain)
     return Markup(re.sub(r"_\{([^}]*)\}|(?<=\b\w)_(\w+)", lambda m: f"<sub>{m[1] or m[2]}</sub>", plain))
 
 

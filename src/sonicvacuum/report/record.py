@@ -97,6 +97,9 @@ def _origin(inputs, records, verdict, model):
 def _told(folder, verdict, model, tables, catalogue, gauges):
     name, quantities_of = verdict.record, rows.quantities(_quantities(folder))
     drawn = draws.read(folder)
+    candidates = [
+        r | {"parameters": rows.placed(r["parameters"], gauges, catalogue)} for r in tables["candidates"]
+    ]
     return {
         "name": name,
         "headline": words.headline(verdict, catalogue) + bench.moved_modulus(verdict, model),
@@ -114,8 +117,8 @@ def _told(folder, verdict, model, tables, catalogue, gauges):
         "present": rows.present(verdict, model, catalogue),
         "law": words.law(verdict, catalogue),
         "alternatives": words.alternatives(verdict, catalogue),
-        "pairs": [r for r in tables["candidates"] if "+" in r["effects"]][:_PAIRS],
-        "singles": [r for r in tables["candidates"] if "+" not in r["effects"]],
+        "pairs": [r for r in candidates if "+" in r["effects"]][:_PAIRS],
+        "singles": [r for r in candidates if "+" not in r["effects"]],
         "gap": " ".join(filter(None, (misfit.gap(verdict), misfit.goodness(verdict)))),
         "rounds": rows.rounds(tables["gap"], catalogue),
         "runs": [r for r in tables["gap"] if not r["run"].startswith("round ")],

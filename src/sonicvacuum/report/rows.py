@@ -53,7 +53,7 @@ def quantities(table: list[dict]) -> list[dict]:
     return [
         {
             "run": r["run"],
-            "quantity": _in_full(r["quantity"]),
+            "quantity": in_full(r["quantity"]),
             "measured": f"{_BOUNDS[r['bound']]}{_as_stated(r['measured'], r['sigma'])}" + unit_of(r["unit"]),
             **{name: number(r[name], 4) for name in ("nominal", "extended", "held_out")},
         }
@@ -69,10 +69,14 @@ def _as_stated(value, sigma):
     return f"{float(value):.{len(error.partition('.')[2])}f} ± {error}"
 
 
-def _in_full(label):
-    """`duration g9 at 0.02` with what the level is a part of; `speed at amplitude g9 0.25 N` in words."""
+def in_full(label: str) -> str:
+    """`duration g9 at 0.02` with what the level is a part of; `speed at amplitude g9 0.25 N` and
+    `width g9-g5 g9` in words.
+    """
     peak = "first peak" if label.startswith("pulse count") else "peak"
     label = re.sub(r"^speed at amplitude (\S+) ", r"speed where \1 reads ", label)
+    label = re.sub(r"^width (\S+) (\S+)", r"width at \2, by the speed \1", label)
+    label = re.sub(r"\b(speed|decay) ([^\s-]+)-([^\s-]+)", r"\1 \2–\3", label)
     return re.sub(r" at ([0-9.e-]+)$", rf", above \1 of the {peak}", label)
 
 
@@ -105,6 +109,18 @@ def in_words(parameters, catalogue):
             p = catalogue.effect(effect).parameter(name)
             told.append(f"{p.help} = {_apart(value, off(p), 2)}{unit_of(p.unit)}")
     return "; ".join(told)  # help texts hold commas
+
+
+def placed(parameters: str, gauges, catalogue) -> str:
+    """Parameters of candidates.csv, with a gauge, which it counts from 0, by its name."""
+    told = []
+    for part in parameters.split("; "):
+        effect, _, rest = part.partition(" ")
+        where = rest.removeprefix("sensor ")
+        if gauges and where != rest and effect in catalogue and catalogue.effect(effect).places == "sensor":
+            part = f"{effect} gauge {gauges[int(where)]}"
+        told.append(part)
+    return "; ".join(told)
 
 
 def present(verdict, model, catalogue) -> str:

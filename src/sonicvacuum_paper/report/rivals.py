@@ -11,8 +11,8 @@ import pandas as pd
 from sonicvacuum.discover.fit import evidence
 from sonicvacuum.effects import CATALOGUE, IDS
 from sonicvacuum.files import reading
-from sonicvacuum.report.rows import in_words
-from sonicvacuum.report.tables import number
+from sonicvacuum.report.rows import in_full, in_words
+from sonicvacuum.report.tables import number, unit_of
 from sonicvacuum_paper.ladder import title
 from sonicvacuum_paper.printed import PRINTED
 from sonicvacuum_paper.uncertainty import formats
@@ -79,7 +79,7 @@ def _series(table):
     for (series, unit, at), both in table.groupby(["series", "unit", "at"], sort=False):
         of_model = both.set_index("model")
         cells = [number(of_model.loc[model, cell], 3) for cell in CELLS for model in formats.MODELS]
-        rows.append({"series": f"{series}, {unit}", "at": number(at, 3), "cells": cells})
+        rows.append({"series": f"{series},{unit_of(unit)}", "at": number(at, 3), "cells": cells})
     return rows
 
 
@@ -98,7 +98,7 @@ def of_sets(table: pd.DataFrame) -> dict:
         printed = {"": "", "at_most": "at most ", "at_least": "at least "}[part.bound.iloc[0]]
         printed += f"{number(part.measured.iloc[0], 4)} ± {number(part.sigma.iloc[0], 2)}"
         cells = [[number(of_set.loc[n, c], 3) or "–" for c in ("extended", "held_out")] for n in sets]
-        rows.append({"run": run, "quantity": quantity, "printed": printed, "cells": cells})
+        rows.append({"run": run, "quantity": in_full(quantity), "printed": printed, "cells": cells})
     return {
         "heads": heads,
         "rows": rows,

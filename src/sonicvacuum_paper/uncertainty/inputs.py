@@ -73,7 +73,7 @@ INPUTS = (
     ),
     Input("gain_g9", "that of g9 against the wall", _factor(0.03), "3 %", "not stated; from comparison"),
     Input("gain_g5", "that of g5 against the wall", _factor(0.03), "3 %", "not stated; from comparison"),
-    Input("droop", "discharge time of the gauges", _factor(0.3), "30 % of 1000 us", 'printed as "~10^3"'),
+    Input("droop", "discharge time of the gauges", _factor(0.3), "30 % of 1000 µs", 'printed as "~10³"'),
     Input(
         "weight",
         "share of the weight that the contacts bear",
