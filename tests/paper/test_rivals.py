@@ -159,15 +159,19 @@ def test_the_section_of_the_report_says_what_the_tables_say(
     for path, table in zip(paths, (contours, experiments, solids, laws, fits), strict=True):
         table.to_csv(path, index=False)
     ledger = pd.DataFrame(
-        [("fig3a-speed", "The pulse runs at 197 m/s.", "layer 0.02; matched 0.3", "matched")],
-        columns=["claim", "statement", "probability", "fitted"],
+        [
+            ("fig3a-speed", "It runs at 197 m/s.", "layer 0.01; matched 0.3", "matched", "within", "197"),
+            ("shares", "The order holds.", "layer 0; matched 0.01", "", "order", "1"),
+        ],
+        columns=["claim", "statement", "probability", "fitted", "test", "measured"],
     )
     template = inline.environment("sonicvacuum_paper.report").get_template("uncertainty.html.j2")
     page = template.render(
         **uncertain.context(ledger), **rivals.context(*paths), map_picture=None, alone=False
     )
     assert "0.3 (fitted)" in page and "±1 mm each" in page
-    assert "by them the thickness of the coating decides" in page
+    assert '"n">≤ 0.01</td>' in page and '"n">&lt; 0.0052</td>' in page and '"n">0.01</td>' in page
+    assert "By them the thickness of the coating separates best,\nsince a Hertz half-space" in page
     assert "196 | 190" in page and "196 | –" in page and "modulus over handbook value = 3.7" in page
     assert "1.52 on the layer and 1.37 on Hertz" in page and "in proportion to the force" in page
     assert "None of the solids tried meets both speeds and the duration" in page

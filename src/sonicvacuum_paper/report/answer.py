@@ -3,7 +3,10 @@
 import pandas as pd
 
 from sonicvacuum.report.tables import number
+from sonicvacuum.report.words import joined
 from sonicvacuum_paper.ladder import members
+
+COUNTS = {1: "one", 2: "two", 3: "three", 4: "four"}
 
 
 def sentences(ledger: pd.DataFrame, metrics: pd.DataFrame, by_law: dict | None = None) -> list[str]:
@@ -26,20 +29,43 @@ def sentences(ledger: pd.DataFrame, metrics: pd.DataFrame, by_law: dict | None =
     speed, low, lasting, wide, force, ratio = (n[claim] for claim in wanted)
     speed_, low_, lasting_, wide_, force_, ratio_ = (rows[claim]["measured"] for claim in wanted)  # printed
     return [
-        f"{_verdict(rows)} the 50 µm layer that is printed, with the handbook's 2.76 GPa and nothing fitted, "
-        f"runs like a Hertz contact of {fast:.1f} GPa at 0.44 m/s and of {slow:.1f} GPa at 0.25 N.",
+        f"{_verdict(rows)} The printed 50 µm layer with the handbook's 2.76 GPa, nothing fitted, is as fast "
+        f"as a Hertz chain of {fast:.1f} GPa at 0.44 m/s, and of {slow:.1f} GPa at 0.25 N.",
         f"It gives {speed['layer']} and {low['layer']} m/s ({speed_} and {low_} printed); Hertz with the "
         f"fitted 15 GPa gives {speed['matched']} and {low['matched']}.",
-        f"Against the bare layer stand its speed ({_by(rows['fig3a-speed'], 'layer')}), {lasting['layer']} "
-        f"µs ({lasting_} printed), {wide['layer']} diameters ({wide_}) and {force['layer']} N (about "
-        f"{force_}).",
-        f"One loss, calibrated on the {lasting_} µs alone, gives {speed['layer_loss']} and "
-        f"{low['layer_loss']} m/s, ratio {ratio['layer_loss']} ({ratio_}), and {force['layer_loss']} N; with "
-        f"it 15 GPa gives {speed['matched_loss']} and {low['matched_loss']} m/s, ratio "
-        f"{ratio['matched_loss']}{_laws(by_law)}.",
-        f"Not settled: the base level of the {lasting_} µs, thickness and modulus of the film at impact, "
-        "printed without tolerance; films of other thickness on the same balls would decide.",
+        _against(
+            [
+                (rows["fig3a-speed"], "fast", "slow", ""),
+                (rows["fig3a-duration"], "long", "short", f"{lasting['layer']} µs, printed {lasting_}"),
+                (rows["fig3a-width"], "wide", "narrow", f"{wide['layer']} diameters, printed {wide_}"),
+                (rows["force-level"], "strong", "weak", f"{force['layer']} N, printed about {force_}"),
+            ]
+        ),
+        f"One loss, calibrated on the {lasting_} µs alone, brings the layer to {speed['layer_loss']} and "
+        f"{low['layer_loss']} m/s (ratio {ratio['layer_loss']}, printed {ratio_}) and {force['layer_loss']} "
+        f"N. The same on Hertz at 15 GPa gives {speed['matched_loss']} and {low['matched_loss']} m/s (ratio "
+        f"{ratio['matched_loss']}).{_laws(by_law)}",
+        f"Still open are the level at which the {lasting_} µs were read, and thickness of the film and its "
+        "modulus at impact, which are printed without tolerance. Films of another thickness on the same "
+        "balls would decide.",
     ]
+
+
+def _against(asked):
+    """What of the printed numbers the layer without losses contradicts, and how.
+
+    `asked`: row, what the pulse is above and below the printed value, and both values in words, "" for the
+    difference in standard errors.
+    """
+    found = []
+    for row, above, below, told in asked:
+        if "layer" in members(row["excluded"]):
+            side = above if float(row["layer"]) > float(row["measured"]) else below
+            found.append(f"too {side} ({told or _by(row, 'layer')})")
+    if not found:
+        return "The layer without losses contradicts none of the printed speed, duration, width and force."
+    count = f"{COUNTS[len(found)]} printed number{'s' if len(found) > 1 else ''}"
+    return f"The layer without losses contradicts {count}: its pulse is {joined(found)}."
 
 
 def _laws(found):
@@ -47,8 +73,9 @@ def _laws(found):
     if not found:
         return ""
     layer, hertz = found["ratios"]
-    with_ = f"with {found['speaks']} of {found['of']} laws of loss"
-    return f"; so it is {with_} ({layer} on the layer, {hertz} on Hertz)"
+    all_ = found["speaks"] == found["of"]
+    laws = f"All {COUNTS.get(found['of'], found['of'])}" if all_ else f"{found['speaks']} of {found['of']}"
+    return f" {laws} laws of loss agree: ratio {layer} on the layer, {hertz} on Hertz."
 
 
 def _verdict(rows):
@@ -58,8 +85,8 @@ def _verdict(rows):
     ]
     against = "matched_loss" in members(rows["low-speed"]["excluded"])
     if all(held) and against:
-        return "15 GPa is mostly the layer's geometry, not a property of the polymer:"
-    return "Whether 15 GPa is a property of the polymer these models do not tell:"
+        return "The 15 GPa come mostly from the geometry of the layer and not from the polymer."
+    return "Whether 15 GPa is a property of the polymer these models do not tell."
 
 
 def _by(row, column):

@@ -143,14 +143,15 @@ CLAIMS = [
 
 
 def _ledger(given: Sources):
-    """The ledger with statements, notes and the models that a row excludes."""
+    """The ledger with statements, their tests and notes, and the models that a row excludes."""
     ledger = tables.read_ledger(given.ledger)
     claims = tables.read(given.claims, CLAIMS).set_index("claim")
     ledger["statement"] = [claims["statement"].get(c, "") for c in ledger["claim"]]
+    ledger["test"] = [claims["test"].get(c, "") for c in ledger["claim"]]
     ledger["note"] = [claims["note"].get(c, "") for c in ledger["claim"]]
     ledger["printed"] = [_printed(claims["test"].get(row.claim, ""), row) for row in ledger.itertuples()]
     ledger["excluded_by"] = ledger["excluded"].map(tables.shown)
-    ledger["probable"] = ledger["probability"].map(uncertain.shown)
+    ledger["probable"] = [uncertain.shown(row) for row in ledger.to_dict("records")]
     return ledger
 
 

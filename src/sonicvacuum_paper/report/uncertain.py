@@ -5,19 +5,30 @@ import pandas as pd
 from sonicvacuum.report.tables import number
 from sonicvacuum_paper.ladder import MODELS, members, title
 from sonicvacuum_paper.report.tables import FIRST
-from sonicvacuum_paper.uncertainty.inputs import INPUTS
+from sonicvacuum_paper.uncertainty.inputs import DRAWS, INPUTS
 
+# Least probability that the draws give to a number, and to what holds in some of them: less than one draw.
+FLOOR, NONE = 2.0 / (DRAWS + 1), f"< {1.0 / DRAWS:.2g}"
 # Below this a statement is shown beside the main ones.
 IMPROBABLE = 0.05
 
 
-def shown(probability: str) -> str:
-    """The probabilities in a cell of the ledger, models called as people read them."""
-    return "; ".join(f"{title(c)}: {number(p, 2)}" for c, p in members(probability).items())
+def shown(row: dict) -> str:
+    """The probabilities of a row of the ledger, models called as people read them."""
+    return "; ".join(f"{title(c)}: {_share(p, row)}" for c, p in members(row["probability"]).items())
+
+
+def _share(probability, row):
+    """A probability, or the floor of the draws that it lies at; `row` has what the statement's `test` is."""
+    share = float(probability)
+    if share == 0.0:
+        return NONE
+    equality = row["test"] == "equals" or (row["test"] == "within" and float(row["measured"]) != 0.0)
+    return f"≤ {FLOOR:.2g}" if equality and share <= FLOOR else number(probability, 2)
 
 
 def context(ledger: pd.DataFrame) -> dict:
-    """What the section on the draws is made of; `ledger` as text, with the column `statement`."""
+    """What the section on the draws is made of; `ledger` as text, with the columns `statement` and `test`."""
     rows = {r["claim"]: r for r in ledger.to_dict("records") if r["probability"]}
     found = {claim: members(r["probability"]) for claim, r in rows.items()}
     statement = ledger.set_index("claim")["statement"].to_dict()
@@ -30,10 +41,13 @@ def context(ledger: pd.DataFrame) -> dict:
             {"statement": FIRST.get(c, statement[c]), "shares": _marked(found[c], rows[c])} for c in told
         ],
         "inputs": INPUTS,
+        "draws": DRAWS,
+        "floors": (f"{FLOOR:.2g}", NONE.removeprefix("< ")),
     }
 
 
 def _marked(shares, row):
     """The shares, with what each model was fitted to said so."""
     fitted = members(row["fitted"])
-    return {c: f"{share} (fitted)" if c in fitted else share for c, share in shares.items()}
+    told = {c: _share(share, row) for c, share in shares.items()}
+    return {c: f"{share} (fitted)" if c in fitted else share for c, share in told.items()}
