@@ -370,3 +370,12 @@ def test_data_that_test_nothing_leave_every_effect_open():
     blank = verdict(named=[], upper_limits={}, not_testable=["gravity"])
     assert blank.sees_nothing
     assert "these data test none" in words.alternatives(blank)
+
+
+def test_data_that_test_nothing_have_a_page_without_probabilities(folder):
+    blank = verdict(named=[], parameters={}, upper_limits={}, not_testable=["gravity"])
+    write_json(blank, folder / "verdict.json")
+    page = write_page(folder).read_text(encoding="utf-8")
+    sure = page[page.index("How sure") : page.index("What else it could be")]
+    assert "can test no effect of the catalogue, so no probabilities are given" in sure
+    assert "bars" not in sure

@@ -90,7 +90,7 @@ SENTENCES = {
         "with the striker at 1.25 m/s would most likely leave one explanation alone: viscoelastic Hertz "
         "contact and damping with constant restitution, its nearest rival there, would differ by about 5 "
         "standard errors",
-        "These data cannot test: gravity along the chain",
+        "Beside what was named these data cannot test: gravity along the chain",
     ),
     "class": (
         "one of viscoelastic Hertz contact or damping with constant restitution, which these data cannot",
@@ -110,9 +110,9 @@ SENTENCES = {
     ),
     "scalars": (
         "In 1 of 2 comparisons (run and measured quantity)",
-        "run fast: the data show a smaller restitution than predicted",
+        "run fast: the measured restitution is lower than predicted",
         "restitution at most 0.85 ± 0.01 0.99 0.84 –",
-        "Only what is fitted to all others predicts",
+        "Only the last column is a prediction",
         "There is one run only",
         "this record has none",
     ),

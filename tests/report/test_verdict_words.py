@@ -4,6 +4,7 @@ import pytest
 from made_verdicts import KINDS, gaps, model, verdict
 from msgspec.structs import replace
 
+from sonicvacuum.discover.verdict import Where
 from sonicvacuum.effects import CATALOGUE
 from sonicvacuum.report import bench, misfit, rows, words
 
@@ -25,6 +26,26 @@ def test_probabilities_in_words(probability, text):
 def test_a_gap_that_is_not_closed_is_not_called_closed():
     assert "the gap is not closed" in misfit.gap(verdict(gap=gaps(2.0, 2.5)))
     assert "of the gap closed" not in misfit.gap(verdict(gap=gaps(0.9, 0.8)))
+
+
+def test_runs_left_out_that_show_nothing_are_told_by_their_number():
+    same = verdict(gap=gaps(9.0, 1.0, (9.0, 9.0)))
+    assert misfit.gap(same, 2).endswith("the remaining run does not show the effect by itself.")
+    assert misfit.gap(same, 4).endswith("the remaining runs do not show the effect by themselves.")
+
+
+@pytest.mark.parametrize(
+    ("feature", "z", "said"),
+    [
+        ("speed_at_amplitude", 3.0, "the measured speed at the stated amplitude is higher than predicted"),
+        ("duration", -3.0, "the measured duration is shorter than predicted"),
+        ("amplitude", -3.0, "the measured amplitude is lower than predicted"),
+    ],
+)
+def test_a_quantity_is_told_on_its_side(feature, z, said):
+    where = [Where(run="a", sensor="", feature=feature, z=z, p=1e-4)]
+    cells = [{"sensor": "", "feature": feature, "q_before": "1e-4"}]
+    assert said in misfit.where(verdict(where=where), cells)
 
 
 def test_a_modulus_that_had_to_move_far_is_told_first():

@@ -46,7 +46,7 @@ def where(verdict: Verdict, cells: list[dict]) -> str:
     place = f"run {first.run}" + (f", gauge {first.sensor}" if first.sensor else "")
     return (
         f"In {len(failing)} of {plural(len(cells), 'comparison')} ({kind}) the nominal model fails: "
-        f"{groups}. The largest is in {place}: the data show {_side(first)} than predicted, by "
+        f"{groups}. The largest is in {place}: {_side(first)} than predicted, by "
         f"{abs(first.z):.3g} standard errors.{strained and f'{strained}.'}"
     )
 
@@ -58,14 +58,21 @@ def _strained(verdict: Verdict) -> str:
 
 
 def _side(cell):
+    """On which side of the prediction the data lie; quantities measured without traces have no gauge here."""
     above = cell.z > 0.0
-    if cell.feature in SIDES:
-        return SIDES[cell.feature][0 if above else 1]
-    return f"a {'larger' if above else 'smaller'} {cell.feature.replace('_', ' ')}"
+    if cell.sensor and cell.feature in SIDES:
+        return f"the data show {SIDES[cell.feature][0 if above else 1]}"
+    what = _WHAT.get(cell.feature, cell.feature.replace("_", " "))
+    sides = _LONG.get(cell.feature, ("higher", "lower"))
+    return f"the measured {what} is {sides[0 if above else 1]}"
 
 
-def gap(verdict: Verdict) -> str:
-    """How the misfit shrinks."""
+_WHAT = {"speed_at_amplitude": "speed at the stated amplitude"}
+_LONG = {"duration": ("longer", "shorter"), "width": ("larger", "smaller")}
+
+
+def gap(verdict: Verdict, runs: int = 0) -> str:
+    """How the misfit shrinks, of so many runs; 0 where that is not known."""
     fitted, held_out = verdict.gap.fitted, verdict.gap.held_out
     if not effects_of(verdict) and not verdict.law:
         text = (
@@ -84,7 +91,9 @@ def gap(verdict: Verdict) -> str:
     if held_out is None:
         return f"{text} There is one run only, so that none could be held out."
     if held_out.after == held_out.before:
-        return f"{text} Runs left out of the fit are predicted no better: the others alone do not show it."
+        one = "run does not show the effect by itself"
+        others = one if runs == 2 else "runs do not show the effect by themselves"
+        return f"{text} Runs left out of the fit are not predicted better, because the remaining {others}."
     return (
         f"{text} On runs left out of the fit it falls from {held_out.before:.4g} to {held_out.after:.4g}"
         f"{_closed(held_out)}."

@@ -100,6 +100,7 @@ def _told(folder, verdict, model, tables, catalogue, gauges):
     candidates = [
         r | {"parameters": rows.placed(r["parameters"], gauges, catalogue)} for r in tables["candidates"]
     ]
+    shrinking = (misfit.gap(verdict, len(model.speed_ratio)), misfit.goodness(verdict))
     return {
         "name": name,
         "headline": words.headline(verdict, catalogue) + bench.moved_modulus(verdict, model),
@@ -119,7 +120,7 @@ def _told(folder, verdict, model, tables, catalogue, gauges):
         "alternatives": words.alternatives(verdict, catalogue),
         "pairs": [r for r in candidates if "+" in r["effects"]][:_PAIRS],
         "singles": [r for r in candidates if "+" not in r["effects"]],
-        "gap": " ".join(filter(None, (misfit.gap(verdict), misfit.goodness(verdict)))),
+        "gap": " ".join(filter(None, shrinking)),
         "rounds": rows.rounds(tables["gap"], catalogue),
         "runs": [r for r in tables["gap"] if not r["run"].startswith("round ")],
         "added": bool(words.effects_of(verdict)),

@@ -45,9 +45,8 @@ def drawn(draws) -> str:
             " Where that did not hold the fit itself, the interval is that of its Gaussian." if missed else ""
         )
     return (
-        f"{len(one.weight)} draws, each simulated and weighed by the data, say as much as "
-        f"{one.effective:.0f} of the posterior itself; the shape of their largest weights, Pareto k, is "
-        f"{pareto_k(one.weight):.2g}, and below 0.7 they are to be trusted.".replace(" -", " −")
+        f"{len(one.weight)} weighted draws are worth {one.effective:.0f} independent ones; their Pareto k is "
+        f"{pareto_k(one.weight):.2g} (reliable below 0.7).".replace(" -", " −")
     )
 
 
