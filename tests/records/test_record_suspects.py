@@ -14,7 +14,7 @@ from sonicvacuum.records.commands import summary
 from sonicvacuum.records.expected import expected
 from sonicvacuum.records.reader import parse
 from sonicvacuum.records.review import HARDLY_KNOWN, LONGER, review
-from sonicvacuum.records.suspects import suspects
+from sonicvacuum.records.suspects import copies, suspects
 from sonicvacuum.report.checked import check
 
 
@@ -175,3 +175,11 @@ def test_a_gauge_without_a_pulse_has_no_number():
     missing = [f for f in review(record).expected.features if f.measured is None]
     assert {(f.run, "far" in (f.gauge, f.start)) for f in missing} == {("fast", True)}
     assert "far: peak at – us" in summary(record, review(record))
+
+
+def test_a_file_that_was_taken_for_two_runs_is_told():
+    record = made()
+    assert copies(record) == []
+    (one_run, traces), (other, _) = list(record.signals.items())[:2]
+    (said,) = copies(replace(record, signals={**record.signals, other: traces}))
+    assert said.startswith(f"run {other}: holds the same samples as run {one_run}")

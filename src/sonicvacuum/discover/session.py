@@ -40,6 +40,7 @@ from sonicvacuum.physics import validity
 from sonicvacuum.physics.run import available_threads
 from sonicvacuum.records import Record
 from sonicvacuum.records.extent import check_extent
+from sonicvacuum.records.suspects import copies
 
 # Unit of the readings of a gauge whose calibration nobody knows.
 UNCALIBRATED = "as recorded"
@@ -150,6 +151,7 @@ def discover(
         reasons=[
             *found.reasons,
             *_taken_as_stated(found),
+            *(line for one in records for line in copies(one)),
             *(law.reasons(told) if free else ()),
             *verdict.corrections(outcome.findings),
         ],

@@ -6,6 +6,7 @@ of the catalogue usually makes are told here: a common shift of all arrivals, am
 arrival that fits the neighbouring bead, a mass that the material does not have.
 """
 
+import itertools
 import math
 from collections.abc import Iterator
 
@@ -36,12 +37,27 @@ _FREE = 1e3
 
 def suspects(record: Record, expected: Expected) -> list[str]:
     """One sentence for each likely slip, beginning with the place it concerns."""
-    found = [*_masses(record)]
+    found = [*_masses(record), *copies(record)]
     counted = [*_beads(record, expected)]
     for run in () if counted else expected.bead_passage:
         found += _trigger(record, expected, run)
     found += [*counted, *_amplitudes(record, expected), *_windows(expected)]
     return found
+
+
+def copies(record: Record) -> list[str]:
+    """Runs whose traces are another run's, sample by sample; of noise that cannot be."""
+    return [
+        f"run {b}: holds the same samples as run {a}, to the last digit: one file was taken for both"
+        for a, b in itertools.combinations(record.signals, 2)
+        if _same(record.signals[a].readings, record.signals[b].readings)
+    ]
+
+
+def _same(one, other) -> bool:
+    """Whether two runs share traces, and these are the same and not constant."""
+    shared = [(one[id], other[id]) for id in one if id in other]
+    return bool(shared) and all(np.array_equal(a, b) and np.ptp(a) > 0.0 for a, b in shared)
 
 
 def _masses(record) -> Iterator[str]:

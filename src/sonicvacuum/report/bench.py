@@ -51,9 +51,12 @@ def slip(one: Fault) -> str:
     """One slip in a few words."""
     header = FAULTS[one.fault]
     sensors = [one.sensor] if isinstance(one.sensor, str) else (one.sensor or ["a gauge"])
-    value = "some" if one.value is None else f"{one.value:.4g}"
-    text = header.says.format(sensor=joined(list(sensors)), run=one.run or "all runs", value=value)
-    place = one.run and "{run}" not in header.says
+    says, number = header.says, one.value
+    if number is not None and number < 0.0 and header.negative:
+        says, number = header.negative, -number
+    value = "some" if number is None else f"{number:.4g}"
+    text = says.format(sensor=joined(list(sensors)), run=one.run or "all runs", value=value)
+    place = one.run and "{run}" not in says
     return f"{text} in run {one.run}" if place else text
 
 

@@ -20,8 +20,9 @@ from sonicvacuum.discover.faults.judged import (
 from sonicvacuum.discover.faults.judging import Judge
 from sonicvacuum.discover.faults.lines import drifts
 from sonicvacuum.discover.faults.slips import hypotheses
+from sonicvacuum.discover.faults.starts import with_starts
 from sonicvacuum.discover.faults.table import FAULTS
-from sonicvacuum.discover.faults.timing import time_zero, with_starts
+from sonicvacuum.discover.faults.timing import late_runs, time_zero
 from sonicvacuum.discover.faults.weights import ALIKE
 from sonicvacuum.discover.fit import smooth
 from sonicvacuum.discover.fit.refit import polish
@@ -76,7 +77,7 @@ class Ranking:
         judge, record = Judge(model, self.judged), model.bench.record
         seen = predicted(self.make(model.bench), self.threads)
         done = {(f.fault, f.run, f.sensor) for f in self.findings}
-        slips = with_starts(hypotheses(record), record, seen)
+        slips = [*with_starts(hypotheses(record), record, seen, model), *late_runs(record, model, seen)]
         slips = [s for s in slips if (s.fault, s.run, s.sensor) not in done]
         if any(c.effect.places in ("bead", "contact") for c in model.fit.hypothesis.components):
             # In a chain of another length its place would be another one, or none.

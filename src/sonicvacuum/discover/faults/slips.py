@@ -21,6 +21,7 @@ WIDTH = {
     "run-off": 0.1,
     "clock": 0.01,
     "gauge-delayed": 20.0,
+    "time-zero": 20.0,
 }
 
 

@@ -12,6 +12,7 @@ class Fault:
         says: what it is; `{sensor}`, `{run}` and `{value}` stand for those of the record.
         check: what to look at at the bench.
         unit: of the value, "" where it is a ratio or a number.
+        negative: what it is where the value is negative, `{value}` being its size; "" where `says` does.
         corrected: whether the rest of the verdict is of the record put right.
         alias: nuisance such that an effect which acts like it (`Parameter.acts_like`) moves the same data in
             the same way, "" where there is none.
@@ -26,6 +27,7 @@ class Fault:
     unit: str = ""
     corrected: bool = True
     alias: str = ""
+    negative: str = ""
     stretches: bool = False
     curved: bool = False
 
@@ -76,6 +78,7 @@ FAULTS: dict[str, Fault] = {
             "gauge {sensor} is late by {value} us",
             "check the delays set in its channel and its cable",
             "us",
+            negative="gauge {sensor} is early by {value} us",
         ),
         Fault(
             "gauge-misplaced",
@@ -137,6 +140,7 @@ FAULTS: dict[str, Fault] = {
             "the stated time zero is {value} us after the impact",
             "check what the recorder was triggered on: the impact, or the arrival at a gauge",
             "us",
+            negative="the stated time zero is {value} us before the impact",
             stretches=True,
         ),
     )

@@ -1,18 +1,20 @@
 """Slips of time: where each run, and each gauge in it, sits in time beside the model's readings."""
 
 import math
-from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
 from sonicvacuum.discover.correlation import correlated
 from sonicvacuum.discover.faults import changes
+from sonicvacuum.discover.faults.judged import Model
 from sonicvacuum.discover.faults.slips import WIDTH, Slip
 from sonicvacuum.records import Record
 
 # A run is shifted where its traces fit best so many standard errors of its trigger off.
 FAR = 8.0
+# A run's own time zero is asked for where the fit has moved it by so many standard errors.
+STRAINED = 3.0
 # A pulse has arrived where it exceeds this share of its peak, as a scope's trigger level would have it.
 ARRIVED = 0.1
 
@@ -59,6 +61,41 @@ def time_zero(record: Record, predicted) -> list[Slip]:
     ]
 
 
+def late_runs(record: Record, model: Model, predicted) -> list[Slip]:
+    """Runs whose own trigger came late or early while others' did not, where the data ask for that.
+
+    Each starts from where the fit has led its time zero, or where its traces fit best.
+    """
+    sigma = record.trigger_sigma_s * 1e6
+    if not math.isfinite(sigma) or len(record.signals) < 2:
+        return []
+    layout, late = model.forward.layout, shifts(record, predicted)
+    far = {k: abs(v) > FAR * max(sigma, record.signals[k].interval_s * 1e6) for k, v in late.items()}
+    found = []
+    for place, run in enumerate(model.forward.experiment.runs):
+        strain = float(model.fit.nu[layout.trigger(place)])
+        if run.id not in late or not (abs(strain) > STRAINED or (far[run.id] and not all(far.values()))):
+            continue
+        # What the fit adds to true times is taken off the recorded ones.
+        start = -strain * sigma if abs(strain) > STRAINED else late[run.id]
+        slip = Slip(
+            "time-zero",
+            partial(_one_late, run.id, max(sigma, 0.0)),
+            run.id,
+            alternatives=len(record.signals),
+            width=WIDTH["time-zero"],
+            step=0.05,
+            value=float,
+            start=start,
+        )
+        found.append(slip)
+    return found
+
+
+def _one_late(run, sigma, record, size):
+    return changes.time_zero(record, {run: size}, sigma)
+
+
 def _from_there(late, width, record, _):
     return changes.time_zero(record, late, width)
 
@@ -89,12 +126,8 @@ def _arrival(signals, model):
     return float(signals.time_us[first])
 
 
-def with_starts(slips: list[Slip], record: Record, predicted) -> list[Slip]:
-    """Delays of single gauges start where the gauge's own traces fit best, beside the other gauges'."""
-    return [_started(s, record, predicted) if s.fault == "gauge-delayed" else s for s in slips]
-
-
-def _started(slip, record, predicted):
+def gauge_delay(slip: Slip, record: Record, predicted) -> float:
+    """By how many us a gauge's traces are late where they fit best, beside the other gauges' traces."""
     runs = [k for k, s in record.signals.items() if slip.sensor in s.readings and predicted.get(k)]
     others = {k: [i for i in record.signals[k].readings if i != slip.sensor] for k in runs}
     lags = [
@@ -102,5 +135,4 @@ def _started(slip, record, predicted):
         for k in runs
         if others[k]
     ]
-    start = float(np.median(lags)) if lags else 0.0
-    return replace(slip, start=start) if abs(start) > WIDTH[slip.fault] else slip
+    return float(np.median(lags)) if lags else 0.0
