@@ -138,6 +138,8 @@ def test_one_search_that_fails_does_not_end_the_others(hidden, empty, tmp_path, 
 
 
 def test_a_failure_in_a_process_of_its_own_comes_back_as_such():
-    told = list(side_by_side(_attempt, [((), "out", (), False, 1, True)] * 2, 2))
+    """A record that is none, which no user can give, is a fault of the program; no record is refused."""
+    told = list(side_by_side(_attempt, [(given, "out", (), False, 1, True) for given in ((None,), ())], 2))
     assert [type(t) for t in told] == [Failure, Failure]
     assert "Traceback" in told[0].broken
+    assert "give at least one" in told[1].error and not told[1].broken
