@@ -1,6 +1,7 @@
 """How a text file separates columns and writes numbers, found from its last lines, which are samples."""
 
 import csv
+import math
 import re
 from collections import Counter
 from dataclasses import dataclass
@@ -10,13 +11,32 @@ from sonicvacuum.files import InputError
 _POINT = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 _COMMA = re.compile(r"[-+]?(\d+(,\d+)?|,\d+)([eE][-+]?\d+)?")
 _INTEGER = re.compile(r"[-+]?\d+")
-# What stands for a sample that the recorder could not give.
-LOST = {"nan", "-nan", "na", "n/a", "#n/a", "null", "none", "-", "--", "---", "***", "?", "1.#ind", "-1.#ind",
-        "1.#qnan", "lost", "invalid", "#value!", "#wert!", "err", "error", "no data"}  # fmt: skip
-OVER = {"∞", "+∞", "inf", "+inf", "infinity", "1.#inf", "overrange", "over range", "over", "ol", "o.l", "ovl",
-        "ovfl", "overflow", "overload", "clipped", "+over", "+ol", ">range", "âˆž", "+overrange"}  # fmt: skip
-UNDER = {"-∞", "-inf", "-infinity", "-1.#inf", "underrange", "under range", "under", "-over", "-ol", "-ovl",
-         "-overrange", "-overflow", "-overload", "<range", "-âˆž"}  # fmt: skip
+_TAIL = re.compile(r"\d+([eE][-+]?\d+)?")
+# Digits in groups of three that nothing else can be: by blanks or apostrophes, by the mark that is not the
+# decimal one before a decimal mark, or by it more than once.
+_GROUPED = {
+    decimal: re.compile(
+        rf"[-+]?\d{{1,3}}(([ \u00a0\u202f'’])\d{{3}}(\2\d{{3}})*({re.escape(decimal)}\d*)?"
+        rf"|({re.escape(mark)}\d{{3}})+{re.escape(decimal)}\d*|({re.escape(mark)}\d{{3}}){{2,}})"
+    )
+    for decimal, mark in ((".", ","), (",", "."))
+}
+# One group only, which may as well be decimals.
+_ONE_GROUP = {
+    d: re.compile(rf"[-+]?[1-9]\d{{0,2}}{re.escape(m)}\d{{3}}") for d, m in ((".", ","), (",", "."))
+}
+# Digits and marks as in a number, whether it is one or not.
+_LIKE = re.compile(r"[-+]?[\d.,'’ \u00a0\u202f]*\d[\d.,'’ \u00a0\u202f]*([eE][-+]?\d+)?")
+# What stands for a sample that the recorder could not give; so does any row of marks such as **** or --.--.
+LOST = {"nan", "-nan", "na", "n/a", "n.a.", "null", "none", "1.#ind", "-1.#ind", "1.#qnan", "lost", "invalid",
+        "err", "error", "no data", "missing", "burnout"}  # fmt: skip
+_MARKS = re.compile(r"[-+*?.><_/\s]*[-+*?><_/]|#n/a|#[\w/]+[!?]|-?1\.#(ind|qnan|snan)\d*", re.IGNORECASE)
+OVER = {"∞", "+∞", "inf", "+inf", "infinity", "overrange", "over range", "over", "ol", "o.l", "o.l.", "ovl",
+        "ovfl", "overflow", "overload", "clipped", "+over", "+ol", ">range", "âˆž", "+overrange", "ofl",
+        "ovr", "sat", "saturated", "out of range", "oor"}  # fmt: skip
+UNDER = {"-∞", "-inf", "-infinity", "underrange", "under range", "under", "-over", "-ol", "-ovl",
+         "-overrange", "-overflow", "-overload", "<range", "-âˆž", "-ofl", "-ovr", "-sat"}  # fmt: skip
+_INFINITE = re.compile(r"[-+]?1\.#inf\d*", re.IGNORECASE)
 # Tried in this order: where two read equally well, the earlier is taken. None: any white space.
 _CANDIDATES = ("\t", ";", ",", "|", None)
 LOOKED_AT = 40
@@ -42,11 +62,35 @@ class Dialect:
 
     def is_number(self, cell: str) -> bool:
         """Whether a cell is a number written with this decimal mark."""
-        return bool((_COMMA if self.decimal == "," else _POINT).fullmatch(cell))
+        plain = _COMMA if self.decimal == "," else _POINT
+        return bool(plain.fullmatch(cell) or _GROUPED[self.decimal].fullmatch(cell))
 
     def is_sample(self, cell: str) -> bool:
         """Whether a cell can be a sample: a number, or a word for a lost or overranging one."""
-        return self.is_number(cell) or cell.lower() in LOST or cell.lower() in OVER or cell.lower() in UNDER
+        return self.is_number(cell) or stands_for(cell) is not None
+
+    def ungrouped(self, cell: str) -> str:
+        """A number with digits in groups as Python reads it; what only may be one stays as it is."""
+        if not _GROUPED[self.decimal].fullmatch(cell):
+            return cell
+        return re.sub(r"[^-+\d.,]", "", cell).replace("," if self.decimal == "." else ".", "")
+
+    def is_one_group(self, cell: str) -> bool:
+        """Whether a cell is a number of thousands only if its mark is none of decimals, as in 8,012."""
+        return bool(_ONE_GROUP[self.decimal].fullmatch(cell))
+
+
+def stands_for(cell: str) -> float | None:
+    """What a word in place of a sample means: lost (NaN), beyond the range (±inf), or None for any other."""
+    word = cell.lower()
+    if word in OVER or word in UNDER or _INFINITE.fullmatch(word):
+        return -math.inf if word in UNDER or word.startswith("-1") else math.inf
+    return math.nan if word in LOST or _MARKS.fullmatch(word) else None
+
+
+def is_like_number(cell: str) -> bool:
+    """Whether a cell holds nothing but digits and the marks within numbers."""
+    return bool(_LIKE.fullmatch(cell))
 
 
 def sniff(text: str, path) -> Dialect:
@@ -80,18 +124,26 @@ def _score(dialect, lines):
 
 
 def _decided(dialect, lines, path):
-    """Commas alone may be decimal marks: whole numbers with leading zeros behind them give that away."""
+    """Commas alone may be decimal marks: digits with leading zeros behind them give that away."""
     if dialect != Dialect(",", "."):
         return dialect
     rows = [[c for c in dialect.cells(line) if c] for line in lines]
-    rows = [r for r in rows if r and all(map(_INTEGER.fullmatch, r))]
-    if len(rows) < 0.6 * len(lines) or any(c[0] in "+-" for r in rows for c in r[1::2]):
+    rows = [
+        r for r in rows if r and all(map(_INTEGER.fullmatch, r[::2])) and all(map(_TAIL.fullmatch, r[1::2]))
+    ]
+    if len(rows) < 0.6 * len(lines):
         return dialect
-    if not any(len(c) > 1 and c[0] == "0" for r in rows for c in r[1::2]):
+    tails = [c for r in rows for c in r[1::2]]
+    if not any(re.match(r"0\d|\d+[eE]", c) for c in tails):
         return dialect
     if max(map(len, rows)) <= 2:
         return Dialect(";", ",")
-    raise InputError(
+    raise commas(path)
+
+
+def commas(path) -> InputError:
+    """The refusal of a file in which commas are decimal marks and stand between columns as well."""
+    return InputError(
         f"{path}: commas serve both as decimal marks and between columns, which cannot be told apart; export "
         "with semicolons or tabs between the columns"
     )

@@ -2,7 +2,7 @@
 
 import re
 from dataclasses import dataclass, field
-from itertools import pairwise
+from itertools import pairwise, zip_longest
 
 from sonicvacuum.scope.dialect import Dialect
 from sonicvacuum.scope.units import quantity, unit_of
@@ -33,19 +33,12 @@ MEANINGS = {
     "scale": {"verticalscale", "voltsdiv", "voltdiv", "vscale"},
 }  # fmt: skip
 # Keys that mean other things too; another key of the same meaning overrules them.
-_VAGUE = {
-    "start",
-    "interval",
-    "samples",
-    "points",
-    "size",
-    "units",
-    "unit",
-    "labels",
-    "channel",
-    "channels",
-    "ch",
-}
+_VAGUE = {"start", "interval", "samples", "points", "size", "units", "unit", "labels", "channel", "channels",
+          "ch", "resolution", "clock", "sampling", "rate", "dx", "t0", "starttime"}  # fmt: skip
+# Meaning → base unit of the number that its value must be; anything else says nothing of it.
+_BASE = {"interval": "s", "rate": "Hz", "start": "s", "stop": "s", "trigger": "", "count": "", "scale": "V"}
+# A resolution of whole seconds is one of bits.
+_BITS = "resolution"
 _MEANING = {key: meaning for meaning, keys in MEANINGS.items() for key in keys}
 
 
@@ -58,57 +51,125 @@ class Keys:
         rows: meaning → the row of cells they stand in, which may be aligned with the columns below.
         vague: meanings that were taken from a key which may mean something else.
         units: meaning → unit written beside the key, as in `Time Scale (s/DIV) =`.
+        odd: meaning → key and value as written where the value is no number of it.
         decimal: mark in numbers.
+        channels: number of channels, as many as a row of values may have.
     """
 
     decimal: str
+    channels: int = 1
     values: dict[str, list[str]] = field(default_factory=dict)
     rows: dict[str, list[str]] = field(default_factory=dict)
     units: dict[str, str] = field(default_factory=dict)
     vague: set[str] = field(default_factory=set)
+    odd: dict[str, tuple[str, str]] = field(default_factory=dict)
 
     def text(self, meaning: str, place: int, column: int) -> str:
-        """What is said of one channel: in its column, else at its place, else the one value for all."""
+        """What is said of one channel: at its place, else in its column, else the one value for all."""
         row, found = self.rows.get(meaning, []), self.texts(meaning)
-        if column < len(row) and row[column].strip() and len(row) > 2:
-            return row[column].strip()
-        return found[place] if place < len(found) else found[0] if len(found) == 1 else ""
+        if len(found) == 1 and (not row or row[1].strip()):
+            return found[0]
+        if not row:
+            return found[place] if place < len(found) else ""
+        # More values than channels stand in the columns of the samples, those of times among them. The key
+        # itself takes the first cell, so channels that begin there are one cell further on.
+        at = column if len(row) - 1 > self.channels and column > place else place + 1
+        return row[at].strip() if at < len(row) else ""
 
     def number(self, meaning: str, base: str, place: int = 0, column: int = 0) -> float | None:
         """One channel's number as a multiple of a base unit, which is assumed where none is written."""
         text = self.text(meaning, place, column) or next(iter(self.texts(meaning)), "")
-        got = quantity(text, self.decimal) or quantity(text)
-        if got is None:
-            return None
-        unit = got[1] or unit_of(self.units.get(meaning, ""))
-        if unit is not None and unit.base != base:
-            return None
-        return got[0] * (unit.factor if unit else 1.0)
+        return _number(text, base, self.units.get(meaning, ""), self.decimal)
 
     def texts(self, meaning: str) -> list[str]:
         """Values of a meaning that are not empty."""
         return [v for v in self.values.get(meaning, []) if v.strip()]
 
     def add(self, key: str, values: list[str], row: list[str]) -> None:
-        """Take one key up; the first of a meaning that says something counts."""
+        """Take one key up; the first of a meaning that says something counts, a plain one before a vague."""
         name, unit = _name(key)
         meaning = _MEANING.get(name)
         parted = [w for v in values for w in _parted(v) if w]
+        if not meaning or not parted:
+            return
+        if meaning in _BASE and len(parted) == 2 and unit_of(parted[1]) and quantity(parted[0], self.decimal):
+            # A number and its unit in cells of their own.
+            parted, row = [" ".join(parted)], []
+        if meaning in _BASE and not self._tells(name, parted, unit):
+            self.odd.setdefault(meaning, (key.strip(), parted[0]))
+            return
         better = meaning in self.vague and name not in _VAGUE
-        if meaning and parted and (better or not self.values.get(meaning)):
+        if better or not self.values.get(meaning):
             (self.vague.add if name in _VAGUE else self.vague.discard)(meaning)
             self.values[meaning] = parted
             self.rows[meaning] = row if row[1:] == values and len(parted) <= len(values) else []
             self.units[meaning] = unit
 
+    def _tells(self, name, values, unit):
+        """Whether the first value of a key is a number of what the key means."""
+        base = _BASE[_MEANING[name]]
+        if name == _BITS and not unit and values[0].strip().isdigit():
+            return False
+        return _number(values[0], base, unit, self.decimal) is not None
 
-def read(rows: list[list[str]], dialect: Dialect) -> Keys:
-    """Keys of rows of cells."""
-    keys = Keys(dialect.decimal)
-    for row in rows:
+    def beside(self, other: "Keys") -> "Keys":
+        """These keys, and those of another header where these are silent."""
+        mine = {m for m, v in self.values.items() if v}
+        merged = [
+            {k: v for k, v in theirs.items() if k not in mine} | {k: v for k, v in own.items() if k in mine}
+            for own, theirs in (
+                (self.values, other.values),
+                (self.rows, other.rows),
+                (self.units, other.units),
+            )
+        ]
+        vague = {m for m in self.vague if m in mine} | (other.vague - mine)
+        return Keys(self.decimal, self.channels, *merged, vague, other.odd | self.odd)
+
+
+def _number(text, base, unit, decimal):
+    got = quantity(text, decimal) or quantity(text)
+    if got is None and base == "Hz":
+        # A bare prefix, as in 500k, counts samples in a second.
+        got = quantity(text.strip() + "Hz", decimal)
+    if got is None:
+        return None
+    found = got[1] or unit_of(unit)
+    if found is not None and found.base != base:
+        return None
+    return got[0] * (found.factor if found else 1.0)
+
+
+def is_key(text: str) -> bool:
+    """Whether a cell is a key that says something of the samples."""
+    return _name(text)[0] in _MEANING
+
+
+def keyed(line: str) -> list[str] | None:
+    """A line of words parted by blanks as key and value, `fs 500 kHz`; None where it begins with no key."""
+    words = line.strip().lstrip("#%*\"' ").split()
+    for k in range(min(4, len(words) - 1), 0, -1):
+        if is_key(" ".join(words[:k])) and re.match(r"[-+.\d]", words[k]):
+            return [" ".join(words[:k]), " ".join(words[k:])]
+    return None
+
+
+def read(rows: list[list[str]], dialect: Dialect, channels: int = 1) -> Keys:
+    """Keys of rows of cells, above so many channels."""
+    keys = Keys(dialect.decimal, channels)
+    for row, below in zip_longest(rows, rows[1:], fillvalue=()):
+        alone = [c for c in row if c.strip()]
+        if len(alone) == 1 and alone[0].rstrip().endswith(":") and is_key(alone[0]) and not _is_header(below):
+            # A heading, whose values stand in the next line.
+            keys.add(alone[0], list(below), [alone[0], *below])
+            continue
         for key, values in _pairs(row):
             keys.add(key, values, row)
     return keys
+
+
+def _is_header(row):
+    return any(c.rstrip().endswith(":") for c in row)
 
 
 def _name(key):
@@ -128,7 +189,12 @@ def _pairs(row):
     first = cells[0].lstrip("#%*\"' ")
     found = re.match(r"([^:=]*?)\s*[:=]+\s*(.*)$", first)
     if found and found.group(1):
-        yield found.group(1), [found.group(2).rstrip(":"), *cells[1:]]
+        # Groups of three digits behind a comma that a comma cuts, as in 500,000.
+        thousands = re.fullmatch(r"\d{1,3}", found.group(2)) and cells[1:]
+        if thousands and all(re.fullmatch(r"\d{3}", c) for c in cells[1:]) and cells[1][0] == "0":
+            yield found.group(1), ["".join([found.group(2), *cells[1:]])]
+        else:
+            yield found.group(1), [found.group(2).rstrip(":"), *cells[1:]]
     else:
         yield first, [c for c in cells[1:] if c != cells[0]]
     for key, value in pairwise(cells[1:]):

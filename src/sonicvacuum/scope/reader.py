@@ -1,19 +1,18 @@
 """One file to its channels: text → dialect → table → roles of the columns → time base and units."""
 
 import re
-from itertools import pairwise
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from sonicvacuum.files import InputError
-from sonicvacuum.scope import keys as header_keys
 from sonicvacuum.scope import roles, text
 from sonicvacuum.scope.binary import is_binary, read_binary
-from sonicvacuum.scope.keys import Keys
 from sonicvacuum.scope.layouts import Layout, recognise
 from sonicvacuum.scope.recording import Channel, Recording
-from sonicvacuum.scope.table import Table, split
+from sonicvacuum.scope.shots import Shot, shots
+from sonicvacuum.scope.table import split, whole
 from sonicvacuum.scope.timebase import TimeBase, from_column, from_header
 from sonicvacuum.scope.units import unit_of
 
@@ -36,40 +35,20 @@ def read(path) -> Recording:
     if is_binary(path):
         return read_binary(path)
     content, encoding = text.read(path)
-    content = content.rstrip(" ;,\t\n")
     layout = recognise(content[:_HEAD], path)
+    content, cut = whole(content)
     table = split(content, path)
-    found, rows = roles.columns(table)
-    if layout.companion:
-        rows = rows + [line.split(",") for line in layout.companion(path)]
-    keys = header_keys.read(table.beside + rows, table.dialect)
-    channels = [c for part in _parts(table, found) for c in _channels(part, found, keys, layout, path)]
+    channels, said = [], [] if encoding.startswith("utf-8") else [f"Text is {encoding}."]
+    for shot in shots(table, layout.companion(path) if layout.companion else [], path):
+        said += [n for n in shot.notes if n not in said]
+        channels += _channels(shot, layout, path)
     if not channels:
         raise InputError(f"{path}: has times but no channel beside them; export the traces too")
-    said = () if encoding.startswith("utf-8") else (f"Text is {encoding}.",)
-    return Recording(path, layout.name, tuple(channels), said)
+    return Recording(path, layout.name, tuple(channels), (*said, *cut, *table.notes))
 
 
-def _parts(table: Table, found):
-    """(number, rows) of each shot: cut where a header stands between, or where time starts again."""
-    rows = len(next(iter(table.columns.values())))
-    cuts = set(table.breaks)
-    for column in (c for c in found if c.role in ("time", "counter")):
-        times = table.columns[column.place]
-        cuts |= set((np.flatnonzero(np.diff(times) < 0.0) + 1).tolist())
-        break
-    edges = [0, *sorted(cuts), rows]
-    lengths = np.diff(edges)
-    if len(lengths) > 1 and np.median(lengths) < 8:
-        edges = [0, rows]
-    return [
-        (k + 1, len(edges) > 2, {p: v[a:b] for p, v in table.columns.items()})
-        for k, (a, b) in enumerate(pairwise(edges))
-    ]
-
-
-def _channels(part, found, keys: Keys, layout: Layout, path):
-    number, several, columns = part
+def _channels(shot: Shot, layout: Layout, path):
+    found, keys, columns = shot.found, shot.keys, shot.columns
     names = _names(found, keys, path)
     values = [c.place for c in found if c.role == "value"]
     # Times stand before their channels; where none do, the first further on counts for all.
@@ -81,9 +60,9 @@ def _channels(part, found, keys: Keys, layout: Layout, path):
         if column.role == "value":
             values, kept = _held(columns[column.place])
             base = _base(clock, column, columns, kept, keys, place)
-            channel = _channel(names[place], column, values, base, keys, layout, place, several)
-            if several:
-                channel = Channel(**(vars(channel) | {"segment": number}))
+            channel = _channel(names[place], column, values, base, keys, layout, place, shot.several)
+            if shot.several:
+                channel = replace(channel, segment=shot.number)
             if len(values) > 1:
                 yield channel
             place += 1
@@ -145,6 +124,9 @@ def _unit(column, keys, layout, place, notes):
     """Base unit and factor of a channel: the column's label, else the header's word, else the layout's."""
     said = keys.text("unit", place, column.place)
     header = unit_of(said)
+    if column.said and not header:
+        notes.append(f"The unit {column.said} is not known; numbers are as written.")
+        return column.said, 1.0
     if column.unit:
         if header and header != column.unit:
             notes.append(f"The header's unit is {said}, that of the column counts: {column.unit.base}.")

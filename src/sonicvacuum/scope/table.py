@@ -5,28 +5,25 @@ these columns hold numbers line after line. What stands beside samples (names an
 some recorders) is kept as further header rows.
 """
 
-import io
 import re
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
-import pandas as pd
 
 from sonicvacuum.files import InputError
-from sonicvacuum.scope.dialect import LOST, OVER, UNDER, Dialect, sniff
+from sonicvacuum.scope import numbers
+from sonicvacuum.scope.dialect import Dialect, commas, sniff
+from sonicvacuum.scope.keys import is_key, keyed
 
 # Lines in a row that must look like samples where the table begins; header lines looked through at most.
 BEGINNING = 4
 LONGEST_HEADER = 100_000
+# Lines behind the samples from which on they are left out of what is looked at there.
+FOOTER = 10
 # Rows beside which a header may stand.
 BESIDE = 200
-# A time of day, maybe behind a date.
-_CLOCK = re.compile(r"(?:\d[\d./-]+\d[T ]+)?(?P<h>\d{1,2}):(?P<m>\d{2}):(?P<s>\d{2}(?:[.,]\d+)?)Z?")
-# Numbers as Python reads them: the default from pandas 3.1 on, an option before.
-_EXACT = {} if tuple(map(int, pd.__version__.split(".")[:2])) >= (3, 1) else {"float_precision": "round_trip"}
-# Share of rows that are no samples from which a text is not taken for a table.
-MOST_FOREIGN = 0.3
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +36,8 @@ class Table:
         raw: the same rows as they stand.
         beside: rows of cells that stand to the left of samples.
         columns: place of the column → (S,) numbers; NaN lost, ±inf over range.
-        breaks: rows at which a further header interrupts the samples (shots in a row).
+        breaks: row of the first sample behind lines between the samples → these lines.
+        notes: what was left out, in whole sentences.
     """
 
     dialect: Dialect
@@ -47,12 +45,50 @@ class Table:
     raw: list[str]
     beside: list[list[str]]
     columns: dict[int, np.ndarray]
-    breaks: tuple[int, ...]
+    breaks: dict[int, list[str]]
+    notes: tuple[str, ...] = ()
 
     @property
     def places(self) -> list[int]:
         """Places of the columns with samples, in order."""
         return sorted(self.columns)
+
+    def parts(self) -> list["Table"]:
+        """The tables that follow each other in the text, each with the rows above it."""
+        edges = [0, *sorted(self.breaks), len(next(iter(self.columns.values())))]
+        found = []
+        for k, (a, b) in enumerate(pairwise(edges)):
+            part = replace(self, columns={p: v[a:b] for p, v in self.columns.items()}, breaks={})
+            if k:
+                rows = [(line, _header_cells(line, self.dialect)) for line in self.breaks[a]]
+                part = replace(part, header=[c for _, c in rows], raw=[r for r, _ in rows], beside=[])
+            found.append(part)
+        return found
+
+
+def whole(text: str) -> tuple[str, list[str]]:
+    """A text without blank ends and without a last line that was cut off, and remarks.
+
+    Where no line end follows the last line, and it has fewer cells than those before, or its last number
+    fewer digits of the exponent, that number may be wrong by factors.
+    """
+    content = text.rstrip(" ;,\t\n")
+    if text.endswith("\n") or content.count("\n") < 2 * BEGINNING:
+        return content, []
+    *lines, last = [line.strip() for line in content.rsplit("\n", 2 * BEGINNING)[1:]]
+    shapes = {_shape(line) for line in lines}
+    (marks, digits), cut = shapes.pop(), _shape(last)
+    if shapes or (cut[0] >= marks and cut[1] >= digits) or not re.match(r"[-+.\d\"]", last):
+        return content, []
+    return content.rsplit("\n", 1)[0], [f"The last line ends in the middle ({last[:60]}): left out."]
+
+
+def _shape(line):
+    """Numbers in a line, and digits of the exponent that it ends with."""
+    exponent = re.search(r"[eE][-+]?(\d*)\W*$", line)
+    return len(re.findall(r"[-+.]?\d[.\d]*(?:[eE][-+]?\d*)?", line)), len(
+        exponent.group(1)
+    ) if exponent else 0
 
 
 def split(text: str, path) -> Table:
@@ -61,24 +97,52 @@ def split(text: str, path) -> Table:
     Raises:
         InputError: where no columns of numbers are found, or a row has more cells than the table columns.
     """
-    dialect = sniff(text, path)
-    places = _places(text, dialect, path)
+    samples = _without_footer(text)
+    dialect = sniff(samples, path)
+    places = _places(samples, dialect, path)
     above, offset = _above(text, dialect, places, path)
     start = _rows(text[offset : offset + 200 * BESIDE].split("\n")[:BESIDE], dialect)
     header = [(raw, cells) for raw, cells in ((a, _header_cells(a, dialect)) for a in above) if any(cells)]
     places = _with_sparse(places, start, header[-1][1] if header else [], dialect)
     beside = [row[: places[0]] for row in start if any(row[: places[0]])]
-    width = max(_width(start, places, text, dialect), len(header[-1][1]) if header else 0)
-    columns, breaks = _numbers(text[offset:], dialect, places, path, width)
-    return Table(dialect, [c for _, c in header], [r for r, _ in header], beside, columns, breaks)
+    width = max(_width(start, places, samples, dialect), len(header[-1][1]) if header else 0)
+    _refuse_commas(header, start, dialect, path)
+    found = numbers.read(text[offset:], dialect, places, path, width, text.count("\n", 0, offset))
+    rows, raw = [c for _, c in header], [r for r, _ in header]
+    return Table(dialect, rows, raw, beside, found.columns, found.breaks, found.notes)
+
+
+def _refuse_commas(header, rows, dialect, path):
+    """Names for half the columns, and no decimal point in any: commas are decimal marks too."""
+    if dialect != Dialect(",", ".") or not header:
+        return
+    names = [c for c in header[-1][1] if c]
+    cells = [[c for c in row if c] for row in rows]
+    wide = [len(row) for row in cells if len(row) > len(names)]
+    named = len(names) > 1 and not any(map(dialect.is_number, names))
+    if named and len(wide) > 0.5 * len(cells) and not any("." in c for row in cells for c in row):
+        raise commas(path)
+
+
+def _without_footer(text):
+    """The text up to the last line that does not begin with a letter, where many such lines end it."""
+    lines = text[-100_000:].split("\n")
+    foot = next((k for k, x in enumerate(reversed(lines)) if x.strip() and not x.strip()[0].isalpha()), 0)
+    return text[: len(text) - sum(len(x) + 1 for x in lines[-foot:])] if foot >= FOOTER else text
 
 
 def _header_cells(line, dialect):
     """Cells of a header row, which may be cut by another mark where the samples stand in one column."""
     cells = dialect.cells(line)
+    mark = next((m for m in "\t;," if m in line), None)
+    if dialect.delimiter is None and len(cells) > 1:
+        if mark and is_key(line.split(mark)[0]):
+            return Dialect(mark, dialect.decimal).cells(line)
+        # Blanks also stand within keys and between a number and its unit.
+        before = re.match(r"\W*([A-Za-z][^:=]*)[:=]", line)
+        return [line.strip()] if before and is_key(before.group(1)) else keyed(line) or cells
     if len(cells) > 1:
         return cells
-    mark = next((m for m in "\t;," if m in line), None)
     return Dialect(mark, dialect.decimal).cells(line) if mark else cells
 
 
@@ -118,7 +182,20 @@ def _above(text, dialect, places, path):
             break
     if not run:
         raise InputError(f"{path}: no row of samples found; export the traces as a table")
+    _refuse_broken(text[:begin].split("\n")[:-1], places, dialect, path)
     return text[:begin].split("\n")[:-1], begin
+
+
+def _refuse_broken(above, places, dialect, path):
+    """Refuse rows of samples above the first stretch of them: odd cells stand in many of them."""
+    rows = [dialect.cells(line) for line in above]
+    fit = [_fits(c, places, dialect) and not any(c[: places[0]]) for c in rows]
+    if sum(fit) > 2 * BEGINNING:
+        odd = next(k for k in range(fit.index(True), len(rows)) if not fit[k] and any(rows[k]))
+        raise InputError(
+            f"{path}: line {odd + 1} ({above[odd].strip()[:60]!r}) is no row of numbers, and others like it "
+            "stand between the samples; export the traces as a table of plain numbers"
+        )
 
 
 def _fits(cells, places, dialect):
@@ -129,6 +206,7 @@ def _fits(cells, places, dialect):
     held = [cells[k] for k in places if k < len(cells)]
     return (
         len(held) >= 1
+        and not (places[0] == 1 and is_key(cells[0]))
         and all(not c or dialect.is_sample(c) for c in held)
         and any(dialect.is_number(c) for c in held)
         and len(held) >= min(len(places), 2)
@@ -145,96 +223,8 @@ def _with_sparse(places, rows, names, dialect):
     return sorted(found)
 
 
-def _width(start, places, text, dialect):
-    tail = _rows(text[-5_000:].split("\n")[-20:], dialect)
-    return max(max(map(len, (*start, *tail)), default=0), places[-1] + 1) + 1
-
-
-def _numbers(body, dialect, places, path, width):
-    """Columns of numbers of the rows of samples, and the rows at which text interrupts them."""
-    try:
-        frame = pd.read_csv(
-            io.StringIO(body),
-            sep=r"\s+" if dialect.delimiter is None else dialect.delimiter,
-            decimal=dialect.decimal,
-            header=None,
-            names=list(range(width)),
-            index_col=False,
-            skipinitialspace=True,
-            engine="c",
-            low_memory=False,
-            **_EXACT,
-        )
-    except (pd.errors.ParserError, ValueError) as error:
-        raise InputError(f"{path}: rows differ in their columns: {str(error).strip()}") from None
-    columns, foreign = {}, np.zeros(len(frame), dtype=bool)
-    for k in places:
-        columns[k], strange = _column(frame[k], dialect)
-        foreign |= strange
-    for k in range(places[0]):
-        times = clock(frame[k])
-        columns |= {k: times} if times is not None else {}
-    left = frame[[k for k in range(places[0]) if k not in columns]].notna().any(axis=1).to_numpy()
-    foreign = _whole_headers(foreign, left | np.isnan([columns[k] for k in places]).all(axis=0))
-    if foreign.mean() > MOST_FOREIGN:
-        raise InputError(f"{path}: most rows are no samples; export the traces as a table of numbers")
-    return _cut(columns, foreign)
-
-
-def _column(series, dialect):
-    """A column as floats, and where it holds words that are no samples."""
-    if series.dtype.kind in "iuf":
-        return series.to_numpy(dtype=float), np.zeros(len(series), dtype=bool)
-    if series.dtype.kind == "b":
-        return series.to_numpy(dtype=float), np.ones(len(series), dtype=bool)
-    texts = series.astype("string").str.strip().fillna("")
-    plain = texts.str.replace(",", ".", n=1, regex=False) if dialect.decimal == "," else texts
-    values = pd.to_numeric(plain, errors="coerce").to_numpy(dtype=float, na_value=np.nan)
-    words = texts.str.lower().to_numpy(dtype=object)
-    strange = np.zeros(len(values), dtype=bool)
-    for k in np.flatnonzero(~np.isfinite(values)):
-        word = words[k]
-        values[k] = np.inf if word in OVER else -np.inf if word in UNDER else np.nan
-        strange[k] = bool(word) and word not in LOST and word not in OVER and word not in UNDER
-    return values, strange
-
-
-def _whole_headers(foreign, beside):
-    """Rows of further headers: foreign ones, and those with words beside numbers in one stretch with them."""
-    odd = foreign | beside
-    edges = np.flatnonzero(np.diff(np.concatenate(([0], odd.astype(int), [0]))))
-    result = foreign.copy()
-    for begin, end in zip(edges[::2], edges[1::2], strict=True):
-        result[begin:end] = foreign[begin:end].any()
-    return result
-
-
-def clock(series) -> np.ndarray | None:
-    """Times of day (or dates with them) as seconds from the first; None for a column of anything else."""
-    if series.dtype.kind in "iufb" or not _CLOCK.fullmatch(str(series.iloc[0]).strip()):
-        return None
-    parts = series.astype("string").str.strip().str.extract(_CLOCK)
-    hours, minutes, seconds = (
-        pd.to_numeric(parts[c].str.replace(",", ".", n=1, regex=False), errors="coerce") for c in "hms"
-    )
-    times = (3600.0 * hours + 60.0 * minutes + seconds).to_numpy(dtype=float, na_value=np.nan)
-    days = np.cumsum(np.concatenate(([0.0], np.diff(times) < -43_200.0)))
-    return np.round(times - times[0] + 86_400.0 * days, 9)
-
-
-def _cut(columns, foreign):
-    """The rows of samples alone: without foreign ones, and without empty ones at the ends of a shot."""
-    stack = np.array(list(columns.values()))
-    empty = np.isnan(stack).all(axis=0) | foreign
-    keep = np.zeros(len(empty), dtype=bool)
-    breaks, kept = [], 0
-    edges = np.flatnonzero(np.diff(np.concatenate(([1], foreign.astype(int), [1]))))
-    for begin, end in zip(edges[::2], edges[1::2], strict=True):
-        held = np.flatnonzero(~empty[begin:end])
-        if len(held) < 2:
-            continue
-        keep[begin + held[0] : begin + held[-1] + 1] = True
-        if kept:
-            breaks.append(kept)
-        kept += int(held[-1] - held[0] + 1)
-    return {k: v[keep] for k, v in columns.items()}, tuple(breaks)
+def _width(start, places, samples, dialect):
+    """Cells that most rows have."""
+    tail = _rows(samples[-5_000:].split("\n")[-20:], dialect)
+    usual = Counter(map(len, (*start, *tail))).most_common(1)
+    return max(usual[0][0] if usual else 0, places[-1] + 1)

@@ -1,6 +1,7 @@
 """Bytes of a text file to characters: encoding, byte order mark and line ends, whatever wrote them."""
 
 import codecs
+import re
 from pathlib import Path
 
 from sonicvacuum.files import InputError
@@ -13,6 +14,8 @@ _MARKS = (
     (codecs.BOM_UTF16_BE, "utf-16"),
 )
 _LOOKED_AT = 4096
+# Typographic signs before digits (minus, figure and en dash and their like), which stand for a minus.
+_DASH = re.compile("[\u2212\u2012\u2013\ufe63\uff0d](?=[\\d.,∞])")
 # Share of zero bytes at every other place from which text is UTF-16 without a mark.
 _WIDE = 0.7
 
@@ -40,7 +43,8 @@ def read(path: Path) -> tuple[str, str]:
         raise InputError(
             f"{path}: not valid {encoding} at byte {error.start}; export the file again"
         ) from None
-    return text.rstrip("\0\x1a").replace("\r\r\n", "\n").replace("\r\n", "\n").replace("\r", "\n"), encoding
+    text = text.rstrip("\0\x1a").replace("\r\r\n", "\n").replace("\r\n", "\n").replace("\r", "\n")
+    return _DASH.sub("-", text), encoding
 
 
 def encoding_of(data: bytes) -> str | None:

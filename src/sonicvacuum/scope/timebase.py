@@ -18,6 +18,8 @@ ALIKE = 0.02
 EVEN = 0.01
 # A header's interval this near to that of rounded times is the finer statement.
 FINER = 2e-3
+# Share of lost times that are filled; relative error of an interval from coarse times that is borne.
+MOST_LOST, COARSEST = 0.1, 0.1
 _FACTORS = {1.0: "s", 1e-3: "ms", 1e-6: "us", 1e-9: "ns", 1e-12: "ps"}
 
 
@@ -34,10 +36,11 @@ class TimeBase:
 def declared_interval(keys: Keys, place: int = 0, column: int = 0) -> float | None:
     """Sampling interval in s as the header gives it, directly, by a rate or by start, stop and count."""
     interval = keys.number("interval", "s", place, column)
-    if interval:
-        return tidy(abs(interval))
     rate = keys.number("rate", "Hz", place, column)
-    if rate:
+    # A key that may mean something else, as `Resolution`, says less than one that does not.
+    if interval and not (rate and "interval" in keys.vague and "rate" not in keys.vague):
+        return tidy(abs(interval))
+    if rate and rate > 0.0:
         return tidy(1.0 / rate)
     start, stop, count = (keys.number(m, b) for m, b in (("start", "s"), ("stop", "s"), ("count", "")))
     if start is not None and stop is not None and count and count > 1:
@@ -56,7 +59,9 @@ def from_header(keys: Keys, place: int = 0, column: int = 0) -> TimeBase:
     start = keys.number("start", "s", place, column)
     notes = []
     if interval is None:
-        return TimeBase(None, None, ("No time: the file has no times and no interval; give --interval.",))
+        odd = " and ".join(f"{k} {v!r}" for m, (k, v) in keys.odd.items() if m in ("interval", "rate"))
+        said = f"the header's {odd} is not understood" if odd else "the file has no times and no interval"
+        return TimeBase(None, None, (f"No time: {said}; give --interval.",))
     trigger = keys.number("trigger", "", place, column)
     if start is None and trigger is not None:
         start = tidy(-trigger * interval)
@@ -71,20 +76,29 @@ def from_column(
     times: np.ndarray, label: Unit | None, keys: Keys, place: int = 0, column: int = 0
 ) -> TimeBase:
     """Time base of a column of times, one shot."""
-    if len(times) < 2 or not np.isfinite(times).all():
-        base = from_header(keys, place, column)
-        said = "The column of times has gaps; start and interval are the header's."
-        return TimeBase(base.start_s, base.interval_s, (*base.notes, said))
+    times, notes = _filled(times)
+    if times is None:
+        return _headers(keys, place, column, "The column of times has gaps")
     declared = declared_interval(keys, place, column)
     slope = float(times[-1] - times[0]) / (len(times) - 1)
-    factor, notes = _factor(slope, label, declared, keys)
-    interval, start = tidy(slope * factor), tidy(float(times[0]) * factor)
     rounded, uneven = _spacing(times, slope)
-    if declared and rounded and not uneven and abs(declared / interval - 1.0) < FINER:
-        interval = declared
+    begin, rough = float(times[0]), 0.0
+    if (rounded and not uneven) or slope == 0.0:
+        slope, begin, rough = _line(times)
+        if rough > COARSEST:
+            return _headers(keys, place, column, "The times are printed too coarsely to tell an interval")
+    factor, said = _factor(slope, label, declared, keys)
+    interval, start, notes = tidy(slope * factor), tidy(begin * factor), [*notes, *said]
+    if declared and rounded and not uneven and abs(declared / interval - 1.0) < max(FINER, 3.0 * rough):
+        interval, start = declared, tidy(float(times[0]) * factor)
         notes.append("Times are printed with few digits; the interval is the header's.")
     elif declared and abs(declared / interval - 1.0) > ALIKE:
         notes.append(f"The header gives an interval of {declared:g} s, the times one of {interval:g} s.")
+    elif rough:
+        notes.append(
+            f"Times are printed with few digits; the interval, of a line through them, is good to "
+            f"{100.0 * rough:.2g} %: give --interval where it is known better."
+        )
     if not uneven:
         return TimeBase(start, interval, tuple(notes))
     steps = np.diff(times) * factor
@@ -92,6 +106,37 @@ def from_column(
         f"Times are uneven: steps of {steps.min():.4g} to {steps.max():.4g} s; the interval is the mean."
     )
     return TimeBase(start, interval, tuple(notes), times * factor)
+
+
+def _headers(keys, place, column, why):
+    base = from_header(keys, place, column)
+    said = f"{why}; start and interval are the header's." if base.interval_s else f"{why}."
+    return TimeBase(base.start_s, base.interval_s, (*base.notes, said))
+
+
+def _filled(times):
+    """Times with single lost ones between their neighbours, and a remark; None where too many are lost."""
+    lost = ~np.isfinite(times)
+    if len(times) < 2 or lost[[0, -1]].any() or lost.mean() > MOST_LOST:
+        return None, []
+    if not lost.any():
+        return times, []
+    places = np.arange(len(times))
+    filled = np.interp(places, places[~lost], times[~lost])
+    return filled, [f"{int(lost.sum())} times are lost: taken between their neighbours."]
+
+
+def _line(times):
+    """Slope and begin of the line through times printed with few digits, and the slope's relative error.
+
+    Times rounded to a step that m of fit into the record are off by step/√12, alike over each step: the slope
+    of the line of least squares is off by m^-1.5 of itself.
+    """
+    distinct = np.unique(times)
+    if len(distinct) < 2:
+        return 0.0, float(times[0]), np.inf
+    slope, begin = np.polyfit(np.arange(len(times)), times - times[0], 1)
+    return float(slope), float(times[0] + begin), float(len(distinct) - 1) ** -1.5
 
 
 def _spacing(times, slope):

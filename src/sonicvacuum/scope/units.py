@@ -26,7 +26,16 @@ _WORDS = {
     "metre": "m", "gee": "g", "gravity": "g", "ohm": "Ohm", "watt": "W", "kelvin": "K",
 }  # fmt: skip
 _WHOLE = {"S": ("s", 1.0), "kg": ("kg", 1.0), "1/s": ("Hz", 1.0), "sps": ("Hz", 1.0), "°C": ("degC", 1.0)}
+# Forces that instruments show: decanewton, and weights at standard gravity (1 lb = 0.45359237 kg, 1959).
+_WHOLE |= {"daN": ("N", 10.0), "kgf": ("N", STANDARD_GRAVITY), "kp": ("N", STANDARD_GRAVITY)}
+_WHOLE |= {"lbf": ("N", 0.45359237 * STANDARD_GRAVITY), "Kg": ("kg", 1.0)}
 _WHOLE |= {"%": ("%", 1.0), "bar": ("Pa", 1e5), "dB": ("dB", 1.0), "deg": ("deg", 1.0), "min": ("s", 60.0)}
+# Prefixes that recorders write in another case: K for kilo before these, S for seconds behind small ones.
+_CAPITAL_K = re.compile(r"K(?=V$|N$|Pa$|Hz$|Sa?/s$|Ohm$)")
+_SECONDS = re.compile(r"([munp])S")
+_THOUSANDS = re.compile(r"^[-+]?\d{1,3}(?:[ \u00a0\u202f]\d{3})+(?![\d.])")
+# Samples a second, however they are written.
+_SAMPLES = re.compile(r"\s*(?:samples?|sa|s)\s*/\s*(?:s|sec|seconds?)|\s*sps", re.IGNORECASE)
 _NUMBER = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?"
 # The micro sign in its two code points and as wrong decoding leaves it (UTF-8 and GBK read as Latin-1).
 _MICRO = re.compile("Âµ|Î¼|¦Ì|µ|μ|�(?=[sVANmg]\\b)")
@@ -52,19 +61,25 @@ def unit_of(text: str) -> Unit | None:
             return Unit(base)
         if text.endswith(symbol) and text[: -len(symbol)] in _PREFIX:
             return Unit(base, _PREFIX[text[: -len(symbol)]])
-    return _spelled(text.lower())
+    return spelled(text)
 
 
 def _plain(text):
     """Brackets off, one spelling of micro, of squares and of products with s."""
     text = _MICRO.sub("u", text.strip().strip('"').strip())
     text = re.sub(r"^[\[({<](.*)[\])}>]$", r"\1", text).strip()
+    rate = re.fullmatch(rf"([kKMG]?)({_SAMPLES.pattern})", text, re.IGNORECASE)
+    if rate and rate.group(1) != "m":
+        text = f"{rate.group(1)}Sa/s"
+    text = _SECONDS.sub(r"\1s", text) if _SECONDS.fullmatch(text) else _CAPITAL_K.sub("k", text)
     text = re.sub(r"/s(²|\*\*2|\^2|2|/s)$", "/s^2", text)
     text = re.sub(r"^(.*?)\s*(·|\*|\s)\s*s\^?-2$", r"\1/s^2", text)
     return text.replace("Ω", "Ohm").replace("ε", "strain").replace("m/sec", "m/s").strip()
 
 
-def _spelled(word):
+def spelled(word: str) -> Unit | None:
+    """The unit that a word such as `Second`, `Volts` or `millivolt` is; None for anything else."""
+    word = word.lower()
     for prefix, factor in ({"": 1.0} | _LONG_PREFIX | {"m": 1e-3, "u": 1e-6, "n": 1e-9, "k": 1e3}).items():
         if word.startswith(prefix):
             rest = word[len(prefix) :]
@@ -79,6 +94,10 @@ def quantity(text: str, decimal: str = ".") -> tuple[float, Unit | None] | None:
     text = text.strip().strip('"').strip()
     if decimal == ",":
         text = text.replace(",", ".", 1)
+    # Blanks part thousands, as in 500 000 Hz.
+    text = re.sub(
+        r"^([-+]?\d{1,3})((?:[ \u00a0\u202f]\d{3})+)(?![\d.])", lambda m: re.sub(r"\s", "", m[0]), text
+    )
     found = re.match(rf"({_NUMBER})\s*(.*)$", text)
     if not found:
         return None

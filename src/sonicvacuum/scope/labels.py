@@ -1,0 +1,209 @@
+"""The rows of a header that name the columns and their units, and what one label says."""
+
+import re
+from dataclasses import dataclass
+
+from sonicvacuum.scope.dialect import Dialect
+from sonicvacuum.scope.keys import is_key
+from sonicvacuum.scope.table import Table
+from sonicvacuum.scope.units import Unit, unit_of
+
+TIME = re.compile(
+    r"(time|zeit|temps|tiempo|tempo|tid|tijd|czas|timestamp|elapsed.*|x[-_ ]?axis|x[-_ ]?values?|x|t|in|"
+    r"seconds?|sec|time[ _].*|.*[ _]time|时间|時間)", re.IGNORECASE
+)  # fmt: skip
+COUNTER = re.compile(
+    r"(sequence|samples?|sample[ _-]?(no|nr|number)\.?|nr|no|index|idx|#|points?|n|i)\.?", re.I
+)
+COUNTS = re.compile(r"(sequence|samples?|index|points?|#|no\.?)", re.IGNORECASE)
+# Rows above samples that only say where these begin.
+_MARKER = re.compile(
+    r"\W*((waveform|measured|raw) )?(data|values|daten|messwerte)\W*|\*+end.*", re.IGNORECASE
+)
+# Rows above the samples in which names and units are looked for.
+LOOKED_AT = 6
+# Symbols of units that are as likely the letter of a channel.
+_LETTERS = re.compile("[ACFHJKTWgm]")
+_UNIT_AT_END = (
+    re.compile(r"(.*?)\s*\(([^()]*(?:\([^()]*\))?[^()]*)\)\s*$"),
+    re.compile(r"(.*?)\s*\[([^\[\]]*)\]\s*$"),
+    re.compile(r"(.*?)\s*<([^<>]*)>\s*$"),
+    re.compile(r"(.*?)\s*\bin\s+(\S+)\s*$"),
+    # Behind a lower dash a single letter is a name, but for those that time, volts and newtons mostly bear.
+    re.compile(r"(.*\w)(?:,\s*|_(?=[sVN]$|\S\S))(\S+)\s*$"),
+    re.compile(r"(a|acc\w*?)_(g)$", re.IGNORECASE),
+    re.compile(r"(.*?)\s*/\s*(\S+)\s*$"),
+    re.compile(r"(CH\d+)(V|mV|A)\s*$"),
+)
+_BRACKETS = re.compile(r".*[(\[<]([^()\[\]<>]+)[)\]>]\s*$")
+
+
+def split_unit(label: str) -> tuple[str, Unit | None]:
+    """A column's label as name and unit: `CH1 (V)`, `Time [ms]`, `C1 in V`, `F/N`."""
+    label = label.strip().lstrip("#%").strip().strip('"')
+    for form in _UNIT_AT_END:
+        found = form.match(label)
+        unit = unit_of(found.group(2)) if found else None
+        if unit:
+            return found.group(1).strip(), unit
+    return label, None
+
+
+def unknown_unit(label: str) -> str:
+    """What stands in brackets where a unit would, "" where it is none by its form: one word, or a scaled one.
+
+    `(bead 5)` is a remark; `(counts)`, `(% FS)` and `(1E-3 V)` are units that are not read here.
+    """
+    found = _BRACKETS.match(label.strip().strip('"'))
+    words = found.group(1).split() if found else []
+    scaled = len(words) > 1 and (unit_of(words[-1]) or words[0].startswith("%"))
+    one = len(words) == 1 and re.search(r"[^\W\d_]|%", words[0])
+    return found.group(1).strip() if scaled or one else ""
+
+
+@dataclass(frozen=True)
+class Labels:
+    """What the header says of the columns.
+
+    Attributes:
+        names, units: row of names and row of units by place of the column, empty where there is none.
+        rest: the other rows of the header, which may hold keys.
+        width: cells in a row of samples.
+    """
+
+    names: list[str]
+    units: list[str]
+    rest: list[list[str]]
+    width: int
+
+    def name(self, k: int) -> str:
+        """Label of the column at a place, "" where there is none."""
+        return _at(self.names, k)
+
+    def unit(self, k: int) -> str:
+        """What the row of units holds at a place."""
+        return _at(self.units, k)
+
+    def stray(self, k: int) -> str:
+        """A unit that another row of the header holds at a place."""
+        rows = [row for row in self.rest if len(row) == self.width and not is_key(row[0])]
+        return next((row[k] for row in rows if unit_of(row[k]) and not _LETTERS.fullmatch(row[k])), "")
+
+
+def labels(table: Table) -> Labels:
+    """Names and units of the columns, from the last rows above the samples."""
+    last = len(table.header) - 1
+    found = {k: _row(table, k) for k in range(last, max(-1, last - LOOKED_AT), -1)}
+    wide = {k: cells for k, cells in found.items() if cells is not None}
+    at = next((k for k, cells in wide.items() if _are_units(cells, table)), None)
+    names = _names_at(wide, at, last, table)
+    if names is None and at is not None and _only_letters(wide[at], table):
+        names, at = at, None
+    used = {k for k in (names, at) if k is not None}
+    rows = [row for k, row in enumerate(table.header) if k not in used]
+    if names is not None and at is not None:
+        rows += _extra(wide[names], wide[at], table)
+    taken = [wide[k] for k in used]
+    rows += [[c] for row in taken for c in row if re.match(r"\w[\w ]*\s*=", c)]
+    return Labels(wide.get(names, []), wide.get(at, []), rows, table.places[-1] + 1)
+
+
+def _names_at(wide, units, last, table):
+    """Which of the wide rows holds the names: beside that of units, else one that names a time or units."""
+    others = {k: cells for k, cells in wide.items() if not _are_units(cells, table)}
+    if units is not None:
+        near = [k for k in (units - 1, units + 1) if k in others]
+        return next((k for k in near if _begins_with_time(others[k], table)), near[0] if near else None)
+    told = [k for k, c in others.items() if _tells(c, table)]
+    return told[0] if told else last if last in others else None
+
+
+def _tells(cells, table):
+    """Whether labels differ and name a time in front, or units."""
+    held = [_at(cells, p) for p in table.places]
+    differ = len(set(held)) == len(held) > 1
+    return differ and (_begins_with_time(cells, table) or any(split_unit(c)[1] for c in held))
+
+
+def _begins_with_time(cells, table):
+    name = split_unit(_at(cells, table.places[0]))[0]
+    return bool(TIME.fullmatch(name) or COUNTER.fullmatch(name))
+
+
+def _only_letters(cells, table):
+    held = [c for c in (_at(cells, k) for k in table.places) if c]
+    return all(_LETTERS.fullmatch(c) for c in held)
+
+
+def _row(table, k):
+    """Header row k cut so that it has a word above most columns of samples; None where it has not."""
+    if all(_MARKER.fullmatch(c) for c in table.header[k] if c):
+        return None
+    if is_key(table.header[k][0]) and sum(map(bool, table.header[k])) > 1 and not _counter(table.header[k]):
+        return None
+    return next((cells for cells in _cuts(table, k) if _are_names(cells, table)), None)
+
+
+def _counter(cells):
+    """Whether a row that begins with a key such as `samples` names columns all the same."""
+    return bool(COUNTER.fullmatch(cells[0])) and not any(c[:1].isdigit() for c in cells[1:])
+
+
+def _are_names(cells, table):
+    """Whether cells can be names or units: words above most columns, or numbers of channels beside times."""
+    held = [_at(cells, p) for p in table.places]
+    words = [c for c in held if c and not table.dialect.is_number(c)]
+    numbers = [c for c in held if table.dialect.is_number(c)]
+    # Values behind keys, dates and times of day, and marks alone name no column.
+    if any(re.search(r"[:=]\s*[-+.\d]|^\d+([-/.:]\d+){2}|^[:=,;]", c) for c in words):
+        return False
+    if numbers:
+        whole = all(c.isdigit() for c in numbers)
+        return whole and not table.dialect.is_number(held[0]) and _begins_with_time(cells, table)
+    return len(words) >= max(1, len(held) // 2) and _wide(cells, table)
+
+
+def _wide(cells, table):
+    """A key with its value is no row of names, unless there are just as many columns."""
+    words = [c for c in cells if c]
+    return not (len(words) == 1 and (len(table.places) > 1 or re.search(r"[:=]", words[0])))
+
+
+def _cuts(table, k):
+    """The row as the samples are cut, or where it is cut by other marks than these, by those."""
+    cells, raw = table.header[k], table.raw[k].strip().lstrip("#%").strip()
+    width = table.places[-1] + 1
+    blanks = table.dialect.delimiter is None
+    yield cells if (len(cells) == width if blanks else len(cells) >= width) else []
+    for mark in ("\t", ";", ","):
+        other = Dialect(mark, table.dialect.decimal).cells(raw)
+        if len(other) == width:
+            yield other
+    joined = re.findall(r"[^\s(\[]+(?:\s*[(\[][^)\]]*[)\]])?", raw)
+    for parts in (re.split(r"\s{2,}", raw), joined, raw.split()):
+        if len(parts) == width:
+            yield parts
+    if len(table.places) == 1 and cells and len(cells) == 1:
+        yield ["" for _ in range(table.places[0])] + cells
+
+
+def _at(row, k):
+    return row[k] if row and k < len(row) else ""
+
+
+def _are_units(row, table):
+    held = [_at(row, k) for k in table.places]
+    plain = [bool(unit_of(c) or COUNTS.fullmatch(c)) for c in held if re.search(r"\w", c)]
+    # Beside a unit of time and another one, what is no unit is one that is not known.
+    time = unit_of(held[0]) if len(held) > 2 else None
+    partly = time is not None and time.base == "s" and sum(plain) > 1 and len(held[0]) > 1
+    return bool(plain) and (all(plain) or partly)
+
+
+def _extra(names, units, table):
+    """Keys in the row of names with their value in the row of units, as Rigol's Start and Increment."""
+    return [
+        [name, units[k]]
+        for k, name in enumerate(names)
+        if k not in table.columns and k < len(units) and table.dialect.is_number(units[k])
+    ]

@@ -1,0 +1,123 @@
+"""The shots within one table or several that follow each other, and the header of each.
+
+A table whose header names other channels than the one before holds these of the same shots; one that names
+the same channels, or none, holds the next shots.
+"""
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from sonicvacuum.files import InputError
+from sonicvacuum.scope import keys as header_keys
+from sonicvacuum.scope import roles
+from sonicvacuum.scope.keys import Keys
+from sonicvacuum.scope.labels import TIME
+from sonicvacuum.scope.roles import Column
+from sonicvacuum.scope.table import Table
+
+# Steps between samples above this multiple of the usual one part shots, which have at least so many samples.
+GAP, FEWEST = 100.0, 8
+
+
+@dataclass(frozen=True, eq=False)
+class Shot:
+    """One shot's columns with what the header says of them.
+
+    Attributes:
+        number: of the shot, from 1; several: whether there are others.
+        columns: place → samples.
+        found, keys: roles of the columns and keys of the header.
+        notes: how the shot was found, in whole sentences.
+    """
+
+    number: int
+    several: bool
+    columns: dict[int, np.ndarray]
+    found: list[Column]
+    keys: Keys
+    notes: tuple[str, ...]
+
+
+def shots(table: Table, companion: list[str], path) -> list[Shot]:
+    """The shots in a text, in order; InputError where a further header does not fit its columns."""
+    found, keys = _header(table, [line.split(",") for line in companion])
+    result, seen, begin = [], set(), 0
+    for k, part in enumerate(table.parts()):
+        own, said = (found, keys) if k == 0 else _further(part, found, keys, path)
+        names = set(_names(own, said))
+        if not names or names & seen:
+            seen, begin = set(), max((s[0] for s in result), default=0)
+        seen |= names
+        pieces, notes = _pieces(part, own, said)
+        result += [(begin + j + 1, columns, own, said, notes) for j, columns in enumerate(pieces)]
+    several = max(number for number, *_ in result) > 1
+    return [Shot(number, several, *rest) for number, *rest in result]
+
+
+def _names(found, keys):
+    """What tells the channels of one header from those of another, () where it names none."""
+    names = roles.channel_names(found, keys.texts("name"))
+    return names if any(c.name for c in found if c.role == "value") or keys.texts("name") else ()
+
+
+def _header(table, more=()):
+    found, rows = roles.columns(table)
+    channels = sum(c.role == "value" for c in found)
+    return found, header_keys.read([*table.beside, *rows, *more], table.dialect, channels)
+
+
+def _further(part, found, keys, path):
+    """Roles and keys of a table behind another, whose header counts where its own is silent."""
+    own, said = _header(part)
+    said = said.beside(keys)
+    # Rows of names have as many cells as there are columns, and name the time where the first table does.
+    full = any(sum(map(bool, row)) == len(found) for row in part.header)
+    timed = not (found[0].name and found[0].role == "time") or own[0].unit or TIME.fullmatch(own[0].name)
+    if not full or not timed:
+        return found, said
+    if [c.role for c in own] != [c.role for c in found]:
+        raise InputError(
+            f"{path}: a further table begins with {part.raw[-1].strip()!r}, whose columns are not those of "
+            "the first; give each table a file of its own"
+        )
+    return own, said
+
+
+def _pieces(part: Table, found, keys):
+    """The columns of each shot of one table, cut where its time starts again or leaps, and remarks."""
+    rows = len(next(iter(part.columns.values())))
+    clock = next((c for c in found if c.role in ("time", "counter")), None)
+    cuts, notes = np.zeros(0, dtype=int), []
+    if clock is not None:
+        steps = np.diff(part.columns[clock.place])
+        again, leaps = np.flatnonzero(steps < 0.0) + 1, _leaps(steps)
+        cuts = np.union1d(again, leaps)
+        if len(leaps):
+            notes.append(
+                f"Time leaps by {np.nanmax(steps):.4g}, more than {GAP:g} times the usual step: cut into "
+                "shots there."
+            )
+    else:
+        count = keys.number("count", "")
+        if count and count >= FEWEST and rows > count and rows % count == 0 and count == int(count):
+            cuts = np.arange(int(count), rows, int(count))
+            notes.append(f"Cut into shots of {count:g} samples, as the header announces.")
+    edges = [0, *cuts.tolist(), rows]
+    if len(edges) > 2 and np.median(np.diff(edges)) < FEWEST:
+        edges, notes = [0, rows], []
+    pieces = [(a, b) for a, b in pairwise(edges) if b - a > 1 or len(edges) == 2]
+    left = rows - sum(b - a for a, b in pieces)
+    if left:
+        notes.append(f"{left} rows that stand alone in time are no shot: left out.")
+    return [{p: v[a:b] for p, v in part.columns.items()} for a, b in pieces], tuple(notes)
+
+
+def _leaps(steps):
+    """Rows before which time leaps, where it rises evenly else."""
+    rising = steps[steps > 0.0]
+    if len(rising) < FEWEST:
+        return np.zeros(0, dtype=int)
+    leaps = np.flatnonzero(steps > GAP * np.median(rising)) + 1
+    return leaps if len(leaps) < len(steps) / FEWEST else leaps[:0]
