@@ -7,6 +7,7 @@ none is no sample: what follows it is a further table, whose header it may be.
 import io
 import re
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import pandas as pd
@@ -46,21 +47,26 @@ class Samples:
 
 
 class _Lines:
-    """Which line of the file a row of samples stands in."""
+    """Which line of the file a row of samples stands in; looked up only where something is to be said."""
 
     def __init__(self, body, rows, above):
-        self.texts = [(k, line) for k, line in enumerate(body.split("\n"), above + 1) if line.strip(" \r")]
+        self.body, self.rows, self.above = body, rows, above
+
+    @cached_property
+    def texts(self):
+        lines = enumerate(self.body.split("\n"), self.above + 1)
+        found = [(k, line) for k, line in lines if line.strip(" \r")]
         # Quotation marks may join lines; their numbers are then not known.
-        self.known = len(self.texts) == rows
+        return found if len(found) == self.rows else []
 
     def where(self, row):
-        return f"line {self.texts[row][0]}" if self.known else f"row {row + 1} of the samples"
+        return f"line {self.texts[row][0]}" if self.texts else f"row {row + 1} of the samples"
 
     def text(self, row):
-        return self.texts[row][1].strip() if self.known else ""
+        return self.texts[row][1].strip() if self.texts else ""
 
     def between(self, begin, end):
-        return [line for _, line in self.texts[begin:end]] if self.known else []
+        return [line for _, line in self.texts[begin:end]]
 
 
 def read(body: str, dialect: Dialect, places: list[int], path, width: int, above: int) -> Samples:

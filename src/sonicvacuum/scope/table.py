@@ -143,7 +143,7 @@ def _header_cells(line, dialect):
         return [line.strip()] if before and is_key(before.group(1)) else keyed(line) or cells
     if len(cells) > 1:
         return cells
-    return Dialect(mark, dialect.decimal).cells(line) if mark else cells
+    return Dialect(mark, dialect.decimal).cells(line) if mark else keyed(line) or cells
 
 
 def _rows(lines, dialect):
