@@ -37,8 +37,8 @@ from sonicvacuum.files import in_one_line
     metavar="[RUN=]TIME",
     help="Moment of impact on the recorder's clock, as in 12us.",
 )
-@click.option("--interval", metavar="TIME", help="Time between samples of files that have no times.")
-@click.option("--start", metavar="TIME", help="Time of the first sample of files that have no times.")
+@click.option("--interval", metavar="TIME", help="Time between samples; it overrules what files say.")
+@click.option("--start", metavar="TIME", help="Time of the first sample; it overrules what files say.")
 @click.option("--keep-all", is_flag=True, help="Neither trim nor thin.")
 @click.option("--like", type=click.Path(), help="Record with the same chain, gauges and striker.")
 @click.option(

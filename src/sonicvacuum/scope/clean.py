@@ -10,7 +10,7 @@ from sonicvacuum.scope import thin
 from sonicvacuum.scope.options import Options
 from sonicvacuum.scope.quiet import Trace, look, white
 from sonicvacuum.scope.runs import Shot, common_grid
-from sonicvacuum.scope.timebase import tidy
+from sonicvacuum.scope.timebase import NO_TRIGGER, tidy
 from sonicvacuum.scope.units import STANDARD_GRAVITY
 
 # Lost samples in a row that are bridged by a straight line.
@@ -56,7 +56,8 @@ def clean(shot: Shot, options: Options) -> CleanRun:
     values, unit = {}, {}
     for gauge, channel in shot.channels.items():
         notes += [f"{gauge}: {n}" for n in channel.notes]
-        whole = _bridged(samples[gauge], f"run {shot.id}, {gauge}", gauge, notes)
+        where = f"{shot.files[gauge]}: channel {channel.name} (run {shot.id}, {gauge})"
+        whole = _bridged(samples[gauge], where, (start, step), gauge, notes)
         factor, unit[gauge] = _scaled(channel, gauge, options, notes)
         values[gauge] = whole * factor
     seen = {g: look(v) for g, v in values.items()}
@@ -85,13 +86,13 @@ def clean(shot: Shot, options: Options) -> CleanRun:
     return CleanRun(shot.id, Signals(time_us, readings), sigma, unit, zero, zero_sigma, lead, tuple(notes))
 
 
-def _bridged(values, where, gauge, notes):
+def _bridged(values, where, times, gauge, notes):
     """Samples without lost ones (bridged) and without infinities (the largest of the others instead)."""
     finite = np.isfinite(values)
     if finite.all():
         return values
     if not finite.any():
-        raise InputError(f"{where}: holds no finite sample; leave the channel out")
+        raise InputError(f"{where}: no sample is a finite number; leave the channel out")
     values = values.copy()
     over = np.isinf(values)
     values[values == np.inf], values[values == -np.inf] = values[finite].max(), values[finite].min()
@@ -99,10 +100,12 @@ def _bridged(values, where, gauge, notes):
         notes.append(f"{gauge}: {int(over.sum())} samples over range stand at the end of the range: clipped.")
     lost = np.isnan(values)
     edges = np.flatnonzero(np.diff(np.concatenate(([0], lost.astype(int), [0]))))
-    if len(edges) and (edges[1::2] - edges[::2]).max() > BRIDGED:
+    rows = edges[1::2] - edges[::2]
+    if len(rows) and rows.max() > BRIDGED:
+        first = int(edges[::2][rows.argmax()])
         raise InputError(
-            f"{where}: {int((edges[1::2] - edges[::2]).max())} samples in a row are lost; cut the file "
-            "there, or leave the channel out"
+            f"{where}: {int(rows.max())} samples in a row are lost, from sample {first + 1} at "
+            f"{times[0] + first * times[1]:.6g} s on; cut the file there, or leave the channel out"
         )
     places = np.arange(len(values))
     values[lost] = np.interp(places[lost], places[~lost], values[~lost])
@@ -145,8 +148,8 @@ def _found(trace: Trace, unit, step, start):
             f"{trace.width * step:.3g} s wide at half height."
         )
         if trace.quiet < FEWEST_QUIET:
-            yield "hardly any rest before the pulse: baseline and noise are uncertain."
-        if trace.peak < 0.0:
+            yield "hardly any rest before the pulse: baseline, noise and the sign of the pulse are uncertain."
+        elif trace.peak < 0.0:
             yield "the largest excursion is negative; compression must be positive: give a negative --scale."
     if trace.step:
         yield f"the converter's step is {trace.step:.3g} {unit}."
@@ -203,9 +206,11 @@ def _zero(impact, start, step, begin, first, seen, notes):
         return start, None
     arrival, width = start + first * step, max(t.width for t in seen.values()) * step
     if start + begin * step <= 0.0 <= arrival + width:
-        notes.append("Time counts from the trigger; how long before or after it the impact was is not known.")
+        # The remark that time counts from the first sample stands already where the file knows no trigger.
+        zero = "that of the recorder" if any(NO_TRIGGER in n for n in notes) else "the trigger"
+        notes.append(f"Time zero is {zero}; how long before or after it the impact was is not known.")
         return 0.0, None
-    notes.append("The trigger lies far off: time counts from the first arrival; the impact was before it.")
+    notes.append("Time zero lies far off: time counts from the first arrival; the impact was before it.")
     return arrival, None
 
 

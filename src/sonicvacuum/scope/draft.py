@@ -1,5 +1,6 @@
 """The text of record.yaml for imported runs: what is known, what was assumed, what is to be filled in."""
 
+import difflib
 from pathlib import Path
 
 import msgspec
@@ -7,7 +8,7 @@ import yaml
 
 from sonicvacuum.files import InputError, in_one_line, read_yaml
 from sonicvacuum.records import writer
-from sonicvacuum.records.blocks import RecordBlock, RecordSensorBlock
+from sonicvacuum.records.blocks import RecordBlock, RecordSensorBlock, RunBlock
 from sonicvacuum.records.reader import FILE
 from sonicvacuum.scope.clean import CleanRun
 from sonicvacuum.scope.options import Options
@@ -16,8 +17,11 @@ from sonicvacuum.scope.options import Options
 GAIN_REL_SIGMA = 0.05
 # Written for `unknown` while the format knows numbers only: the largest that it takes.
 _LARGEST = {"gain_rel_sigma": 2.0, "trigger_sigma_us": 1e4}
-# Blocks of the template that go into the record as they are.
-_KEPT = ("chain", "materials", "tolerances", "priors", "apparatus")
+# Keys of the template that go into the record as they are: all but those that the runs decide.
+_DECIDED = ("format", "title", "sensors", "trigger_sigma_us", "runs")
+_KEYS = tuple(f.encode_name for f in msgspec.structs.fields(RecordBlock))
+_RUN = tuple(f.encode_name for f in msgspec.structs.fields(RunBlock))
+_KEPT = tuple(k for k in _KEYS if k not in _DECIDED)
 # Letters of a title that names the runs.
 _LONG = 60
 _SIGMA_KEY = {"m/s": "sigma_m_s", "m/s^2": "sigma_m_s2"}
@@ -43,9 +47,43 @@ def template(like=None, record=None) -> dict:
     if like is not None and record is not None:
         raise InputError("--like and --record exclude each other; give one")
     if like is not None:
-        folder = Path(like)
-        return read_yaml(folder if folder.is_file() else folder / FILE)
-    return read_yaml(record) if record is not None else {}
+        file = Path(like) if Path(like).is_file() else Path(like) / FILE
+        given = _checked(read_yaml(file), file)
+        # What was measured there, and when its clock began, are its own.
+        runs = [{k: v for k, v in r.items() if k != "observables"} for r in given.get("runs") or []]
+        return {k: v for k, v in given.items() if k != "trigger_sigma_us"} | ({"runs": runs} if runs else {})
+    return _checked(read_yaml(record), record) if record is not None else {}
+
+
+def _checked(given, file):
+    """The content of a template, of which everything that is looked at has the form that it must have."""
+    _known(given, _KEYS, file, "")
+    for key, keys in (("runs", _RUN), ("sensors", None)):
+        entries = given.get(key)
+        if entries is not None and not isinstance(entries, list):
+            raise InputError(f"{file}: {key}: is {entries!r}; write a list, each entry with its id")
+        for k, entry in enumerate(entries or []):
+            place = f"{key}[{k}]"
+            if not isinstance(entry, dict) or not isinstance(entry.get("id", ""), str):
+                odd = entry.get("id") if isinstance(entry, dict) else entry
+                raise InputError(f"{file}: {place}: is {odd!r}; write keys, and an id in quotes")
+            if keys:
+                _known(entry, keys, file, place + ".")
+            if not isinstance(entry.get("striker") or {}, dict):
+                raise InputError(
+                    f"{file}: {place}.striker: is {entry['striker']!r}; write its keys, as in {{shape: flat, "
+                    "material: alumina, mass_g: 0.47}"
+                )
+    return given
+
+
+def _known(mapping, keys, file, place):
+    """Refuse keys that a record does not have: they would be lost."""
+    for key in mapping:
+        if key not in keys:
+            near = difflib.get_close_matches(str(key), keys, 1)
+            cure = f"write {near[0]}" if near else f"there are {', '.join(keys)}"
+            raise InputError(f"{file}: {place}{key}: a record has no such key; {cure}, or take it out")
 
 
 def unknown(kind: type, key: str) -> str | float:
@@ -59,13 +97,33 @@ def unknown(kind: type, key: str) -> str | float:
 
 def content(runs: list[CleanRun], given: dict, options: Options, title: str | None) -> dict:
     """The mapping of record.yaml; what neither files nor template tell is left out."""
-    kept = {k: given[k] for k in ("source", *_KEPT) if k in given}
+    kept = {k: given[k] for k in _KEPT if k in given}
     named = title or given.get("title") or _title([r.id for r in runs])
     result = {"format": 1, "title": named} | kept
     result["sensors"] = [_sensor(g, runs, given, options) for g in _gauges(runs)]
-    result["trigger_sigma_us"] = _trigger(runs)
-    result["runs"] = [_run(r, given, options) for r in runs]
+    stated = given.get("trigger_sigma_us")
+    result["trigger_sigma_us"] = _trigger(runs) if stated is None else stated
+    result["runs"] = [_run(r, given, options) for r in runs] + _scalar_runs(runs, given)
+    result["sensors"] += _named(result, given)
     return result
+
+
+def _scalar_runs(runs, given):
+    """Runs of which only scalars were measured; they have no file."""
+    ids = {r.id for r in runs}
+    return [
+        e | {"striker": e.get("striker") or {}}
+        for e in _listed(given, "runs")
+        if e.get("observables") and not e.get("signals") and e.get("id") not in ids
+    ]
+
+
+def _named(record, given):
+    """Gauges that have no channel, while observables name them."""
+    scalars = [o for r in record["runs"] for o in r.get("observables") or [] if isinstance(o, dict)]
+    names = [o.get(k) for o in scalars for k in ("from", "to", "sensor")]
+    have = [s["id"] for s in record["sensors"]]
+    return [s for s in _listed(given, "sensors") if s.get("id") in names and s.get("id") not in have]
 
 
 def _title(ids):
@@ -125,12 +183,14 @@ def _run(run, given, options):
     for key, stated in (("speed_m_s", options.speeds), ("speed_rel_sigma", options.speed_rel_sigma)):
         if run.id in stated or "" in stated:
             striker[key] = stated.get(run.id, stated.get(""))
-    return {"id": run.id, "striker": striker, "signals": f"{run.id}.csv"}
+    observed = {"observables": same["observables"]} if same and same.get("observables") else {}
+    return {"id": run.id, "striker": striker, "signals": f"{run.id}.csv"} | observed
 
 
 def unused(given: dict, runs: list[CleanRun]) -> list[str]:
     """That runs of a given record got no file, which mostly means that a file has another name."""
-    ids = [e["id"] for e in _listed(given, "runs") if "id" in e]
+    listed = [e for e in _listed(given, "runs") if "id" in e]
+    ids = [e["id"] for e in listed if e.get("signals") or not e.get("observables")]
     found = [r.id for r in runs]
     missing = [i for i in ids if i not in found]
     if not missing or set(found) <= set(ids):
@@ -146,10 +206,10 @@ def _listed(given, key):
     return [e for e in entries if isinstance(e, dict)] if isinstance(entries, list) else []
 
 
-def text(record: dict, runs: list[CleanRun], options: Options) -> str:
+def text(record: dict, runs: list[CleanRun], options: Options, given: dict) -> str:
     """record.yaml with comments on what was done, assumed, and is to be filled in."""
     head = {k: record[k] for k in ("format", "title", "source") if k in record}
-    chain = {k: record[k] for k in _KEPT if k in record}
+    chain = {k: record[k] for k in _KEPT if k in record and k not in head}
     parts = [
         "# Imported from a recorder's files; what was done to each run stands at the end.\n",
         _yaml(head),
@@ -158,7 +218,11 @@ def text(record: dict, runs: list[CleanRun], options: Options) -> str:
     parts.append("# Positive readings = compression. sigma: white noise of one sample, estimated at rest.\n")
     parts += [_comment(line) for line in _gauge_remarks(record, runs, options)]
     parts.append(_yaml({"sensors": record["sensors"]}))
-    if any(r.zero_sigma_s is None for r in runs):
+    if any(r.zero_sigma_s is None for r in runs) and given.get("trigger_sigma_us") is not None:
+        parts.append(
+            "# Stated with the record: time zero, as said of the runs below, must be known to that.\n"
+        )
+    elif any(r.zero_sigma_s is None for r in runs):
         parts.append("# The moment of impact is not known (--impact-at gives it): time zero is free.\n")
     parts.append(_yaml({"trigger_sigma_us": record["trigger_sigma_us"]}))
     parts += [_comment(f"To be filled in: {line}") for line in _striker_gaps(record)]
@@ -176,6 +240,8 @@ def _comment(text):
 def _gauge_remarks(record, runs, options):
     for sensor in record["sensors"]:
         gauge = sensor["id"]
+        if not any(gauge in r.unit for r in runs):
+            continue
         unit = next(r.unit[gauge] for r in runs if gauge in r.unit)
         noise = [r.sigma[gauge] for r in runs if gauge in r.sigma]
         if max(noise) > 2.0 * min(noise):

@@ -29,7 +29,7 @@ def import_files(
     runs = [clean(s, options) for s in shots(files, options)]
     _spare(folder, runs, {f.resolve() for g in (files, *options.runs.values()) for f in g}, force)
     content = draft.content(runs, given, options, title)
-    _write(folder, draft.text(content, runs, options), runs)
+    _write(folder, draft.text(content, runs, options, given), runs)
     return [*_report(runs), *(draft.unused(given, runs) if record else ()), *_checked(folder)]
 
 

@@ -9,7 +9,7 @@ from sonicvacuum.files import InputError
 from sonicvacuum.scope.units import Scale, quantity, scale
 
 _ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.+-]*")
-_PERCENT = re.compile(r"\s*(?:±|\+-|\+/-)\s*([\d.]+)\s*%\s*$")
+_PERCENT = re.compile(r"\s*(?:±|\+-|\+/-)\s*(\d+(?:\.\d*)?|\.\d+)\s*%\s*$")
 
 
 @dataclass(frozen=True)
@@ -110,7 +110,7 @@ def _files(run, text):
 def _place(gauge, text):
     if text.lower() == "wall":
         return None
-    if not text.isdigit() or int(text) < 1:
+    if not re.fullmatch("[0-9]{1,6}", text) or int(text) < 1:
         raise InputError(f"--place {gauge}: is {text!r}; give the number of its bead, or wall")
     return int(text)
 

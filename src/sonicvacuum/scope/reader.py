@@ -30,6 +30,8 @@ def read(path) -> Recording:
         InputError: for a file that cannot be read, with the reason.
     """
     path = Path(path)
+    if path.is_dir():
+        raise InputError(f"{path}: is a folder; give the files in it, as in {path}/*.csv")
     if not path.is_file():
         raise InputError(f"{path}: no such file; give files as the recorder wrote them")
     if is_binary(path):

@@ -10,21 +10,25 @@ from sonicvacuum.files import InputError
 from sonicvacuum.scope.options import Options
 from sonicvacuum.scope.reader import read
 from sonicvacuum.scope.recording import Channel, Recording
+from sonicvacuum.scope.timebase import NO_TRIGGER
 
 # A channel's number in the name of a file, as in F0000CH1, C2Trace00001, shot_Ch3.
 _MARK = re.compile(r"(?<![A-Za-z])ch?[ _-]?([1-8])(?!\d)", re.IGNORECASE)
 # Intervals differing by less are the same; starts within this part of an interval are the same.
 SAME = 1e-6
 TOGETHER = 0.01
+# Samples of the shortest trace.
+FEWEST = 16
 
 
 @dataclass(frozen=True, eq=False)
 class Shot:
-    """One run's channels by gauge, as read; `notes` say how they were put together."""
+    """One run's channels by gauge, as read, and their files; `notes` say how they were put together."""
 
     id: str
     channels: dict[str, Channel]
     notes: tuple[str, ...]
+    files: dict[str, Path]
 
 
 def shots(files: list[Path], options: Options) -> list[Shot]:
@@ -72,7 +76,7 @@ def _segments(run, group: list[Recording], options):
     if any(r.segments != count for r in group):
         raise InputError(f"run {run}: its files hold different numbers of shots; import them one by one")
     for k in range(1, count + 1):
-        channels, notes = {}, []
+        channels, notes, files = {}, [], {}
         for recording in group:
             for channel in (c for c in recording.channels if c.segment == k):
                 gauge = _gauge(channel, recording, len(group) > 1, options)
@@ -81,13 +85,13 @@ def _segments(run, group: list[Recording], options):
                         f"run {run}: two channels are {gauge}; tell them apart by --channel FILE:NAME=GAUGE"
                     )
                 if gauge:
-                    channels[gauge] = _timed(channel, recording, options)
+                    channels[gauge], files[gauge] = _timed(channel, recording, options), recording.file
             notes.append(f"{recording.file.name}: layout {recording.layout}.")
             notes += recording.notes
         if not channels:
             names = ", ".join(c.name for r in group for c in r.channels)
             raise InputError(f"run {run}: none of its channels ({names}) is named by --channel")
-        yield Shot(run if count == 1 else f"{run}-{k}", channels, tuple(notes))
+        yield Shot(run if count == 1 else f"{run}-{k}", channels, tuple(notes), files)
 
 
 def _beside(recording: Recording, several, options) -> Recording:
@@ -154,14 +158,26 @@ def _all_mapped(found, options):
 
 
 def _timed(channel, recording, options):
-    """The channel with a time base, given by the user where the file has none."""
-    if channel.interval_s is None:
-        if options.interval_s is None:
-            raise InputError(
-                f"{recording.file}: channel {channel.name} has no times and no interval; give --interval"
-            )
-        start = options.start_s or 0.0
-        return replace(channel, interval_s=options.interval_s, start_s=start).noting("Interval as given.")
+    """The channel with its time base, that of the user before that of the file."""
+    given, own = options.interval_s, channel.interval_s
+    if own is None and given is None:
+        why = next((n for n in channel.notes if n.startswith("No time")), "it has no times and no interval")
+        raise InputError(f"{recording.file}: channel {channel.name}: {why.rstrip('.')}; give --interval")
+    if own is None:
+        notes = ["Interval as given."] + ([] if options.start_s is not None else [NO_TRIGGER])
+        return replace(channel, interval_s=given, start_s=options.start_s or 0.0).noting(*notes)
+    if given is not None and abs(given / own - 1.0) > SAME:
+        # Whatever the file counts in, its start is counted in it too.
+        start = (channel.start_s or 0.0) * given / own
+        said = (
+            f"Interval as given, {given:g} s, in place of the file's {own:g} s; its start is scaled likewise."
+        )
+        channel = replace(channel, interval_s=given, start_s=start, times_s=None).noting(said)
+    if options.start_s is not None and options.start_s != channel.start_s:
+        said = f"Start as given, {options.start_s:g} s, in place of the file's {channel.start_s:g} s."
+        later = options.start_s - channel.start_s
+        times = None if channel.times_s is None else channel.times_s + later
+        channel = replace(channel, start_s=options.start_s, times_s=times).noting(said)
     return channel
 
 
@@ -170,14 +186,23 @@ def common_grid(shot: Shot) -> tuple[float, float, dict[str, np.ndarray], list[s
 
     Channels on other times are interpolated linearly onto those of the coarsest one.
     """
+    for gauge, channel in shot.channels.items():
+        if channel.samples < FEWEST:
+            raise InputError(
+                f"{shot.files[gauge]}: channel {channel.name} holds {channel.samples} samples, less than the "
+                f"{FEWEST} that a trace needs; export a longer stretch, or leave the channel out"
+            )
     coarsest = max(shot.channels.values(), key=lambda c: c.interval_s)
     step, begin, end = coarsest.interval_s, coarsest.start_s, np.inf
     same = all(_together(c, coarsest) for c in shot.channels.values())
     begin = max(c.start_s for c in shot.channels.values()) if not same else begin
     end = min(c.start_s + (c.samples - 0.5) * c.interval_s for c in shot.channels.values())
     count = int(np.floor((end - begin) / step)) + 1
-    if count < 16:
-        raise InputError(f"run {shot.id}: its channels share less than 16 samples in time")
+    if count < FEWEST:
+        raise InputError(
+            f"run {shot.id}: its channels share less than {FEWEST} samples in time; look with --list when "
+            "each begins and ends, and leave out those of other times"
+        )
     if same:
         return begin, step, {g: c.values[:count] for g, c in shot.channels.items()}, []
     times = begin + step * np.arange(count)

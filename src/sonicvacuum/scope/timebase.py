@@ -20,6 +20,8 @@ EVEN = 0.01
 FINER = 2e-3
 # Share of lost times that are filled; relative error of an interval from coarse times that is borne.
 MOST_LOST, COARSEST = 0.1, 0.1
+# Said where time zero is that of the first sample for want of anything better.
+NO_TRIGGER = "Time counts from the first sample: the file does not say where the trigger is."
 _FACTORS = {1.0: "s", 1e-3: "ms", 1e-6: "us", 1e-9: "ns", 1e-12: "ps"}
 
 
@@ -68,7 +70,7 @@ def from_header(keys: Keys, place: int = 0, column: int = 0) -> TimeBase:
         notes.append(f"Time counts from the trigger, sample {trigger:g}.")
     if start is None:
         start = 0.0
-        notes.append("Time counts from the first sample: the file does not say where the trigger is.")
+        notes.append(NO_TRIGGER)
     return TimeBase(start, interval, tuple(notes))
 
 

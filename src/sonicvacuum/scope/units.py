@@ -4,6 +4,7 @@ A base unit is what the record or SI counts in: V, N, m/s, m/s^2, s, Pa …; `g`
 it is and converted only by a gauge's sensitivity.
 """
 
+import math
 import re
 from dataclasses import dataclass
 
@@ -102,9 +103,10 @@ def quantity(text: str, decimal: str = ".") -> tuple[float, Unit | None] | None:
     if not found:
         return None
     unit = unit_of(found.group(2))
-    if found.group(2) and unit is None:
+    number = float(found.group(1))
+    if (found.group(2) and unit is None) or not math.isfinite(number):
         return None
-    return float(found.group(1)), unit
+    return number, unit
 
 
 @dataclass(frozen=True)
@@ -131,11 +133,12 @@ def scale(text: str, name: str) -> Scale:
     for place in [m.start() for m in re.finditer("/", units)]:
         upper, lower = unit_of(units[:place]), unit_of(units[place + 1 :])
         if upper and lower and value:
-            factor = value * upper.factor / lower.factor
-            return _standard(factor, upper.base, lower.base)
+            found = _standard(value * upper.factor / lower.factor, upper.base, lower.base)
+            if found.factor and math.isfinite(found.factor) and math.isfinite(1.0 / found.factor):
+                return found
     raise InputError(
-        f"--scale {name}: is {text!r}; write a number other than 0 and two units, as in 12.5N/V, -12.5N/V, "
-        "80mV/N or 100mV/g"
+        f"--scale {name}: is {text!r}; write a finite number other than 0 and two units, as in 12.5N/V, "
+        "-12.5N/V, 80mV/N or 100mV/g"
     )
 
 

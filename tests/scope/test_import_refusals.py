@@ -1,0 +1,192 @@
+"""What an import is told wrongly is refused before anything is written; what it is told right is kept."""
+
+import numpy as np
+import pytest
+import yaml
+from click.testing import CliRunner
+from hypothesis import given
+from hypothesis import strategies as st
+from made_files import PULSE, TIMES
+from recorded import CONTENT
+from test_odd_tables import SECOND, rows
+
+from sonicvacuum.cli import cli
+from sonicvacuum.files import InputError
+from sonicvacuum.scope.importing import import_files
+from sonicvacuum.scope.options import options
+
+HEAD = "Time (s),CH1 (V),CH2 (V)\n"
+
+
+@pytest.fixture
+def shot(tmp_path):
+    (tmp_path / "fast.csv").write_text(HEAD + rows(TIMES, PULSE, SECOND))
+    return tmp_path / "fast.csv"
+
+
+def asked(folder, file, *arguments):
+    """The refusal of an import, "" where there is none, and whether anything was written."""
+    out = folder / "out"
+    done = CliRunner().invoke(cli, ["record", "import", str(file), *arguments, "--out", str(out)])
+    # The program turns these, and no others, into one line and exit code 2.
+    assert isinstance(done.exception, InputError | None), done.exception
+    return str(done.exception or ""), out.exists()
+
+
+WRONG = [
+    ("--scale", "CH1=25N/V±2.5.1%"), ("--scale", "CH1=25N/V±.%"), ("--scale", "CH1=1e400N/V"),
+    ("--scale", "CH1=1e-400N/V"), ("--scale", "CH1=1e308kN/mV"), ("--speed", "0.5±.%"),
+    ("--speed", "1e400"), ("--place", "CH1=²"), ("--place", "CH1=1" + "0" * 30), ("--impact-at", "1e400us"),
+    ("--interval", "1e400"),
+    ("--start", "1e400"), ("--interval", "2 bananas"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("option", "value"), WRONG)
+def test_options_that_say_nothing(tmp_path, shot, option, value):
+    refusal, written = asked(tmp_path, shot, option, value)
+    assert option in refusal and value.split("=")[-1] in refusal and not written
+
+
+@given(st.sampled_from(["scale", "speed", "place", "impact_at", "interval", "start"]), st.text(max_size=12))
+def test_any_text_of_an_option_is_taken_or_refused(option, text):
+    value = text if option in ("interval", "start") else [f"CH1={text}"]
+    try:
+        options(**{option: value})
+    except InputError as error:
+        assert "--" in str(error)
+
+
+RECORDS = [
+    ({"toleranzes": {"bead_mass_rel": 0.01}}, "toleranzes: a record has no such key; write tolerances"),
+    ({"zzz": 1}, "zzz: a record has no such key; there are format, title"),
+    ({"runs": [{"observable": []}]}, "runs[0].observable: a record has no such key; write observables"),
+    ({"runs": [{"id": "fast", "striker": "flat"}]}, "runs[0].striker: is 'flat'"),
+    ({"runs": [1, 2]}, "runs[0]: is 1"),
+    ({"runs": 5}, "runs: is 5"),
+    ({"runs": [{"id": [1]}]}, "runs[0]: is [1]"),
+    ({"runs": [{"id": 1}]}, "runs[0]: is 1"),
+    ({"sensors": ["g5"]}, "sensors[0]: is 'g5'"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("content", "said"), RECORDS)
+@pytest.mark.parametrize("option", ["--record", "--like"])
+def test_records_that_are_none(tmp_path, shot, content, said, option):
+    (tmp_path / "record.yaml").write_text(yaml.safe_dump(content))
+    refusal, written = asked(tmp_path, shot, option, str(tmp_path / "record.yaml"))
+    assert "record.yaml: " + said in refusal and not written
+
+
+SPEED = {"quantity": "speed", "from": "near", "to": "far", "value": 500.0, "sigma": 9.0, "unit": "m/s"}
+PEAK = {"quantity": "amplitude", "sensor": "near", "value": 9.0, "sigma": 1.0, "unit": "N"}
+GIVEN = CONTENT | {
+    "source": {"citation": "Someone"},
+    "trigger_sigma_us": 2.5,
+    "clock_rel_sigma": 1e-4,
+    "model_floor_rel": 0.01,
+    "tolerances": {"bead_mass_rel": 0.01},
+    "runs": [
+        CONTENT["runs"][1] | {"observables": [SPEED]},
+        {"id": "told", "striker": CONTENT["runs"][0]["striker"], "observables": [PEAK]},
+    ],
+}
+USUAL = {"channel": ["CH1=near", "CH2=far"], "scale": ["near=10N/V", "far=-10N/V"]}
+
+
+def test_all_keys_of_a_given_record_are_kept(tmp_path, shot):
+    (tmp_path / "given.yaml").write_text(yaml.safe_dump(GIVEN))
+    said = import_files([shot], tmp_path / "r", options(**USUAL), record=tmp_path / "given.yaml")
+    written = yaml.safe_load((tmp_path / "r" / "record.yaml").read_text())
+    for key in ("source", "chain", "trigger_sigma_us", "clock_rel_sigma", "model_floor_rel", "tolerances"):
+        assert written[key] == GIVEN[key], key
+    assert [r.get("observables") for r in written["runs"]] == [r["observables"] for r in GIVEN["runs"]]
+    assert written["runs"][1]["id"] == "told" and "signals" not in written["runs"][1]
+    assert not any("no file is called" in line for line in said)
+
+
+def test_gauges_that_only_observables_name_stay(tmp_path, shot):
+    (tmp_path / "given.yaml").write_text(yaml.safe_dump(GIVEN))
+    one = options(channel=["CH1=near"], scale=["near=10N/V"])
+    import_files([shot], tmp_path / "r", one, record=tmp_path / "given.yaml")
+    written = yaml.safe_load((tmp_path / "r" / "record.yaml").read_text())
+    assert [s["id"] for s in written["sensors"]] == ["near", "far"]
+
+
+def test_what_was_measured_elsewhere_stays_there(tmp_path, shot):
+    (tmp_path / "record.yaml").write_text(yaml.safe_dump(GIVEN))
+    import_files([shot], tmp_path / "r", options(**USUAL), like=tmp_path)
+    written = yaml.safe_load((tmp_path / "r" / "record.yaml").read_text())
+    assert written["clock_rel_sigma"] == GIVEN["clock_rel_sigma"]
+    assert written["trigger_sigma_us"] != GIVEN["trigger_sigma_us"]
+    assert [r["id"] for r in written["runs"]] == ["fast"] and "observables" not in written["runs"][0]
+
+
+def listed(folder):
+    return np.loadtxt(folder / "r" / "fast.csv", delimiter=",", skiprows=1)[:, 0]
+
+
+@pytest.mark.parametrize(
+    ("head", "times"),
+    [
+        ("Time,CH1 (V),CH2 (V)\n", TIMES * 1e3),
+        (",CH1 (V),CH2 (V)\n", np.arange(200)),
+        ("CH1 (V),CH2 (V)\n", None),
+    ],
+)
+def test_a_stated_interval_overrules_the_file(tmp_path, head, times):
+    columns = [PULSE, SECOND] if times is None else [times, PULSE, SECOND]
+    (tmp_path / "fast.csv").write_text(head + rows(*columns))
+    said = import_files(
+        [tmp_path / "fast.csv"], tmp_path / "r", options(interval="1us", start="-100us", keep_all=True)
+    )
+    assert listed(tmp_path) == pytest.approx(TIMES * 1e6, abs=1e-6)
+    assert any("as given" in line for line in said)
+
+
+def test_a_stated_interval_scales_the_start(tmp_path):
+    (tmp_path / "fast.csv").write_text("Time,CH1 (V),CH2 (V)\n" + rows(TIMES * 1e3, PULSE, SECOND))
+    said = import_files([tmp_path / "fast.csv"], tmp_path / "r", options(interval="1us", keep_all=True))
+    assert listed(tmp_path) == pytest.approx(TIMES * 1e6, abs=1e-6)
+    assert any("in place of the file's 0.001 s" in line for line in said)
+
+
+def test_a_scale_for_another_unit_is_refused(tmp_path):
+    (tmp_path / "fast.csv").write_text("Time (s),F5 (counts)\n" + rows(TIMES, PULSE))
+    with pytest.raises(InputError, match="is in counts; give newtons"):
+        import_files([tmp_path / "fast.csv"], tmp_path / "r", options(scale=["F5_counts=25N/V"]))
+
+
+def test_lost_samples_in_a_row_are_located(tmp_path):
+    column = [f"{v:.4f}" for v in PULSE]
+    column[30:39] = ["NaN"] * 9
+    (tmp_path / "fast.csv").write_text(HEAD + rows(TIMES, column, SECOND))
+    said = r"fast.csv: channel CH1 .* 9 samples in a row are lost, from sample 31 at -7e-05 s on; cut"
+    with pytest.raises(InputError, match=said):
+        import_files([tmp_path / "fast.csv"], tmp_path / "r", options())
+
+
+def test_a_file_that_is_too_short_says_so(tmp_path):
+    (tmp_path / "fast.csv").write_text(HEAD + rows(TIMES[:12], PULSE[:12], SECOND[:12]))
+    with pytest.raises(InputError, match=r"fast.csv: channel CH1 holds 12 samples, less than the 16"):
+        import_files([tmp_path / "fast.csv"], tmp_path / "r", options())
+
+
+def test_a_folder_is_no_file(tmp_path, shot):
+    assert "is a folder; give the files in it" in asked(tmp_path, tmp_path)[0]
+
+
+def test_remarks_on_time_zero_do_not_contradict_each_other(tmp_path):
+    """Without times, zero is the first sample and not the trigger; the pulse lies within it here."""
+    (tmp_path / "fast.csv").write_text("Sample Interval,1e-6\nCH1 (V)\n" + rows(PULSE))
+    said = "\n".join(import_files([tmp_path / "fast.csv"], tmp_path / "r", options()))
+    assert "Time counts from the first sample" in said
+    assert "Time zero is that of the recorder" in said and "is the trigger" not in said
+
+
+def test_a_record_that_begins_on_the_pulse_has_no_known_sign(tmp_path):
+    late = np.concatenate([PULSE[118:], np.resize(PULSE[:60], 400)])
+    (tmp_path / "fast.csv").write_text("Time (s),CH1 (V)\n" + rows(1e-6 * np.arange(len(late)), late))
+    said = "\n".join(import_files([tmp_path / "fast.csv"], tmp_path / "r", options()))
+    assert "sign of the pulse are uncertain" in said
+    assert "negative --scale" not in said
