@@ -57,6 +57,27 @@ def test_a_cut_peak_is_found_and_a_coarse_one_is_left():
     assert not cut(coarse, 1e-4).any()
 
 
+def test_a_long_flat_top_is_cut_whatever_lies_beside_it():
+    """A slow wave cut off at its crest: no slope beside the plateau tells how far it went."""
+    slow = 0.5 * np.cos(np.linspace(-3.0, 3.0, 400)) + pulse(60.0, sigma=0.0) * 0.05
+    trace = np.round(slow + SIGMA * np.random.default_rng(5).normal(size=400), 3)
+    top = trace > 0.45
+    high = np.minimum(trace, 0.45)
+    np.testing.assert_array_equal(cut(high, SIGMA), high == 0.45)
+    np.testing.assert_array_equal(cut(-high, SIGMA), high == 0.45)
+    assert cut(high, SIGMA).sum() >= top.sum()
+
+
+@pytest.mark.parametrize("step", [0.02, 1.0 / 64.0])
+def test_equal_readings_of_a_coarse_or_quiet_recorder_are_no_cut(step):
+    """Where a step exceeds the noise, a crest has many equal readings, whatever noise the record states."""
+    slow = np.cos(np.linspace(-1.5, 1.5, 400))
+    for sigma in (0.0, 0.2 * step):
+        noise = sigma * np.random.default_rng(3).normal(size=400)
+        trace = np.round((slow + noise) / step) * step
+        assert not cut(trace, 2.0 * step).any()
+
+
 def test_what_is_masked_is_said_and_does_not_count():
     record, _ = made(seed=2)
     signals = {}

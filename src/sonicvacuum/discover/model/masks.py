@@ -21,6 +21,9 @@ PASSES = 3
 FEWEST_WITH_SPIKES = 8
 # Fewest equal samples at an extreme that are taken for a cut.
 FEWEST_CUT = 3
+# So many equal readings in a row at an extreme are no peak where noise exceeds a step of the recorder: two
+# neighbours are then equal with a chance of 0.4 at most, which makes 2e-4 of ten.
+FEWEST_FLAT = 10
 # A cut hides a peak that overshoots it by more than so many steps of the recorder, or standard deviations; a
 # smooth peak of few steps does not.
 CUT_STEPS, CUT_SIGMAS = 5.0, 6.0
@@ -104,12 +107,20 @@ def _cut_above(trace, sigma):
     top = trace == trace.max()
     edges = np.flatnonzero(np.diff(np.concatenate([[0], top.astype(int), [0]])))
     step = float(np.diff(np.unique(trace)).min()) if len(np.unique(trace)) > 1 else 0.0
+    if np.diff(edges)[::2].max() >= FEWEST_FLAT and min(sigma, _own_noise(trace)) >= step:
+        # Every reading at that level is one of the end of the range.
+        return top
     for first, end in edges.reshape(-1, 2):
         if end - first >= FEWEST_CUT and _hidden(trace, first, end) > max(
             CUT_STEPS * step, CUT_SIGMAS * sigma
         ):
             found[first:end] = True
     return found
+
+
+def _own_noise(trace):
+    """White noise that second differences of a trace show, most of which lie off its pulses."""
+    return float(np.median(np.abs(np.diff(trace, 2)))) / (0.6745 * np.sqrt(6.0))
 
 
 def _hidden(trace, first, end):
