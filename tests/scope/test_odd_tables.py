@@ -108,6 +108,11 @@ def test_unknown_units_are_named(tmp_path, unit):
     assert f"The unit {unit} is not known; numbers are as written." in channel.notes
 
 
+def test_times_may_be_counted_in_so_many_seconds(tmp_path):
+    (channel,) = recording(tmp_path, "Time (1E-6 s),F (N)\n" + rows(1e6 * TIMES, PULSE)).channels
+    assert (channel.start_s, channel.interval_s) == pytest.approx((-1e-4, 1e-6), rel=1e-9)
+
+
 def test_remarks_in_brackets_are_no_units(tmp_path):
     (channel,) = recording(tmp_path, "Time (s),F5 (bead 5)\n" + rows(TIMES, PULSE)).channels
     assert (channel.name, channel.unit) == ("F5 (bead 5)", "")

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from sonicvacuum.scope.dialect import Dialect
 from sonicvacuum.scope.keys import is_key
 from sonicvacuum.scope.table import Table
-from sonicvacuum.scope.units import Unit, unit_of
+from sonicvacuum.scope.units import Unit, quantity, unit_of
 
 TIME = re.compile(
     r"(time|zeit|temps|tiempo|tempo|tid|tijd|czas|timestamp|elapsed.*|x[-_ ]?axis|x[-_ ]?values?|x|t|in|"
@@ -46,6 +46,11 @@ def split_unit(label: str) -> tuple[str, Unit | None]:
         unit = unit_of(found.group(2)) if found else None
         if unit:
             return found.group(1).strip(), unit
+    # Times may be counted in so many seconds; with other units that may as well be a range.
+    found = _BRACKETS.match(label)
+    scaled = quantity(found.group(1)) if found else None
+    if scaled and scaled[1] and scaled[1].base == "s" and scaled[0] > 0.0:
+        return label[: found.start(1) - 1].strip(), Unit("s", scaled[0] * scaled[1].factor)
     return label, None
 
 

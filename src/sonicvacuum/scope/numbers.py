@@ -100,8 +100,8 @@ def read(body: str, dialect: Dialect, places: list[int], path, width: int, above
 
 def _frame(body, dialect, width, path):
     """The cells, as many in a row as the widest has: pandas leaves cells out without a word otherwise."""
-    wide = [x for x in body.split("\n") if _at_most(x, dialect) > width and len(x) < 20 * _WIDEST]
-    width = max([width, *(len(dialect.cells(line)) for line in wide)])
+    wide = (m.group() for m in _beyond(dialect, width).finditer(body))
+    width = max([width, *(len(dialect.cells(line)) for line in wide if len(line) < 20 * _WIDEST)])
     try:
         return pd.read_csv(
             io.StringIO(body),
@@ -123,9 +123,12 @@ def _frame(body, dialect, width, path):
     raise InputError(f"{path}: a quotation mark is opened and never closed; export the traces again")
 
 
-def _at_most(line, dialect):
-    """Cells of a line, counted quickly: marks within quotes count too."""
-    return len(line.split()) if dialect.delimiter is None else line.count(dialect.delimiter) + 1
+def _beyond(dialect, width):
+    """Lines with more cells than these; marks within quotes count too."""
+    if dialect.delimiter is None:
+        return re.compile(rf"^[^\S\n]*(?:\S+[^\S\n]+){{{width}}}\S.*", re.MULTILINE)
+    mark = re.escape(dialect.delimiter)
+    return re.compile(rf"^(?:[^{mark}\n]*{mark}){{{width}}}.*", re.MULTILINE)
 
 
 def _refuse_wide(frame, width, foreign, number, lines, path):

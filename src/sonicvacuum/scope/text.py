@@ -44,7 +44,7 @@ def read(path: Path) -> tuple[str, str]:
             f"{path}: not valid {encoding} at byte {error.start}; export the file again"
         ) from None
     text = text.rstrip("\0\x1a").replace("\r\r\n", "\n").replace("\r\n", "\n").replace("\r", "\n")
-    return _DASH.sub("-", text), encoding
+    return text if text.isascii() else _DASH.sub("-", text), encoding
 
 
 def encoding_of(data: bytes) -> str | None:

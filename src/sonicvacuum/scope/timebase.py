@@ -42,10 +42,10 @@ def declared_interval(keys: Keys, place: int = 0, column: int = 0) -> float | No
     # A key that may mean something else, as `Resolution`, says less than one that does not.
     if interval and not (rate and "interval" in keys.vague and "rate" not in keys.vague):
         return tidy(abs(interval))
-    if rate and rate > 0.0:
+    if rate and 0.0 < 1.0 / rate < np.inf:
         return tidy(1.0 / rate)
     start, stop, count = (keys.number(m, b) for m, b in (("start", "s"), ("stop", "s"), ("count", "")))
-    if start is not None and stop is not None and count and count > 1:
+    if start is not None and stop is not None and stop > start and count and count > 1:
         return (stop - start) / count
     return None
 
@@ -89,6 +89,8 @@ def from_column(
         slope, begin, rough = _line(times)
         if rough > COARSEST:
             return _headers(keys, place, column, "The times are printed too coarsely to tell an interval")
+    if not slope > 0.0:
+        return _headers(keys, place, column, "The times do not rise")
     factor, said = _factor(slope, label, declared, keys)
     interval, start, notes = tidy(slope * factor), tidy(begin * factor), [*notes, *said]
     if declared and rounded and not uneven and abs(declared / interval - 1.0) < max(FINER, 3.0 * rough):
