@@ -100,8 +100,10 @@ def read(body: str, dialect: Dialect, places: list[int], path, width: int, above
 
 def _frame(body, dialect, width, path):
     """The cells, as many in a row as the widest has: pandas leaves cells out without a word otherwise."""
-    wide = (m.group() for m in _beyond(dialect, width).finditer(body))
-    width = max([width, *(len(dialect.cells(line)) for line in wide if len(line) < 20 * _WIDEST)])
+    wide = np.flatnonzero(_cells(body, dialect) > width)
+    if len(wide):
+        lines = body.split("\n")
+        width = max(width, *(len(dialect.cells(lines[k])) for k in wide if len(lines[k]) < 20 * _WIDEST), 0)
     try:
         return pd.read_csv(
             io.StringIO(body),
@@ -123,12 +125,15 @@ def _frame(body, dialect, width, path):
     raise InputError(f"{path}: a quotation mark is opened and never closed; export the traces again")
 
 
-def _beyond(dialect, width):
-    """Lines with more cells than these; marks within quotes count too."""
+def _cells(body, dialect):
+    """Cells of each line; marks within quotes count too."""
+    data = np.frombuffer(body.encode("utf-8", "replace") + b"\n", dtype=np.uint8)
+    ends = np.flatnonzero(data == ord("\n"))
     if dialect.delimiter is None:
-        return re.compile(rf"^[^\S\n]*(?:\S+[^\S\n]+){{{width}}}\S.*", re.MULTILINE)
-    mark = re.escape(dialect.delimiter)
-    return re.compile(rf"^(?:[^{mark}\n]*{mark}){{{width}}}.*", re.MULTILINE)
+        blank = data <= ord(" ")
+        begins = np.flatnonzero(~blank & np.concatenate(([True], blank[:-1])))
+        return np.diff(np.searchsorted(begins, ends), prepend=0)
+    return np.diff(np.searchsorted(np.flatnonzero(data == ord(dialect.delimiter)), ends), prepend=0) + 1
 
 
 def _refuse_wide(frame, width, foreign, number, lines, path):
