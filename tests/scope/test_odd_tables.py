@@ -136,6 +136,20 @@ def test_a_further_header_whose_key_names_the_channel(tmp_path):
     ]  # fmt: skip
 
 
+def test_a_further_header_of_other_columns_is_refused(tmp_path):
+    text = (
+        "Time (s),CH1 (V),CH2 (V)\n" + rows(TIMES, PULSE, SECOND) + "Time (s),CH3 (V)\n" + rows(TIMES, PULSE)
+    )
+    with pytest.raises(InputError, match=r"further table begins with 'Time \(s\),CH3 \(V\)'.*of its own"):
+        recording(tmp_path, text)
+
+
+@pytest.mark.parametrize("first", ["dt", "Samples", "t0", "Points"])
+def test_columns_may_be_called_like_keys(tmp_path, first):
+    text = f"{first},left (V),right (V)\n" + rows([str(k) for k in range(200)], PULSE, SECOND)
+    assert [c.name for c in recording(tmp_path, text).channels] == ["left", "right"]
+
+
 def test_the_units_of_a_further_header_are_its_own(tmp_path):
     text = "Time (s),CH1 (V)\n" + rows(TIMES, PULSE) + "Time (s),CH1 (mV)\n" + rows(TIMES, 1e3 * PULSE)
     found = recording(tmp_path, text)

@@ -104,7 +104,10 @@ def sniff(text: str, path) -> Dialect:
             if found > best + 1e-9:
                 best, dialect = found, candidate
     if dialect is None:
-        raise InputError(f"{path}: the last lines hold no columns of numbers; export the traces as a table")
+        last = f", as {lines[-1].strip()[:60]!r}" if lines else ""
+        raise InputError(
+            f"{path}: the last lines hold no columns of numbers{last}; export the traces as a table"
+        )
     return _decided(dialect, lines, path)
 
 

@@ -140,9 +140,14 @@ def _number(text, base, unit, decimal):
     return got[0] * (found.factor if found else 1.0)
 
 
+def meaning(text: str) -> str | None:
+    """What a cell means as a key, None where it is none."""
+    return _MEANING.get(_name(text)[0])
+
+
 def is_key(text: str) -> bool:
     """Whether a cell is a key that says something of the samples."""
-    return _name(text)[0] in _MEANING
+    return meaning(text) is not None
 
 
 def keyed(line: str) -> list[str] | None:

@@ -4,7 +4,7 @@ import re
 from dataclasses import dataclass
 
 from sonicvacuum.scope.dialect import Dialect
-from sonicvacuum.scope.keys import is_key
+from sonicvacuum.scope.keys import is_key, meaning
 from sonicvacuum.scope.table import Table
 from sonicvacuum.scope.units import Unit, quantity, unit_of
 
@@ -144,14 +144,16 @@ def _row(table, k):
     """Header row k cut so that it has a word above most columns of samples; None where it has not."""
     if all(_MARKER.fullmatch(c) for c in table.header[k] if c):
         return None
-    if is_key(table.header[k][0]) and sum(map(bool, table.header[k])) > 1 and not _counter(table.header[k]):
+    if _is_setting(table.header[k]):
         return None
     return next((cells for cells in _cuts(table, k) if _are_names(cells, table)), None)
 
 
-def _counter(cells):
-    """Whether a row that begins with a key such as `samples` names columns all the same."""
-    return bool(COUNTER.fullmatch(cells[0])) and not any(c[:1].isdigit() for c in cells[1:])
+def _is_setting(cells):
+    """Whether a row is a key and its values: words of one that has words, or what begins with digits."""
+    rest = [c for c in cells[1:] if c]
+    worded = meaning(cells[0]) in ("name", "unit", "time unit")
+    return bool(rest) and is_key(cells[0]) and (worded or any(re.match(r"[-+.]?\d", c) for c in rest))
 
 
 def _are_names(cells, table):

@@ -13,7 +13,7 @@ from sonicvacuum.files import InputError
 from sonicvacuum.scope import keys as header_keys
 from sonicvacuum.scope import roles
 from sonicvacuum.scope.keys import Keys
-from sonicvacuum.scope.labels import TIME
+from sonicvacuum.scope.labels import TIME, split_unit
 from sonicvacuum.scope.roles import Column
 from sonicvacuum.scope.table import Table
 
@@ -75,14 +75,30 @@ def _further(part, found, keys, path):
     # Rows of names have as many cells as there are columns, and name the time where the first table does.
     full = any(sum(map(bool, row)) == len(found) for row in part.header)
     timed = not (found[0].name and found[0].role == "time") or own[0].unit or TIME.fullmatch(own[0].name)
+    if not full and any(_names_time(row) for row in part.header):
+        raise _other(part, path)
     if not full or not timed:
         return found, said
     if [c.role for c in own] != [c.role for c in found]:
-        raise InputError(
-            f"{path}: a further table begins with {part.raw[-1].strip()!r}, whose columns are not those of "
-            "the first; give each table a file of its own"
-        )
+        raise _other(part, path)
     return own, said
+
+
+def _names_time(row):
+    """Whether a row names a time and something beside it."""
+    filled = [c for c in row if c]
+    return (
+        len(filled) > 1
+        and bool(TIME.fullmatch(split_unit(row[0])[0]))
+        and not any(c[0].isdigit() for c in filled)
+    )
+
+
+def _other(part, path):
+    return InputError(
+        f"{path}: a further table begins with {part.raw[-1].strip()[:60]!r}, whose columns are not those of "
+        "the first; give each table a file of its own"
+    )
 
 
 def _pieces(part: Table, found, keys):
@@ -100,7 +116,8 @@ def _pieces(part: Table, found, keys):
                 "shots there."
             )
     else:
-        count = keys.number("count", "")
+        # A vague word, as `Points`, may count anything.
+        count = None if "count" in keys.vague else keys.number("count", "")
         if count and count >= FEWEST and rows > count and rows % count == 0 and count == int(count):
             cuts = np.arange(int(count), rows, int(count))
             notes.append(f"Cut into shots of {count:g} samples, as the header announces.")

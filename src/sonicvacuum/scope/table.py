@@ -158,7 +158,11 @@ def _places(text, dialect, path):
     """Columns that hold samples in most of the last rows."""
     rows = _rows(text[-20_000:].split("\n")[-60:], dialect)
     if dialect.delimiter is None and sum(len(_numeric(r, dialect)) < len(r) for r in rows[-16:]) > 8:
-        raise InputError(f"{path}: words stand between the numbers; export the traces as a table of numbers")
+        odd = next(" ".join(r) for r in rows[-16:] if len(_numeric(r, dialect)) < len(r))
+        raise InputError(
+            f"{path}: words stand between the numbers, as in {odd[:60]!r}; export the traces as a table of "
+            "plain numbers"
+        )
     seen = [p for p in (_numeric(r, dialect) for r in rows[-16:]) if p]
     return list(Counter(seen).most_common(1)[0][0])
 
