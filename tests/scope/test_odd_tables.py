@@ -275,6 +275,26 @@ def test_marks_that_may_mean_two_things_are_refused(tmp_path, cell, bad):
         )
 
 
+@SETTINGS
+@given(
+    st.sampled_from(["{:.3f}", "{:.2f}", "{:.6e}", "{:.0f}", "{:+.3f}"]),
+    st.sampled_from([(",", "."), (";", "."), (";", ","), ("\t", ","), ("\t", "."), (" ", ".")]),
+    st.floats(-900.0, 900.0),
+    st.lists(st.floats(-2.0, 2.0), min_size=30, max_size=60),
+)
+def test_plain_numbers_are_never_taken_for_thousands(tmp_path, form, marks, level, values):
+    cell, decimal = marks
+    texts = [form.format(level + v).replace(".", decimal) for v in values]
+    times = [f"{k}{decimal}5" for k in range(len(texts))]
+    found = recording(tmp_path, f"Time(us){cell}F(N)\n" + rows(times, texts, cell=cell))
+    assert np.array_equal(found.channels[0].values, [float(t.replace(",", ".")) for t in texts])
+
+
+def test_a_line_of_dashes_below_the_names_names_nothing(tmp_path):
+    found = recording(tmp_path, "Time (s),CH1 (V)\n--------,-------\n" + rows(TIMES, PULSE))
+    assert seen(found) == [("CH1", 1, "V", 200)]
+
+
 def test_a_typographic_minus_is_a_minus(tmp_path):
     text = "Time (s),CH1 (V)\n" + rows(TIMES, SECOND, form="{:.7f}").replace("-", "\N{MINUS SIGN}")
     (channel,) = recording(tmp_path, text).channels

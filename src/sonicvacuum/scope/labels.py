@@ -144,7 +144,7 @@ def _row(table, k):
     """Header row k cut so that it has a word above most columns of samples; None where it has not."""
     if all(_MARKER.fullmatch(c) for c in table.header[k] if c):
         return None
-    if _is_setting(table.header[k]):
+    if _is_setting(table.header[k]) or not any(re.search(r"\w", c) for c in table.header[k]):
         return None
     return next((cells for cells in _cuts(table, k) if _are_names(cells, table)), None)
 

@@ -232,13 +232,14 @@ def _refuse_marks(values, held, dialect, place, lines, path):
     broken = found != np.round(found)
     if broken.sum() < 3 or (np.abs(found) >= 1000.0).any() or (np.abs(found[broken]) < 1.0).any():
         return
-    if not broken.any() or broken.all() or (np.abs(found[broken] * 1e3 % 1.0 - 0.5) < 0.5 - 1e-6).any():
+    if broken.all() or (np.abs(found[broken] * 1e3 % 1.0 - 0.5) < 0.5 - 1e-6).any():
         return
-    rows = np.flatnonzero(held & np.isfinite(values) & (values != np.round(values)))
+    rows = np.flatnonzero(held & np.isfinite(values))
     cells = [dialect.cells(lines.text(row)) for row in rows]
-    texts = [row[place] if place < len(row) else "" for row in cells]
-    if all(re.fullmatch(r"[-+]?[1-9]\d{0,2}\.\d{3}", t) for t in texts):
-        raise _marks(texts[0], dialect, place, int(rows[0]), lines, path)
+    texts = np.array([row[place] if place < len(row) else "" for row in cells])
+    grouped = [bool(re.fullmatch(r"[-+]?[1-9]\d{0,2}\.\d{3}", t)) for t in texts if "." in t]
+    if all(grouped) and len(grouped) < len(texts):
+        raise _marks(str(texts[broken][0]), dialect, place, int(rows[broken][0]), lines, path)
 
 
 def _marks(cell, dialect, place, row, lines, path):

@@ -78,7 +78,7 @@ def whole(text: str) -> tuple[str, list[str]]:
     *lines, last = [line.strip() for line in content.rsplit("\n", 2 * BEGINNING)[1:]]
     shapes = {_shape(line) for line in lines}
     (marks, digits), cut = shapes.pop(), _shape(last)
-    if shapes or (cut[0] >= marks and cut[1] >= digits) or not re.match(r"[-+.\d\"]", last):
+    if shapes or (cut[0] >= marks and cut[1] >= digits) or not re.match(r"[-+.\d\",;|]", last):
         return content, []
     return content.rsplit("\n", 1)[0], [f"The last line ends in the middle ({last[:60]}): left out."]
 
