@@ -181,7 +181,7 @@ def test_remarks_on_time_zero_do_not_contradict_each_other(tmp_path):
     (tmp_path / "fast.csv").write_text("Sample Interval,1e-6\nCH1 (V)\n" + rows(PULSE))
     said = "\n".join(import_files([tmp_path / "fast.csv"], tmp_path / "r", options()))
     assert "Time counts from the first sample" in said
-    assert "Time zero is that of the recorder" in said and "is the trigger" not in said
+    assert "Time counts from the recorder's zero" in said and "from the trigger" not in said
 
 
 def test_a_record_that_begins_on_the_pulse_has_no_known_sign(tmp_path):

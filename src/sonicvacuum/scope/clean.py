@@ -205,12 +205,12 @@ def _zero(impact, start, step, begin, first, seen, notes):
     if first is None:
         return start, None
     arrival, width = start + first * step, max(t.width for t in seen.values()) * step
+    # Where the file knows no trigger, its zero is the first sample, as a remark on it says.
+    zero = "recorder's zero" if any(NO_TRIGGER in n for n in notes) else "trigger"
     if start + begin * step <= 0.0 <= arrival + width:
-        # The remark that time counts from the first sample stands already where the file knows no trigger.
-        zero = "that of the recorder" if any(NO_TRIGGER in n for n in notes) else "the trigger"
-        notes.append(f"Time zero is {zero}; how long before or after it the impact was is not known.")
+        notes.append(f"Time counts from the {zero}; how long before or after it the impact was is not known.")
         return 0.0, None
-    notes.append("Time zero lies far off: time counts from the first arrival; the impact was before it.")
+    notes.append(f"The {zero} lies far off: time counts from the first arrival; the impact was before it.")
     return arrival, None
 
 
