@@ -6,9 +6,8 @@ import yaml
 from click.testing import CliRunner
 from hypothesis import given
 from hypothesis import strategies as st
-from made_files import PULSE, TIMES
+from odd_files import PULSE, SECOND, TIMES, rows
 from recorded import CONTENT
-from test_odd_tables import SECOND, rows
 
 from sonicvacuum.cli import cli
 from sonicvacuum.files import InputError

@@ -7,29 +7,13 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from made_files import PULSE, TIMES, table
+from odd_files import PULSE, SECOND, TIMES, recording, rows
 
 from sonicvacuum.files import InputError
-from sonicvacuum.scope import read
 
 SETTINGS = settings(
     max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
 )
-SECOND = -0.5 * PULSE
-
-
-def recording(folder, text, name="t.csv"):
-    path = folder / name
-    path.write_bytes(text.encode() if isinstance(text, str) else text)
-    return read(path)
-
-
-def rows(*columns, cell=",", form="{:.7g}"):
-    """Lines of columns, of which cells that are texts stay as they are."""
-    return "".join(
-        cell.join(c if isinstance(c, str) else form.format(c) for c in row) + "\n"
-        for row in zip(*columns, strict=True)
-    )
 
 
 def seen(found):
@@ -348,5 +332,5 @@ def test_blocks_of_the_announced_size_are_shots(tmp_path):
     head = '"Header Size",16\n"BlockNumber",2\n"TraceName","CH1"\n"BlockSize",200\n"VUnit","V"\n'
     head += '"HResolution",1E-6\n"HOffset",-1E-4\n\n'
     lines = "\n".join(f",{v:.4f}" for v in PULSE)
-    found = recording(tmp_path, table([], ()).decode().strip() + head + lines + "\n\n" + lines + "\n")
+    found = recording(tmp_path, head + lines + "\n\n" + lines + "\n")
     assert seen(found) == [("CH1", 1, "V", 200), ("CH1", 2, "V", 200)]
