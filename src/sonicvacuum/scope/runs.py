@@ -161,8 +161,8 @@ def _timed(channel, recording, options):
     """The channel with its time base, that of the user before that of the file."""
     given, own = options.interval_s, channel.interval_s
     if own is None and given is None:
-        why = next((n for n in channel.notes if n.startswith("No time")), "it has no times and no interval")
-        raise InputError(f"{recording.file}: channel {channel.name}: {why.rstrip('.')}; give --interval")
+        why = next((n for n in channel.notes if n.startswith("No time")), "No time; give --interval.")
+        raise InputError(f"{recording.file}: channel {channel.name}: {why.rstrip('.')}")
     if own is None:
         notes = ["Interval as given."] + ([] if options.start_s is not None else [NO_TRIGGER])
         return replace(channel, interval_s=given, start_s=options.start_s or 0.0).noting(*notes)

@@ -55,14 +55,16 @@ def tidy(number: float) -> float:
     return float(f"{number:.12g}")
 
 
-def from_header(keys: Keys, place: int = 0, column: int = 0) -> TimeBase:
-    """Time base of a table without times."""
+def from_header(
+    keys: Keys, place: int = 0, column: int = 0, why: str = "the file has no times and no interval"
+) -> TimeBase:
+    """Time base of a table without times that say it, and why they do not."""
     interval = declared_interval(keys, place, column)
     start = keys.number("start", "s", place, column)
     notes = []
     if interval is None:
         odd = " and ".join(f"{k} {v!r}" for m, (k, v) in keys.odd.items() if m in ("interval", "rate"))
-        said = f"the header's {odd} is not understood" if odd else "the file has no times and no interval"
+        said = f"the header's {odd} is not understood" if odd else why
         return TimeBase(None, None, (f"No time: {said}; give --interval.",))
     trigger = keys.number("trigger", "", place, column)
     if start is None and trigger is not None:
@@ -80,7 +82,7 @@ def from_column(
     """Time base of a column of times, one shot."""
     times, notes = _filled(times)
     if times is None:
-        return _headers(keys, place, column, "The column of times has gaps")
+        return _headers(keys, place, column, "the column of times has gaps")
     declared = declared_interval(keys, place, column)
     slope = float(times[-1] - times[0]) / (len(times) - 1)
     rounded, uneven = _spacing(times, slope)
@@ -88,9 +90,9 @@ def from_column(
     if (rounded and not uneven) or slope == 0.0:
         slope, begin, rough = _line(times)
         if rough > COARSEST:
-            return _headers(keys, place, column, "The times are printed too coarsely to tell an interval")
+            return _headers(keys, place, column, "the times are printed too coarsely to tell an interval")
     if not slope > 0.0:
-        return _headers(keys, place, column, "The times do not rise")
+        return _headers(keys, place, column, "the times do not rise")
     factor, said = _factor(slope, label, declared, keys)
     interval, start, notes = tidy(slope * factor), tidy(begin * factor), [*notes, *said]
     if declared and rounded and not uneven and abs(declared / interval - 1.0) < max(FINER, 3.0 * rough):
@@ -113,8 +115,10 @@ def from_column(
 
 
 def _headers(keys, place, column, why):
-    base = from_header(keys, place, column)
-    said = f"{why}; start and interval are the header's." if base.interval_s else f"{why}."
+    base = from_header(keys, place, column, why)
+    if base.interval_s is None:
+        return base
+    said = f"{why[0].upper()}{why[1:]}; start and interval are the header's."
     return TimeBase(base.start_s, base.interval_s, (*base.notes, said))
 
 
