@@ -52,6 +52,13 @@ def test_the_interval_of_a_comment(tmp_path, comment, cell):
     assert [(c.name, c.interval_s) for c in found] == [("g5", 2e-6), ("g11", 2e-6)]
 
 
+@pytest.mark.parametrize("name", ["Channel 1", "CH 1", "Trace 3", "Kanal 2"])
+@pytest.mark.parametrize("unit", ["", " (V)"])
+def test_a_name_with_a_number_is_no_key(tmp_path, name, unit):
+    (channel,) = recording(tmp_path, f"Sample Interval,1e-6\n{name}{unit}\n" + rows(PULSE)).channels
+    assert (channel.name, channel.interval_s) == (name, 1e-6)
+
+
 VAGUE = ["Resolution,12", "Resolution,12 bit", "Clock,Internal", "Sampling,Real Time", "Rate,fast"]
 EXACT = ["Sample Rate,500000", "Sample Interval,2e-06", "Sampling Frequency,500 kHz"]
 

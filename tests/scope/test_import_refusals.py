@@ -150,6 +150,14 @@ def test_a_stated_interval_scales_the_start(tmp_path):
     assert any("in place of the file's 0.001 s" in line for line in said)
 
 
+@pytest.mark.parametrize("key", ["4", "CH4", "channel 4"])
+def test_channels_are_called_by_their_numbers(tmp_path, key):
+    (tmp_path / "fast.csv").write_text("x-axis,1,4\nsecond,Volt,Volt\n" + rows(TIMES, SECOND, PULSE))
+    import_files([tmp_path / "fast.csv"], tmp_path / "r", options(channel=[f"{key}=wall"], keep_all=True))
+    written = np.loadtxt(tmp_path / "r" / "fast.csv", delimiter=",", skiprows=1)
+    assert np.ptp(written[:, 1]) == pytest.approx(np.ptp(PULSE), rel=1e-3)
+
+
 def test_a_scale_for_another_unit_is_refused(tmp_path):
     (tmp_path / "fast.csv").write_text("Time (s),F5 (counts)\n" + rows(TIMES, PULSE))
     with pytest.raises(InputError, match="is in counts; give newtons"):

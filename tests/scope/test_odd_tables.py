@@ -67,6 +67,19 @@ def test_a_unit_of_the_header_that_is_not_used_is_no_volt(tmp_path):
     assert all(any("is not known" in n for n in c.notes) for c in found.channels)
 
 
+def test_a_row_of_units_of_no_known_places_is_no_volt(tmp_path):
+    found = recording(
+        tmp_path, "mV,N\nremark,of,some,length\nTime (s),CH1,CH2\n" + rows(TIMES, PULSE, SECOND)
+    )
+    assert [c.unit for c in found.channels] == ["mV, N"] * 2
+
+
+def test_missing_samples_are_told(tmp_path):
+    kept = np.delete(np.arange(200), np.arange(50, 70))
+    (channel,) = recording(tmp_path, "Time (s),CH1 (V)\n" + rows(TIMES[kept], PULSE[kept])).channels
+    assert "Behind -5.1e-05 s 20 samples are missing: a straight line stands there." in channel.notes
+
+
 @pytest.mark.parametrize("label", ["gauge_A", "ch_C", "gauge_m", "bar", "F_5", "min"])
 def test_names_that_look_like_units(tmp_path, label):
     found = recording(tmp_path, f"time_s,{label},wall\n" + rows(TIMES, PULSE, SECOND))

@@ -151,10 +151,11 @@ def is_key(text: str) -> bool:
 
 
 def keyed(line: str) -> list[str] | None:
-    """A line of words parted by blanks as key and value, `fs 500 kHz`; None where it begins with no key."""
+    """A line of words parted by blanks as key and number, `fs 500 kHz`; None where it is none."""
     words = line.strip().lstrip("#%*\"' ").split()
     for k in range(min(4, len(words) - 1), 0, -1):
-        if is_key(" ".join(words[:k])) and re.match(r"[-+.\d]", words[k]):
+        # `Channel 1` is a name.
+        if meaning(" ".join(words[:k])) in _BASE and re.match(r"[-+.\d]", words[k]):
             return [" ".join(words[:k]), " ".join(words[k:])]
     return None
 

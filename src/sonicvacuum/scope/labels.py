@@ -90,9 +90,16 @@ class Labels:
         return _at(self.units, k)
 
     def stray(self, k: int) -> str:
-        """A unit that another row of the header holds at a place."""
-        rows = [row for row in self.rest if len(row) == self.width and not is_key(row[0])]
-        return next((row[k] for row in rows if unit_of(row[k]) and not _LETTERS.fullmatch(row[k])), "")
+        """A unit that another row of the header holds at a place, or units of a row of no known places."""
+        rows = [row for row in self.rest if not is_key(row[0])]
+        held = [row[k] for row in rows if len(row) == self.width]
+        held += [", ".join(filter(None, row)) for row in rows if len(row) != self.width and _all_units(row)]
+        return next((c for c in held if all(map(unit_of, c.split(", "))) and not _LETTERS.fullmatch(c)), "")
+
+
+def _all_units(row):
+    units = [unit_of(c) for c in row if c]
+    return None not in units and any(u.base != "s" for u in units)
 
 
 def labels(table: Table) -> Labels:

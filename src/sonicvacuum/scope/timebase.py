@@ -22,6 +22,8 @@ FINER = 2e-3
 MOST_LOST, COARSEST = 0.1, 0.1
 # Said where time zero is that of the first sample for want of anything better.
 NO_TRIGGER = "Time counts from the first sample: the file does not say where the trigger is."
+# Steps of missing samples that are told.
+MISSING = 5
 _FACTORS = {1.0: "s", 1e-3: "ms", 1e-6: "us", 1e-9: "ns", 1e-12: "ps"}
 
 
@@ -111,6 +113,10 @@ def from_column(
     notes.append(
         f"Times are uneven: steps of {steps.min():.4g} to {steps.max():.4g} s; the interval is the mean."
     )
+    missing = round(float(steps.max() / np.median(steps))) - 1 if np.median(steps) > 0.0 else 0
+    if missing > MISSING:
+        at = float(times[steps.argmax()]) * factor
+        notes.append(f"Behind {at:.6g} s {missing} samples are missing: a straight line stands there.")
     return TimeBase(start, interval, tuple(notes), times * factor)
 
 
