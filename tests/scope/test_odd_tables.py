@@ -25,6 +25,7 @@ def seen(found):
     [
         ("x-axis,2,4\nsecond,Volt,Volt\n", ["2", "4"]),
         ("Time (s),5,11\n", ["5", "11"]),
+        ("Bead,5,11\n", ["5", "11"]),
         ("Time (s),CH1 (V),CH2 (V)\n", ["CH1", "CH2"]),
     ],
 )
@@ -67,7 +68,7 @@ def test_a_unit_of_the_header_that_is_not_used_is_no_volt(tmp_path):
     assert all(any("is not known" in n for n in c.notes) for c in found.channels)
 
 
-def test_a_row_of_units_of_no_known_places_is_no_volt(tmp_path):
+def test_a_row_of_units_of_unknown_places_is_no_volt(tmp_path):
     found = recording(
         tmp_path, "mV,N\nremark,of,some,length\nTime (s),CH1,CH2\n" + rows(TIMES, PULSE, SECOND)
     )

@@ -172,8 +172,9 @@ def _are_names(cells, table):
     if any(re.search(r"[:=]\s*[-+.\d]|^\d+([-/.:]\d+){2}|^[:=,;]", c) for c in words):
         return False
     if numbers:
-        whole = all(c.isdigit() for c in numbers)
-        return whole and not table.dialect.is_number(held[0]) and _begins_with_time(cells, table)
+        whole = all(c.isdigit() for c in numbers) and not table.dialect.is_number(held[0])
+        # Beside a time the same number may stand twice, as for the least and the most of a channel.
+        return whole and (_begins_with_time(cells, table) or len(set(numbers)) == len(held) - 1)
     return len(words) >= max(1, len(held) // 2) and _wide(cells, table)
 
 
