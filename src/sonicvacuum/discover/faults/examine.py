@@ -11,7 +11,7 @@ from sonicvacuum.discover.faults import changes, expected, policy, traces
 from sonicvacuum.discover.faults.found import Bench, Finding
 from sonicvacuum.discover.faults.table import FAULTS
 from sonicvacuum.discover.model.masks import cut, spikes
-from sonicvacuum.discover.model.noise import flicker
+from sonicvacuum.discover.model.noise import flicker, loudness
 from sonicvacuum.gauges import position
 from sonicvacuum.records import Record, Signals
 
@@ -195,7 +195,7 @@ class _Look:
     def _quiet_slips(self, run, gauge):
         """What the stretch before the pulse shows: a slope, a level, the size of the noise."""
         trace = self.readings[run.id][gauge.id]
-        stretch = traces.quiet(trace, gauge.sigma)
+        stretch = traces.quiet(trace, loudness(trace, gauge.sigma))
         drifting = traces.drift(stretch, gauge.sigma)
         if drifting is not None and ("drift", gauge.id) not in self.spared:
             slope, error = drifting

@@ -8,7 +8,7 @@ import math
 import numpy as np
 
 from sonicvacuum.discover.faults import coloured
-from sonicvacuum.discover.model.noise import QUIET_PEAK, QUIET_SHARE, QUIET_SIGMAS, flicker
+from sonicvacuum.discover.model.noise import QUIET_PEAK, QUIET_SIGMAS, before, flicker
 
 # Samples of a quiet stretch that can be judged.
 FEWEST = 40
@@ -39,9 +39,7 @@ def quiet(trace: np.ndarray, sigma: float, swinging: bool = False) -> np.ndarray
     if swinging:
         swing = float(np.abs(trace[: max(8, len(trace) // 10)] - rest).max())
         level = max(level, _SWING * swing) if swing < _PULSE * peak else level
-    loud = np.abs(trace - rest) > level
-    first = int(loud.argmax()) if loud.any() else len(trace)
-    return trace[: int(QUIET_SHARE * first)]
+    return trace[: before(trace - rest, level)]
 
 
 def quiet_beside(trace: np.ndarray, cycles: float, sigma: float) -> np.ndarray:

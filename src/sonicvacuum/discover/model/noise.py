@@ -21,6 +21,11 @@ MODEL_FLOOR = 1e-4
 # the peak.
 QUIET_SIGMAS, QUIET_PEAK, QUIET_SHARE = 6.0, 0.03, 0.7
 _FEWEST, _LEAST = 40, 12
+# A pulse not twice as high as that shows by its crest or not at all: means over this part of a record, which
+# last about as long as a pulse, stand out by so many of their own standard errors where it begins.
+_WEAK, _PART = 2.0, 20
+# Samples count as that much noisier than stated only from this factor on: flicker itself errs by a tenth.
+_NOISIER = 1.3
 # Deviations from the stated white noise count from so many standard errors on.
 _SURE = 4.0
 # So many third differences of white noise are worth one independent sample: 1 + 2 (15² + 6² + 1)/20², from
@@ -222,6 +227,36 @@ def _correlation(stretches):
 def _quiet(trace, sigma):
     """The samples before the pulse arrives, or none."""
     peak = float(np.abs(trace).max())
-    loud = np.abs(trace) > max(QUIET_SIGMAS * sigma, QUIET_PEAK * peak)
-    first = int(loud.argmax()) if loud.any() else len(trace)
-    return trace[: int(QUIET_SHARE * first)]
+    level = max(QUIET_SIGMAS * loudness(trace, sigma), QUIET_PEAK * peak)
+    return trace[: before(trace, level)]
+
+
+def before(trace: np.ndarray, level: float) -> int:
+    """Samples that surely precede the first one above a level, and a pulse that hardly gets above it."""
+    size = np.abs(trace)
+    first = int((size > level).argmax()) if size.max() > level else len(trace)
+    return int(QUIET_SHARE * (first if size.max() > _WEAK * level else min(first, _risen(trace))))
+
+
+def _risen(trace):
+    """Where a trace begins to stand out in running means, of which most are of its rest; its length where it
+    does not.
+    """
+    width = max(_LEAST, len(trace) // _PART)
+    if len(trace) < 2 * width:
+        return len(trace)
+    sums = np.concatenate([[0.0], np.cumsum(trace)])
+    means = (sums[width:] - sums[:-width]) / width
+    off = np.abs(means - np.median(means))
+    # Means of steps of a recorder are known no better than by their rounding.
+    spread = max(float(np.median(off)) / 0.6745, rounding(trace) / math.sqrt(width))
+    out = off > QUIET_SIGMAS * spread
+    return int(out.argmax()) if out.any() else len(trace)
+
+
+def loudness(trace: np.ndarray, sigma: float) -> float:
+    """The stated noise of a sample, or what makes the samples up to the highest flicker where that is surely
+    more: noise of several times the stated one is no pulse.
+    """
+    own = flicker(trace[: int(np.abs(trace).argmax())])
+    return own if own > _NOISIER * sigma else sigma
