@@ -5,9 +5,10 @@ from dataclasses import replace
 import msgspec
 import numpy as np
 import pytest
-from made_records import SIGMA
+from made_records import SIGMA, made
 from made_slips import altered
 
+from sonicvacuum.discover.faults import traces
 from sonicvacuum.discover.faults.examine import examine
 from sonicvacuum.discover.faults.expected import predicted
 from sonicvacuum.discover.model.noise import noise
@@ -43,6 +44,25 @@ def test_a_weak_pulse_is_no_noise(empty, height, stated):
     assert correlation[1] == 0.0
 
 
+def stepped(share, seed=0):
+    """The nominal model's readings in a recorder's steps; noise is this share of one."""
+    rng = np.random.default_rng(np.random.SeedSequence([33, seed]))
+    record = made(noise=0.0)[0]
+    for gauge in record.gauges:
+        step = gauge.sigma / np.hypot(share, 12.0**-0.5)
+        record = altered(
+            record, gauge.id, lambda y, s=step: s * np.round(y / s + share * rng.normal(size=len(y)))
+        )
+    return record
+
+
+@pytest.mark.parametrize("share", [0.1, 0.05, 0.25])
+def test_noise_below_a_recorders_step_is_not_told(share):
+    """All samples before the pulse read the same."""
+    record = stepped(share)
+    assert examine(record, predicted(together((record,))))[1] == []
+
+
 def test_noise_far_above_the_stated_one_is_told_of_all_runs(empty, model):
     """A gain set ten times too high: no sample before the pulse is quiet by the stated noise."""
     record = altered(empty, "g7", lambda y: 10.0 * y)
@@ -50,3 +70,25 @@ def test_noise_far_above_the_stated_one_is_told_of_all_runs(empty, model):
     assert (one.fault, one.run, one.sensor) == ("noise-misstated", None, "g7")
     assert one.value == pytest.approx(10.0, rel=0.1)
     assert noise([record])[0][1] == pytest.approx(10.0 * SIGMA, rel=0.1)
+
+
+def stretch(n, size=1.0, seed=0):
+    return size * np.random.default_rng(np.random.SeedSequence([32, seed])).normal(size=n)
+
+
+def test_short_stretches_are_judged_together():
+    def told(*sizes):
+        short = {f"v{k}": stretch(30, size, k) for k, size in enumerate(sizes)}
+        return traces.misstated(short, 1.0)
+
+    assert told(3.0, 3.0, 3.0) == dict.fromkeys(("v0", "v1", "v2"), pytest.approx(3.0, rel=0.2))
+    assert told(1.0, 1.0, 1.0) == told(3.0, 1.0, 1.0) == told(1.0, 1.0, 5.0) == {}
+    assert traces.misstated({"v0": stretch(30, 3.0)}, 1.0) == traces.misstated({}, 1.0) == {}
+
+
+@pytest.mark.parametrize(
+    ("short", "told"), [(stretch(20, 3.0), True), (stretch(5), True), (stretch(20), False)]
+)
+def test_a_short_stretch_is_as_the_long_ones_unless_it_says_the_contrary(short, told):
+    found = traces.misstated({"v0": stretch(100, 3.0, 1), "v1": short}, 1.0)
+    assert set(found) == ({"v0", "v1"} if told else {"v0"})

@@ -11,7 +11,7 @@ from sonicvacuum.discover.faults import changes, expected, policy, traces
 from sonicvacuum.discover.faults.found import Bench, Finding
 from sonicvacuum.discover.faults.table import FAULTS
 from sonicvacuum.discover.model.masks import cut, spikes
-from sonicvacuum.discover.model.noise import flicker, loudness
+from sonicvacuum.discover.model.noise import flicker, loudness, rounding
 from sonicvacuum.gauges import position
 from sonicvacuum.records import Record, Signals
 
@@ -42,6 +42,8 @@ def examine(
         look.pickup(gauge)
     for run in runs:
         look.quiet(run)
+    for gauge in record.gauges:
+        look.noise(gauge)
     return look.bench(), look.findings()
 
 
@@ -69,7 +71,7 @@ class _Look:
         self.record, self.predicted, self.spared = record, predicted, spared
         self.readings = {k: dict(s.readings) for k, s in record.signals.items()}
         self.lost, self.seen, self.rests = {}, defaultdict(dict), defaultdict(dict)
-        self.levels = defaultdict(dict)
+        self.levels, self.stretches = defaultdict(dict), defaultdict(dict)
         self.silent, self.blank, self.lines = set(), [], {}
         # Gauge → what is known of its level and of its drift only so well, in its unit.
         self.unsure = defaultdict(dict)
@@ -90,6 +92,14 @@ class _Look:
         for id, gauge in self._own(run).items():
             if (run.id, id) not in self.silent:
                 self._quiet_slips(run, gauge)
+
+    def noise(self, gauge):
+        """Noise of another size than stated, in the quiet stretches of all runs."""
+        stretches = self.stretches[gauge.id]
+        read = [self.record.signals[run].readings[gauge.id] for run in stretches]
+        found = traces.misstated(stretches, gauge.sigma, max(map(rounding, read), default=0.0))
+        if found:
+            self.seen["noise-misstated", gauge.id] = found
 
     def pickup(self, gauge):
         """A steady line in a gauge's traces: one frequency in all runs that show it, taken off."""
@@ -203,9 +213,7 @@ class _Look:
             self._unsure(gauge.id, "drift", error * len(trace))
             trace = trace - traces.line(stretch, np.arange(len(trace)))
             stretch = trace[: len(stretch)]
-        ratio = traces.noise_ratio(stretch, gauge.sigma)
-        if ratio is not None:
-            self.seen["noise-misstated", gauge.id][run.id] = ratio
+        self.stretches[gauge.id][run.id] = stretch
         self.rests[gauge.id][run.id] = traces.rest(stretch, gauge.sigma)
         self.levels[gauge.id][run.id] = len(stretch), traces.level(stretch, gauge.sigma)
         self.readings[run.id][gauge.id] = trace

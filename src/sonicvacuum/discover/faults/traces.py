@@ -58,18 +58,60 @@ def without_spikes(trace: np.ndarray, at: np.ndarray) -> np.ndarray:
     return np.interp(place, place[~at], trace[~at])
 
 
-def noise_ratio(stretch: np.ndarray, sigma: float) -> float | None:
+def misstated(stretches: dict[str, np.ndarray], sigma: float, rounded: float = 0.0) -> dict[str, float]:
+    """Run → noise over the stated one where it surely is another, of a gauge's quiet stretches by run.
+
+    Stretches too short to be judged are as the others where these agree, unless they say the contrary; where
+    all are too short, they are judged together.
+    """
+    long = {run: s for run, s in stretches.items() if len(s) >= FEWEST}
+    found = {run: noise_ratio(s, sigma, rounded) for run, s in long.items()}
+    if not long:
+        found = {None: noise_ratio(_joined(list(stretches.values())), sigma, rounded)}
+    surely = {run: ratio for run, ratio in found.items() if ratio is not None}
+    if len(surely) < len(found):
+        return surely
+    common = float(np.median(list(surely.values())))
+    alike = {run: common for run, s in stretches.items() if run not in long and _may_be(s, sigma, common)}
+    if not long:
+        return alike if len(alike) == len(stretches) else {}
+    return surely | alike
+
+
+def _joined(stretches):
+    """Stretches without their lines, all of their first halves ahead of all of their second ones."""
+    bare = [s - line(s) for s in stretches if len(s) >= _LEVEL_EACH]
+    halves = [np.array_split(s, 2) for s in bare]
+    return np.concatenate([[], *(pair[k] for k in range(2) for pair in halves)])
+
+
+def _may_be(stretch, sigma, ratio):
+    """Whether a short stretch does not contradict that its noise is so many times the stated one: it shows
+    half of that (in logarithms), or is too short to show anything.
+    """
+    return len(stretch) < _LEVEL_EACH or _log_ratio(stretch, sigma) / math.log(ratio) > 0.5
+
+
+def noise_ratio(stretch: np.ndarray, sigma: float, rounded: float = 0.0) -> float | None:
     """Noise of a quiet stretch, its straight line removed, over the stated one; None where they may agree.
 
     Noise is there from the first sample to the last: what one half shows less than half of (in logarithms)
-    began within the stretch, and is none.
+    began within the stretch, and is none. A stretch that rests on one step of its recorder, or few, does not
+    tell how much less than a step its noise is.
+
+    Args:
+        stretch: (n,) quiet samples.
+        sigma: stated noise of one sample, the recorder's rounding included.
+        rounded: standard deviation of that rounding, a step over √12; 0 where it is below the noise.
     """
     n = len(stretch)
-    if n < FEWEST or not sigma:
+    if n < FEWEST or not sigma or not np.ptp(stretch) > 0.0:
         return None
     whole, *halves = (_log_ratio(part, sigma) for part in (stretch, *np.array_split(stretch, 2)))
     bare = stretch - line(stretch)
     least = max(SURE * coloured.error_of_size(bare), math.log(NOISE_FACTOR))
+    if whole < 0.0 and sigma < math.sqrt(12.0) * rounded:
+        return None
     sure = abs(whole + coloured.loss_of_size(bare)) > least
     return math.exp(whole) if sure and min(h / whole for h in halves) > 0.5 else None
 
