@@ -7,12 +7,12 @@ from dataclasses import replace
 import msgspec
 import numpy as np
 
-from sonicvacuum.discover.faults import changes, expected, policy, traces
+from sonicvacuum.discover.faults import changes, policy, traces
 from sonicvacuum.discover.faults.found import Bench, Finding
+from sonicvacuum.discover.faults.pulses import pulses
 from sonicvacuum.discover.faults.table import FAULTS
 from sonicvacuum.discover.model.masks import cut, spikes
 from sonicvacuum.discover.model.noise import flicker, loudness, rounding
-from sonicvacuum.gauges import position
 from sonicvacuum.records import Record, Signals
 
 
@@ -37,7 +37,7 @@ def examine(
     runs = [run for run in record.runs if run.signals is not None]
     for run in runs:
         look.samples(run)
-    look.dead()
+    look.pulses()
     for gauge in record.gauges:
         look.pickup(gauge)
     for run in runs:
@@ -81,11 +81,9 @@ class _Look:
         return {g.id: g for g in self.record.gauges if g.id in run.signals.readings}
 
     def samples(self, run):
-        """Single samples of all traces of one run, and their pulses."""
-        own = self._own(run)
-        for gauge in own.values():
+        """Single samples of all traces of one run."""
+        for gauge in self._own(run).values():
             self._sample_slips(run.id, gauge)
-        self._against_the_model(run.id, own)
 
     def quiet(self, run):
         """What precedes the pulses in all traces of one run."""
@@ -144,63 +142,16 @@ class _Look:
         if at.any() or held.any():
             self.lost[run, gauge.id] = at | held
 
-    def _against_the_model(self, run, own):
+    def pulses(self):
         """No pulse where the model has one, or a pulse upside down."""
-        own = {id: g for id, g in own.items() if id in self.predicted.get(run, {})}
-        judged = {
-            id: expected.verdict(self.readings[run][id], self.predicted[run][id], g.sigma)
-            for id, g in own.items()
-        }
-        self._await(run, judged)
-        dying = ("run-without-impact", run) in self.spared
-        judged |= {id: "" for id in own if dying or ("gauge-dead", id) in self.spared}
-        silent = [id for id, word in judged.items() if word == "silent"]
-        if own and len(silent) == len(own):
-            self.blank.append(run)
-        self.silent |= {(run, id) for id in silent}
-        for id, word in judged.items():
-            if word == "silent" and len(silent) < len(own):
-                self.seen["gauge-dead", id][run] = None
-            if word == "inverted" and ("gauge-inverted", id) not in self.spared:
-                self.seen["gauge-inverted", id][run] = None
+        found = pulses(self.record, self.readings, self.predicted, self.spared)
+        self.blank, self.silent = found.blank, found.silent
+        for id, runs in found.dead.items():
+            self.seen["gauge-dead", id] = dict.fromkeys(runs)
+        for id, runs in found.inverted.items():
+            self.seen["gauge-inverted", id] = dict.fromkeys(runs)
+            for run in runs:
                 self.readings[run][id] = -self.readings[run][id]
-
-    def dead(self):
-        """A gauge that is silent where a pulse is expected is so where less is expected of it, too."""
-        for id in sorted(id for fault, id in self.seen if fault == "gauge-dead"):
-            sigma = next(g.sigma for g in self.record.gauges if g.id == id)
-            rest = [k for k, own in self.readings.items() if id in own and (k, id) not in self.silent]
-            if all(expected.quiet(self.readings[k][id], sigma) for k in rest):
-                self.silent |= {(k, id) for k in rest}
-                self.seen["gauge-dead", id] |= dict.fromkeys(rest)
-
-    def _await(self, run, judged):
-        """Nothing is said of gauges whose pulse comes after the record's end if it is as late as others, or
-        dies out before it arrives if it falls as it does ahead of them.
-        """
-        time, model = self.record.signals[run].time_us, self.predicted.get(run, {})
-        ways = {g.id: self._way(g) for g in self.record.gauges if g.id in judged}
-        ahead = [
-            (ways[id], expected.share(self.readings[run][id], model[id]))
-            for id, word in judged.items()
-            if word != "silent"
-        ]
-        delays = [
-            expected.delay(self.readings[run][id], model[id], time)
-            for id, word in judged.items()
-            if word != "silent" and np.abs(model[id]).max() > 0.0
-        ]
-        for id, word in judged.items():
-            if word != "silent":
-                continue
-            sigma = next(g.sigma for g in self.record.gauges if g.id == id)
-            late = expected.still_to_come(model[id], time, delays)
-            if late or expected.fades(ways[id], model[id], sigma, ahead):
-                judged[id] = ""
-
-    def _way(self, gauge):
-        """From the bead that is struck to a gauge, in beads."""
-        return self.record.beads - position(gauge, self.record.beads, 1.0)
 
     def _quiet_slips(self, run, gauge):
         """What the stretch before the pulse shows: a slope, a level, the size of the noise."""

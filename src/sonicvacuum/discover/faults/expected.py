@@ -8,12 +8,16 @@ from sonicvacuum.discover.correlation import correlated
 from sonicvacuum.discover.model.experiment import Experiment
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Hypothesis
+from sonicvacuum.discover.model.noise import QUIET_PEAK, QUIET_SHARE, flicker, rounding
 
 # A pulse is expected where the model's reading is this many standard deviations of the noise high ...
 EXPECTED = 20.0
 # ... and missing where the matched filter finds less than this, in standard deviations of its noise (the
 # largest of a thousand shifts of pure noise is about 4) and in shares of what the model has.
 SILENT, SHARE = 7.0, 0.05
+# A pulse far smaller than the model's is one where at least these samples precede it, and the model's shape
+# is this share of the trace's power: of pure noise, or of a slope, less.
+FEWEST, ALIKE = 12, 0.5
 # Of a gauge without a pulse nothing can be said where the model's own pulse, as late as the pulses of the
 # other gauges are, would end after this share of the record.
 WITHIN = 0.95
@@ -32,14 +36,40 @@ def verdict(trace: np.ndarray, model: np.ndarray, sigma: float) -> str:
     if not peak > EXPECTED * sigma or not peak > 0.0:
         return ""
     power = float(model @ model)
+    found = float(np.abs(_slid(trace, model)).max()) / power
+    silent = found < max(SHARE, SILENT * sigma / np.sqrt(power)) and quiet(trace, sigma)
+    if silent and not _small(trace, model):
+        return "silent"
+    return "inverted" if way(trace, model, sigma) == "inverted" else ""
+
+
+def way(trace: np.ndarray, model: np.ndarray, sigma: float) -> str:
+    """ "upright", "inverted" or "", where a pulse is too weak to tell, of (T,) readings as in `verdict`."""
+    power = float(model @ model)
+    if not power > 0.0:
+        return ""
     found = _slid(trace, model) / power
     up, down = float(found.max()), float(-found.min())
-    if max(up, down) < max(SHARE, SILENT * sigma / np.sqrt(power)) and quiet(trace, sigma):
-        return "silent"
     # A motion gauge's reading swings both ways by itself: what the model's own would show.
     own = correlated(model, model) / power
     swing = max(1.0, INVERTED * max(float(-own.min()), 0.0))
-    return "inverted" if down > INVERTED * up and down * swing > SHARE and down > up else ""
+    larger, other = max(up, down), max(min(up, down), 0.0)
+    if larger * swing < max(SHARE, SILENT * sigma / np.sqrt(power)) or larger < INVERTED * other:
+        return ""
+    return "upright" if up > down else "inverted"
+
+
+def _small(trace, model):
+    """Whether a trace that holds hardly anything of the model's pulse holds one of its own: it stands out of
+    the noise before it, which may be far below the stated one, and the trace reads little else.
+    """
+    rises = int((np.abs(model) > QUIET_PEAK * np.abs(model).max()).argmax())
+    rest, off = trace[: int(QUIET_SHARE * rises)], trace - np.median(trace)
+    if len(rest) < FEWEST:
+        return False
+    noise = max(float(rest.std()), flicker(trace), rounding(trace))
+    alike = float(np.abs(_slid(trace, model)).max()) ** 2 > ALIKE * float(model @ model) * float(off @ off)
+    return alike and float(np.abs(off).max()) > SILENT * noise
 
 
 def quiet(trace: np.ndarray, sigma: float) -> bool:
