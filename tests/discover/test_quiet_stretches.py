@@ -11,6 +11,10 @@ from made_slips import altered
 from sonicvacuum.discover.faults import traces
 from sonicvacuum.discover.faults.examine import examine
 from sonicvacuum.discover.faults.expected import predicted
+from sonicvacuum.discover.fit.goodness import goodness
+from sonicvacuum.discover.fit.refit import fit
+from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.model.hypothesis import Hypothesis
 from sonicvacuum.discover.model.noise import noise
 from sonicvacuum.discover.model.problem import together
 
@@ -61,6 +65,15 @@ def test_noise_below_a_recorders_step_is_not_told(share):
     """All samples before the pulse read the same."""
     record = stepped(share)
     assert examine(record, predicted(together((record,))))[1] == []
+
+
+@pytest.mark.parametrize(("share", "asked"), [(0.1, False), (1.0, True)])
+def test_what_is_left_of_a_recorders_steps_is_no_misfit(share, asked):
+    forward = Forward(together((stepped(share),)))
+    null = fit(forward, Hypothesis(), np.zeros((1, 0)), np.zeros((1, forward.layout.size)))
+    found = goodness(forward, null)
+    assert not found.failed
+    assert any(cell.whiteness < 1.0 for cell in found.cells) is asked
 
 
 def test_noise_far_above_the_stated_one_is_told_of_all_runs(empty, model):
