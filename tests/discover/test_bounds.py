@@ -11,6 +11,7 @@ from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, variants
 from sonicvacuum.discover.model.parameters import coordinate
 from sonicvacuum.discover.model.problem import experiment
+from sonicvacuum.discover.search import several
 from sonicvacuum.effects import CATALOGUE, effect
 
 
@@ -77,3 +78,34 @@ def test_wider_bounds_keep_to_what_values_may_mean(effect, setup):
         wide = bounds._wider(coordinate(parameter, setup))
         for u in (wide.low, wide.high):
             parameter.check(wide.value(u), effect.id)
+
+
+def test_a_bound_is_near_within_a_standard_error_and_never_towards_off(hidden, empty, setup):
+    _, one = restricted(hidden, setup)
+    assert not bounds.near(one).any()
+    _, close = restricted(hidden, setup, high=one.u[0] + 0.5 * one.sigma[0])
+    assert bounds.near(close).all()
+    _, off = restricted(empty, setup)
+    assert not bounds.near(off).any()
+
+
+def test_a_set_near_a_bound_is_held_against_others_all_over_there(hidden, setup, monkeypatch):
+    """Damping beside a striker's speed, held just short of what it should be: every law is tried in its
+    place, those of which slopes promise little too.
+    """
+    forward = Forward(experiment(hidden))
+    ((free,),) = variants(effect("kuwabara-kono"), setup)
+    speed = next(v for v in variants(effect("striker-error"), setup) if len(v) == 1)
+    parts = (
+        Component(effect("kuwabara-kono"), (replace(free, high=free.inverse(0.29)),)),
+        Component(effect("striker-error"), speed),
+    )
+    nu = np.zeros((1, forward.layout.size))
+    null = fit(forward, Hypothesis(), np.zeros((1, 0)), nu)
+    one = fit(forward, Hypothesis(parts), np.array([[0.5 * free.inverse(0.29), 0.0]]), nu)
+    asked, instead = [], several.pairs.instead
+    monkeypatch.setattr(several.pairs, "instead", lambda *given: asked.append(given[3]) or instead(*given))
+    turns = several.Turns(forward, None, 12.0, setup, infer=False)
+    turns.null = null
+    turns.rivals(one)
+    assert asked == [0]

@@ -41,6 +41,17 @@ def stuck(fit: Fit, soon: float = 0.0) -> np.ndarray:
     return np.array([held(u, c) for u, c in zip(fit.u, fit.hypothesis.coordinates, strict=True)], dtype=bool)
 
 
+def near(fit: Fit) -> np.ndarray:
+    """(p,) whether a bound that does not lead to off lies within a standard error of a coordinate."""
+    return np.array(
+        [
+            u + error >= c.high or (u - error <= c.low and not _off_below(c))
+            for u, error, c in zip(fit.u, fit.sigma, fit.hypothesis.coordinates, strict=True)
+        ],
+        dtype=bool,
+    )
+
+
 def held_back(fit: Fit) -> bool:
     """Whether a strength of an effect is stuck: the effect might do many times what it does there."""
     return any(

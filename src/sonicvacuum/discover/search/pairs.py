@@ -12,7 +12,7 @@ from functools import partial
 
 import numpy as np
 
-from sonicvacuum.discover.fit import places
+from sonicvacuum.discover.fit import bounds, places
 from sonicvacuum.discover.fit.evidence import Candidate, Combination, log_bayes
 from sonicvacuum.discover.fit.refit import Fit, finished, fit, polish
 from sonicvacuum.discover.model import abreast
@@ -68,6 +68,7 @@ class Pairs:
         self._refit(_best(self.asked, self.found, BESIDE))
         self._refit(_best(self.seen, self.found, LINEAR))
         self._exchange()
+        self._unbound()
         self._refine()
         return self.ranked
 
@@ -105,6 +106,18 @@ class Pairs:
             self._refit(chosen)
             if self.ranked[0] is best:
                 return
+
+    def _unbound(self):
+        """In place of an effect of the best pair that ends near a bound, every other one: it may tend there
+        to another law, of which no start was made beside the other effect.
+        """
+        if not self.found:
+            return
+        best = self.ranked[0].fit
+        ends = bounds.near(best)
+        at = [k for k, columns in enumerate(best.hypothesis.columns) if any(ends[columns])]
+        others = (s for k in at for s in instead(self.forward, self.null, best, k, self.setup))
+        self._refit(_best(others, self.found, BESIDE))
 
     def _refine(self):
         """Look for narrow minima of effects with a place in the leading pairs, see `around`."""

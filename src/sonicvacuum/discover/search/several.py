@@ -16,7 +16,7 @@ from functools import partial
 import numpy as np
 
 from sonicvacuum.discover import policy
-from sonicvacuum.discover.fit import enough, heldout, places, smooth
+from sonicvacuum.discover.fit import bounds, enough, heldout, places, smooth
 from sonicvacuum.discover.fit.evidence import Combination
 from sonicvacuum.discover.fit.refit import Fit, finished
 from sonicvacuum.discover.model import abreast
@@ -326,9 +326,13 @@ class Turns:
         """
         gained, starts = self.null.objective - fit.objective, {}
         fewer = self._each_less(fit, range(len(fit.hypothesis.components)))
-        for less in fewer:
+        ends = bounds.near(fit)
+        for k, less in enumerate(fewer):
             left = self.null.objective - less.objective
             promised = pairs.beside(self.forward, self.null, less, self.setup)
+            if any(ends[fit.hypothesis.columns[k]]):
+                # There it may tend to another law, of which slopes at the fit without it promise too little.
+                promised += pairs.instead(self.forward, self.null, fit, k, self.setup)
             standing = [s for s in promised if s.gain > left + STANDS * (gained - left)]
             for s in sorted(standing, key=lambda s: -s.gain)[:STANDING]:
                 if s.effects not in self.tried:
