@@ -26,6 +26,8 @@ FAST = 1.0 / 300.0
 # In χ², less is no reason to leave the range.
 WORTH = 0.5
 _ROOM = 1e-6
+# Part of a range within which a bound is near, at most.
+CLOSE = 0.05
 
 
 def stuck(fit: Fit, soon: float = 0.0) -> np.ndarray:
@@ -42,14 +44,16 @@ def stuck(fit: Fit, soon: float = 0.0) -> np.ndarray:
 
 
 def near(fit: Fit) -> np.ndarray:
-    """(p,) whether a bound that does not lead to off lies within a standard error of a coordinate."""
-    return np.array(
-        [
-            u + error >= c.high or (u - error <= c.low and not _off_below(c))
-            for u, error, c in zip(fit.u, fit.sigma, fit.hypothesis.coordinates, strict=True)
-        ],
-        dtype=bool,
-    )
+    """(p,) whether a bound that does not lead to off lies within a standard error of a coordinate, or, where
+    it is hardly known, within a small part of its range.
+    """
+
+    def ends(u, error, c):
+        room = min(error, CLOSE * (c.high - c.low))
+        return u + room >= c.high or (u - room <= c.low and not _off_below(c))
+
+    every = zip(fit.u, fit.sigma, fit.hypothesis.coordinates, strict=True)
+    return np.array([ends(*one) for one in every], dtype=bool)
 
 
 def held_back(fit: Fit) -> bool:
