@@ -149,7 +149,10 @@ def test_all_that_may_stand_in_an_effects_place_share_a_sets_probability(turns, 
     def one(effects):
         ids = tuple(effects)
         return SimpleNamespace(
-            hypothesis=SimpleNamespace(components=ids, ids=ids), objective=-2.0 * at.get(frozenset(ids), -9.0)
+            hypothesis=SimpleNamespace(
+                components=ids, ids=ids, columns=[slice(k, k + 1) for k in range(len(ids))]
+            ),
+            objective=-2.0 * at.get(frozenset(ids), -9.0),
         )
 
     def beside(forward, null, less, setup):
@@ -163,6 +166,7 @@ def test_all_that_may_stand_in_an_effects_place_share_a_sets_probability(turns, 
         found.tried[key] = SimpleNamespace(effects=tuple(key), fit=fit, log_bayes=-0.5 * fit.objective)
 
     asked = []
+    monkeypatch.setattr(several.bounds, "near", lambda fit: np.zeros(len(fit.hypothesis.ids), dtype=bool))
     monkeypatch.setattr(pairs, "beside", beside)
     monkeypatch.setattr(
         pairs, "followed", lambda forward, starts, least: asked.extend(starts) or map(one, map(_ids, asked))

@@ -8,6 +8,7 @@ import numpy as np
 from msgspec.structs import replace as changed
 
 from sonicvacuum.card import Card
+from sonicvacuum.effects.coating_thickness import EFFECT as LAYER
 from sonicvacuum.files import InputError
 from sonicvacuum.forward import virtual
 from sonicvacuum.gauges import Gauge
@@ -34,8 +35,6 @@ from sonicvacuum.simulation import Simulation, check_extent, set_up, simulate
 SAMPLES_PER_PULSE = 10
 # At rest before the impact, in durations of the longest pulse: baseline and noise are read there.
 REST = 2.0
-# The effect that makes a coating act as a layer.
-COATING = "coating-thickness"
 
 
 @dataclass(frozen=True)
@@ -168,7 +167,7 @@ def _layered(card: Card) -> Card:
     thick = card.bead.coating_m
     if thick is None:
         return card
-    return changed(card, effects={**card.effects, COATING: {"layer_thickness_um": thick * 1e6}})
+    return changed(card, effects={**card.effects, LAYER.id: {LAYER.parameters[0].name: thick * 1e6}})
 
 
 def _cut(card: Card) -> Card:
@@ -209,7 +208,7 @@ def measured(simulation: Simulation) -> ChainPrediction:
         beads=card.beads,
         bead_mass_g=card.bead.mass_kg * 1e3,
         striker_mass_g=card.striker.mass_kg * 1e3,
-        coating_um=card.effects.get(COATING, {}).get("layer_thickness_um"),
+        coating_um=card.effects.get(LAYER.id, {}).get(LAYER.parameters[0].name),
         striker_speed_m_s=float(simulation.speeds[0]),
         wave_speed_m_s=fast,
         speed_from=first,
