@@ -196,9 +196,7 @@ def test_publishing_replaces_the_summary_and_nothing_else(tmp_path):
     publish.publish(ledger, readme, reference)
     text = readme.read_text()
     assert text.startswith("before\n") and text.endswith("\nafter\n") and "stale" not in text
-    assert (
-        "Of 4 statements that need a simulation, the printed layer, with nothing fitted, reproduces 1" in text
-    )
+    assert "Of 4 statements 4 need a simulation: the printed layer, with nothing fitted, reproduces 1" in text
     assert reference.read_bytes() == ledger.read_bytes()
     publish.publish(ledger, readme, reference)
     assert readme.read_text() == text
