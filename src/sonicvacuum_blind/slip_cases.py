@@ -19,7 +19,7 @@ from sonicvacuum_blind.hide import TOLERANCE, Laboratory, Spec, keep, laboratory
 from sonicvacuum_blind.plan import Plan
 from sonicvacuum_blind.prediction import predict
 from sonicvacuum_blind.record import as_record
-from sonicvacuum_blind.slips import CLOCK, SLIPS, TOO_MUCH, Bench, Place, Slip, applies
+from sonicvacuum_blind.slips import ALONE, CLOCK, SLIPS, TOO_MUCH, Bench, Place, Slip, applies
 from sonicvacuum_blind.systematics import Smooth
 
 SEED = 20064
@@ -35,6 +35,8 @@ SETUPS = (
 D_PRIME = 30.0
 # Beside systematic errors: a seed of its own, drawn after commit 5c5e349; effects that stand out of them.
 SMOOTH_SEED, SMOOTH_D_PRIME = 55_302_817, 100.0
+# Of one run alone: drawn after commit 85a6330, which searched them.
+ALONE_SEEDS = (22_852_428, 58_816_441, 55_341_511)
 
 
 @dataclass(frozen=True)
@@ -47,6 +49,7 @@ class SlipCase:
         setup: place in `SETUPS`.
         effect: hidden, "" for none.
         size: of the systematic error, as a share of the peak; 0 for none.
+        alone: seed of the list of slips of one run alone; 0 for another list.
     """
 
     id: str
@@ -54,11 +57,12 @@ class SlipCase:
     setup: int
     effect: str
     size: float = 0.0
+    alone: int = 0
 
     @property
     def seed(self) -> int:
         """Of the list that it is from."""
-        return SMOOTH_SEED if self.size else SEED
+        return self.alone or (SMOOTH_SEED if self.size else SEED)
 
     @property
     def spec(self) -> Spec:
@@ -73,10 +77,19 @@ def cases(smooth: bool = False) -> list[SlipCase]:
     """All cases, or those `smooth`, beside systematic errors of one size after the other; the order tells
     nothing.
     """
-    rows = [(s, k, e) for k, (_, name) in enumerate(SETUPS) for e in ("", name) for s in SLIPS]
+    usual = [s for s in SLIPS if s not in ALONE]
+    rows = [(s, k, e) for k, (_, name) in enumerate(SETUPS) for e in ("", name) for s in usual]
     seed, sizes = (SMOOTH_SEED, SIZES) if smooth else (SEED, (0.0,))
     order = np.random.default_rng(np.random.SeedSequence(seed)).permutation(len(rows))
     return [SlipCase(f"slips-{n:04d}", *rows[i], sizes[n % len(sizes)]) for n, i in enumerate(order.tolist())]
+
+
+def alone() -> list[SlipCase]:
+    """Cases of one run that is triggered or struck otherwise than the others, each list of its own seed."""
+    rows = [(s, k, e) for k, (_, name) in enumerate(SETUPS) for e in ("", name) for s in ALONE]
+    every = [(*row, 0.0, seed) for seed in ALONE_SEEDS for row in rows]
+    order = np.random.default_rng(np.random.SeedSequence(ALONE_SEEDS[0])).permutation(len(every))
+    return [SlipCase(f"slips-{n:04d}", *every[i]) for n, i in enumerate(order.tolist())]
 
 
 @lru_cache(maxsize=len(SETUPS) * 2)

@@ -5,6 +5,7 @@ written down (`written`). Each is made with and without a hidden effect, so that
 an effect or nothing can be counted. Sizes are those of the bench: a few percent of a scale, one bead, cables.
 """
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
@@ -17,6 +18,8 @@ from sonicvacuum_blind.plan import Plan
 
 # Ratio by which one run's speed, or the gain of all gauges, is off; and the recorder's time.
 TOO_MUCH, CLOCK = 1.125, 1.02
+# The same of a run that is far off; and by how many pulses a run's trigger may be.
+FAR, LATE = (0.1, 0.5, 2.0, 10.0), (0.2, 2.0)
 
 
 @dataclass(frozen=True)
@@ -188,6 +191,27 @@ def _run_off(bench: Bench):
     return replace(bench.record, block=block), Place(run=run)
 
 
+def _far_off(bench: Bench):
+    """Struck at a tenth, half, twice or ten times what is written."""
+    (run,) = bench.drawn(bench.runs)
+    factor = float(bench.random.choice(FAR))
+    blocks = [_struck(r, 1.0 / factor) if r.id == run else r for r in bench.record.block.runs]
+    block = msgspec.structs.replace(bench.record.block, runs=blocks)
+    return replace(bench.record, block=block), Place(run=run)
+
+
+def _late(bench: Bench):
+    """Triggered a fifth of a pulse to two pulses early or late, in whole samples."""
+    (run,) = bench.drawn(bench.runs)
+    signals = dict(bench.record.signals)
+    own = signals[run]
+    pulses = math.exp(bench.random.uniform(*np.log(LATE))) * bench.random.choice([-1.0, 1.0])
+    samples = round(float(pulses) * bench.pulse_us / (own.interval_s * 1e6)) or 1
+    shift = samples * own.interval_s * 1e6
+    signals[run] = Signals(np.round(own.time_us + shift, 9), own.readings)
+    return replace(bench.record, signals=signals), Place(run=run)
+
+
 def _struck(run, ratio):
     speed = float(f"{run.striker.speed_m_s * ratio:.4g}")
     return msgspec.structs.replace(run, striker=msgspec.structs.replace(run.striker, speed_m_s=speed))
@@ -291,7 +315,7 @@ def _of_bodies(fault, key, percent, effects=()):
 
 _STRIKER = ("striker-error",)
 # Slips that need a second run beside.
-_OF_RUNS = ("runs-swapped", "run-off", "run-without-impact")
+_OF_RUNS = ("runs-swapped", "run-off", "run-without-impact", "run-far-off", "run-late")
 
 SLIPS: dict[str, Slip] = {
     s.id: s
@@ -323,8 +347,12 @@ SLIPS: dict[str, Slip] = {
         _gauge("drift", _drifting),
         Slip("clock", ("clock",), written=_clock),
         Slip("time-zero", ("time-zero",), written=_triggered),
+        Slip("run-far-off", ("run-off",), written=_far_off),
+        Slip("run-late", ("time-zero",), written=_late),
     )
 }
+# Slips of a list of their own: of one run alone.
+ALONE = ("run-far-off", "run-late")
 
 
 def applies(slip: Slip, plan: Plan, runs: int) -> bool:

@@ -12,7 +12,7 @@ from sonicvacuum_blind import slip_cases, slip_score
 from sonicvacuum_blind.design import Design
 from sonicvacuum_blind.plan import Gauge, Plan, Solid
 from sonicvacuum_blind.record import as_record
-from sonicvacuum_blind.slips import SLIPS, Bench, applies
+from sonicvacuum_blind.slips import ALONE, FAR, SLIPS, Bench, applies
 
 NO_VERDICT = {"faults": [], "named": [], "probabilities": {"none": 1.0}, "timing_s": {"total": 1.0}}
 TRUTH = {"id": "x", "setup": 0, "slip": "gauge-dead", "run": None, "sensor": ["g2"], "effects": ["tsuji"]}
@@ -65,8 +65,30 @@ def test_every_slip_is_named_by_the_vocabulary():
 def test_every_slip_is_made_in_every_set_up_with_an_effect_and_without():
     every = slip_cases.cases()
     made = {(c.slip, c.setup, bool(c.effect)) for c in every}
-    assert len(every) == len({c.id for c in every}) == len(made) == 2 * len(slip_cases.SETUPS) * len(SLIPS)
+    count = 2 * len(slip_cases.SETUPS) * len(set(SLIPS) - set(ALONE))
+    assert len(every) == len({c.id for c in every}) == len(made) == count
     assert every == slip_cases.cases()
+
+
+def test_slips_of_one_run_alone_stand_in_a_list_of_their_own():
+    every = slip_cases.alone()
+    made = {(c.slip, c.setup, bool(c.effect), c.spec.seed) for c in every}
+    seeds = slip_cases.ALONE_SEEDS
+    assert len(every) == len(made) == 2 * len(slip_cases.SETUPS) * len(ALONE) * len(seeds)
+    assert {c.spec.seed for c in every} == set(seeds)
+    assert set(seeds).isdisjoint(c.spec.seed for c in slip_cases.cases())
+
+
+def test_a_run_alone_is_shifted_or_struck_as_said(sound):
+    late, place = slipped(sound, "run-late")
+    shifts = {k: s.time_us[0] - sound.signals[k].time_us[0] for k, s in late.signals.items()}
+    assert {k for k, shift in shifts.items() if shift} == {place.run}
+    assert 0.2 * 60.0 - 0.5 <= abs(shifts[place.run]) <= 2.0 * 60.0 + 0.5  # in whole samples
+    far, place = slipped(sound, "run-far-off")
+    before, after = (
+        next(r.striker.speed_m_s for r in x.block.runs if r.id == place.run) for x in (sound, far)
+    )
+    assert before / after in [pytest.approx(f, rel=1e-3) for f in FAR]  # four digits of the speed
 
 
 def test_beside_systematic_errors_each_size_comes_in_turn_in_a_list_of_its_own():

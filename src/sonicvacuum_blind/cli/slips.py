@@ -24,13 +24,18 @@ from sonicvacuum_blind.cli.options import (
 @verb("sonicvacuum blind slips --records slips/records --truth slips/truth --batch 0/8")
 @made_into
 @click.option("--smooth", is_flag=True, help="Those of a list of their own, beside smooth systematic errors.")
-def slips(batch, records_folder, truth_folder, smooth):
+@click.option(
+    "--alone", is_flag=True, help="Those of one run alone: late, or struck far from what is stated."
+)
+def slips(batch, records_folder, truth_folder, smooth, alone):
     """Make records with slips of the laboratory, with and without a hidden effect."""
     from sonicvacuum.records.guard import check_collection
     from sonicvacuum_blind import slip_cases
     from sonicvacuum_blind.study import batch as part
 
-    chosen = part(slip_cases.cases(smooth), *batch_of(batch))
+    if smooth and alone:
+        raise click.UsageError("--smooth and --alone are lists of their own: give one of them")
+    chosen = part(slip_cases.alone() if alone else slip_cases.cases(smooth), *batch_of(batch))
     check_truth(truth_folder, records_folder)
     check_collection(records_folder, [c.id for c in chosen], lambda name: Path(truth_folder) / name / TRUTH)
     for case in filter(slip_cases.possible, chosen):
