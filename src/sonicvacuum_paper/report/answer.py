@@ -6,7 +6,7 @@ from sonicvacuum.report.tables import number
 from sonicvacuum.report.words import joined
 from sonicvacuum_paper.ladder import members
 
-COUNTS = {1: "one", 2: "two", 3: "three", 4: "four"}
+COUNTS = {1: "one", 2: "two", 3: "three", 4: "four", 5: "five"}
 
 
 def sentences(ledger: pd.DataFrame, metrics: pd.DataFrame, by_law: dict | None = None) -> list[str]:
