@@ -49,14 +49,22 @@ class Judge:
     def _forward(self, record):
         return Forward(self.make(self._bench(record)), self.threads)
 
-    def _residuals(self, record, afresh=False, near=False):
+    def _nuisances(self, slip: Slip) -> np.ndarray:
+        """(q,) nuisances of the model without what has stood in for a slip that is far off."""
+        nu, forward = self.model.fit.nu.copy(), self.model.forward
+        if slip.instead and slip.start:
+            run = [r.id for r in forward.experiment.runs].index(slip.run)
+            nu[getattr(forward.layout, slip.instead)(run)] = 0.0
+        return nu
+
+    def _residuals(self, record, slip=None, near=False):
         """Residuals and slopes of every run for a changed record, and its Σ log σ².
 
-        At the model's parameters; with `afresh` at nuisances of zero as well, (starts, runs) then. Where the
-        record is `near` the one as it is, slopes that take a simulation each are those of that one.
+        At the model's parameters; with a `slip` at its `_nuisances` and at none, (starts, runs) then. Where
+        the record is `near` the one as it is, slopes that take a simulation each are those of that one.
         """
         forward, one = self._forward(record), self.model.fit
-        starts = np.stack([one.nu, 0.0 * one.nu][: 1 + afresh])
+        starts = one.nu[None] if slip is None else np.stack([self._nuisances(slip), 0.0 * one.nu])
         many_u, held = np.repeat(one.u[None], len(starts), axis=0), self._columns if near else None
         # Nuisances take up nearly all of what a slip of time or speed changes: the slopes that all sizes are
         # held against must not err by as much as is left.
@@ -80,7 +88,7 @@ class Judge:
             after, size = self._with_size(own, self._slope(slip), slip)
             after += volume
         else:
-            changed, own_volume = self._residuals(slip.change(record, size), afresh=True)
+            changed, own_volume = self._residuals(slip.change(record, size), slip)
             after = min(self._least(*one) for one in changed)
             after += volume if slip.continuous else own_volume
         gain = self._least(*own) + volume - after
@@ -242,7 +250,8 @@ class Judge:
         size = float(np.clip(size, slip.start - far, slip.start + far)) if slip.continuous else 0.0
         bench, forward = self._put_right(slip, size)
         one = self.model.fit
-        nu = ([start.nu] if start else []) + ([one.nu, 0.0 * one.nu] if afresh or not start else [])
+        anew = [self._nuisances(slip), 0.0 * one.nu] if afresh or not start else []
+        nu = ([start.nu] if start else []) + anew
         one = start or one
         # What has no size is right or wrong: where it is no better than the record as it is, by how much does
         # not matter.

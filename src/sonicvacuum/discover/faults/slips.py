@@ -39,6 +39,7 @@ class Slip:
         value: size → value that is said.
         occam: log of the prior's price for what the change itself took from the data.
         start: size from which the search starts.
+        instead: kind of the run's nuisance that has followed the slip so far, "" where none is like it.
         lost: (samples lost before, record, size) → those that are lost in the record put right.
     """
 
@@ -52,6 +53,7 @@ class Slip:
     value: Callable[[float], float | None] = math.exp
     occam: float = 0.0
     start: float = 0.0
+    instead: str = ""
     lost: Callable[[changes.Lost, Record, float], changes.Lost] = lambda lost, _record, _size: lost
 
     @property
@@ -130,7 +132,7 @@ def _sizes(record):
     runs = [r.id for r in record.block.runs]
     if len(runs) > 1:
         for run in runs:
-            yield one("run-off", partial(_one_speed, run), len(runs), run=run)
+            yield one("run-off", partial(_one_speed, run), len(runs), run=run, instead="speed")
     if record.signals:
         yield one("gain-common", changes.gains)
         yield one("clock", changes.clock, step=1e-3)

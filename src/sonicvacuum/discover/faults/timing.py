@@ -87,6 +87,7 @@ def late_runs(record: Record, model: Model, predicted) -> list[Slip]:
             step=0.05,
             value=float,
             start=start,
+            instead="trigger",
         )
         found.append(slip)
     return found
