@@ -57,6 +57,10 @@ from sonicvacuum.records import Record
 LIKELIER = 0.5
 
 
+# Share of what another slip has to explain that suffices for a run that is far off.
+ALONE = 0.4
+
+
 @dataclass(frozen=True)
 class Outcome:
     """What was found, slips and effects.
@@ -189,8 +193,10 @@ class Search(Ranking):
         """The investigation of the record with one slip more put right, where that explains it better."""
         left, size = unexplained(found), float(found.sizes.sum())
         if left:
-            # What is left is more than a slip that explains little of it.
-            rivals = [j for j in ranked if j.gain > most_of(found.null.objective, size)]
+            # What is left is more than a slip that explains little of it. A run that is far off is not to be
+            # mistaken for anything else, and may leave as much as an effect makes.
+            most = most_of(found.null.objective, size)
+            rivals = [j for j in ranked if j.gain > (ALONE if j.slip.far else 1.0) * most]
             rivals += self._beside_the_best(found)
         else:
             rivals = [*ranked, *self._in_place(found)]

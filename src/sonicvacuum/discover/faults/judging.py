@@ -52,7 +52,7 @@ class Judge:
     def _nuisances(self, slip: Slip) -> np.ndarray:
         """(q,) nuisances of the model without what has stood in for a slip that is far off."""
         nu, forward = self.model.fit.nu.copy(), self.model.forward
-        if slip.instead and slip.start:
+        if slip.far:
             run = [r.id for r in forward.experiment.runs].index(slip.run)
             nu[getattr(forward.layout, slip.instead)(run)] = 0.0
         return nu

@@ -91,7 +91,7 @@ class Ranking:
         looked.sort(key=lambda j: -j.log_odds)
         worth = [j for j in looked if j.gain > policy.LEAST_GAIN][: policy.FOLLOWED]
         # Where a run is far off, its size is known roughly at first: too roughly for a look.
-        worth += [j for j in looked if j.slip.instead and j.slip.start and j not in worth]
+        worth += [j for j in looked if j.slip.far and j not in worth]
         # Slopes know nothing of a pulse that comes a bead earlier, or with another run's speed.
         apart = [j for j in looked if not (j.slip.continuous or j in worth or out_of_reach(j, model))]
         if far:

@@ -61,6 +61,11 @@ class Slip:
         """Whether it has a size."""
         return self.width > 0.0
 
+    @property
+    def far(self) -> bool:
+        """Whether one run is so far off that the model's nuisances have followed it, or cannot."""
+        return bool(self.instead and self.start)
+
     def finding(self, size: float, probability: float = 1.0) -> Finding:
         """What is said of it."""
         return Finding(self.fault, self.run, self.sensor, self.value(size), probability)

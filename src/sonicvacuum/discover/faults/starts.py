@@ -1,5 +1,6 @@
 """Where the search for the size of a slip starts: slopes at the record as it is do not lead to a far one."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import replace
 
@@ -13,6 +14,8 @@ from sonicvacuum.records import Record
 
 # Run → gauge → (T,) predicted readings.
 Predicted = Mapping[str, Mapping[str, np.ndarray]]
+# A run's speed is not off by more, in its logarithm.
+FARTHEST = math.log(30.0)
 # Sizes below so many prior widths are found from none.
 NEAR = {"gauge-delayed": 1.0, "run-off": 2.0}
 
@@ -44,9 +47,9 @@ def _speed(run, record, predicted, model):
     own, others = higher.pop(run, None), [v for v in higher.values() if v is not None]
     if own is None:
         return led
-    # What all runs show is no slip of one.
+    # What all runs show is no slip of one; nor do peaks tell where the model has none in the record.
     seen = STRIKER_POWER * (own - (float(np.median(others)) if len(others) > 1 else 0.0))
-    return max(led, seen, key=abs)
+    return max(led, seen if abs(seen) < FARTHEST else 0.0, key=abs)
 
 
 def _higher(record, run, predicted):
