@@ -15,77 +15,12 @@ import numpy as np
 
 from sonicvacuum.records import Record, Signals
 from sonicvacuum_blind.plan import Plan
+from sonicvacuum_blind.slip_bench import Bench, Place, Trace, of_gauge, sensors_of, times_of, traces_of
 
 # Ratio by which one run's speed, or the gain of all gauges, is off; and the recorder's time.
 TOO_MUCH, CLOCK = 1.125, 1.02
 # The same of a run that is far off; and by how many pulses a run's trigger may be.
 FAR, LATE = (0.1, 0.5, 2.0, 10.0), (0.2, 2.0)
-
-
-@dataclass(frozen=True)
-class Bench:
-    """A record as it lies on the bench, with what making a slip needs.
-
-    Attributes:
-        record: the sound one.
-        pulse_us: length of a pulse.
-        random: source of all choices.
-    """
-
-    record: Record
-    pulse_us: float
-    random: np.random.Generator
-
-    @property
-    def gauges(self) -> list[str]:
-        """Ids of all gauges."""
-        return [s.id for s in self.record.block.sensors]
-
-    @property
-    def runs(self) -> list[str]:
-        """Ids of all runs."""
-        return [r.id for r in self.record.block.runs]
-
-    def drawn(self, of: list[str], count: int = 1) -> list[str]:
-        """So many of a list."""
-        return [str(x) for x in self.random.choice(of, count, replace=False)]
-
-    def sigma(self, gauge: str) -> float:
-        """Noise of one sample of a gauge in N."""
-        return next(s.sigma_N for s in self.record.block.sensors if s.id == gauge)
-
-
-@dataclass(frozen=True)
-class Place:
-    """Where a slip was made: run and gauges, None for all of them."""
-
-    run: str | None = None
-    sensor: tuple[str, ...] | None = None
-
-
-Trace = Callable[[np.ndarray], np.ndarray]
-
-
-def _traces(record: Record, change: Callable[[str, str, np.ndarray], np.ndarray]) -> Record:
-    """The record with each trace passed through (run, gauge, trace) → trace."""
-    signals = {
-        run: Signals(s.time_us, {g: change(run, g, v) for g, v in s.readings.items()})
-        for run, s in record.signals.items()
-    }
-    return replace(record, signals=signals)
-
-
-def _of_gauge(record: Record, gauge: str, change: Trace) -> Record:
-    return _traces(record, lambda _, g, v: change(v) if g == gauge else v)
-
-
-def _times(record: Record, change: Callable[[Signals], np.ndarray]) -> Record:
-    return replace(record, signals={k: Signals(change(s), s.readings) for k, s in record.signals.items()})
-
-
-def _sensors(record: Record, change: Callable) -> Record:
-    block = msgspec.structs.replace(record.block, sensors=[change(s) for s in record.block.sensors])
-    return replace(record, block=block)
 
 
 def _swapped(bench: Bench):
@@ -101,7 +36,7 @@ def _swapped(bench: Bench):
 def _at_one_gauge(change: Callable[[Bench, str], Trace], bench: Bench):
     """All traces of one gauge changed."""
     (gauge,) = bench.drawn(bench.gauges)
-    return _of_gauge(bench.record, gauge, change(bench, gauge)), Place(sensor=(gauge,))
+    return of_gauge(bench.record, gauge, change(bench, gauge)), Place(sensor=(gauge,))
 
 
 def _inverted(_bench, _gauge):
@@ -154,7 +89,7 @@ def _hum(bench: Bench):
         angle = 2.0 * np.pi * (50e-6 * record.signals[run].time_us + phases[run])
         return trace + 0.05 * np.abs(trace).max() * np.sin(angle)
 
-    return _traces(record, humming), Place()
+    return traces_of(record, humming), Place()
 
 
 def _spikes(bench: Bench):
@@ -167,12 +102,12 @@ def _spikes(bench: Bench):
         size = np.abs(trace).max() * bench.random.uniform(0.5, 1.5, len(trace))
         return np.where(at, trace + size * bench.random.choice([-1.0, 1.0], len(trace)), trace)
 
-    return _traces(bench.record, spiked), Place()
+    return traces_of(bench.record, spiked), Place()
 
 
 def _noise_stated(factor: float, bench: Bench):
     """True noise over the stated one is `factor`."""
-    changed = _sensors(bench.record, lambda s: msgspec.structs.replace(s, sigma_N=s.sigma_N / factor))
+    changed = sensors_of(bench.record, lambda s: msgspec.structs.replace(s, sigma_N=s.sigma_N / factor))
     return changed, Place()
 
 
@@ -224,12 +159,12 @@ def _without_impact(bench: Bench):
         noise = bench.sigma(gauge) * bench.random.standard_normal(len(trace))
         return noise if run == blank else trace
 
-    return _traces(bench.record, silent), Place(run=blank)
+    return traces_of(bench.record, silent), Place(run=blank)
 
 
 def _clock(bench: Bench):
     """Two per cent slow: intervals are written too long."""
-    return _times(bench.record, lambda s: np.round(CLOCK * s.time_us, 9)), Place()
+    return times_of(bench.record, lambda s: np.round(CLOCK * s.time_us, 9)), Place()
 
 
 def _triggered(bench: Bench):
@@ -241,7 +176,7 @@ def _triggered(bench: Bench):
         arrival = int(np.argmax(trace > 0.1 * trace.max()))
         return np.round(signals.time_us - signals.time_us[arrival], 9)
 
-    return _times(bench.record, counted), Place()
+    return times_of(bench.record, counted), Place()
 
 
 def _volts(bench: Bench):
@@ -251,14 +186,14 @@ def _volts(bench: Bench):
     def in_volts(sensor):
         return msgspec.structs.replace(sensor, sigma_N=0.08 * sensor.sigma_N)
 
-    changed = _sensors(bench.record, lambda s: in_volts(s) if s.id == gauge else s)
-    return _of_gauge(changed, gauge, lambda trace: 0.08 * trace), Place(sensor=(gauge,))
+    changed = sensors_of(bench.record, lambda s: in_volts(s) if s.id == gauge else s)
+    return of_gauge(changed, gauge, lambda trace: 0.08 * trace), Place(sensor=(gauge,))
 
 
 def _all_louder(bench: Bench):
     """All gauges calibrated an eighth too high, their noise with them."""
-    changed = _sensors(bench.record, lambda s: msgspec.structs.replace(s, sigma_N=TOO_MUCH * s.sigma_N))
-    return _traces(changed, lambda _run, _gauge, trace: TOO_MUCH * trace), Place()
+    changed = sensors_of(bench.record, lambda s: msgspec.structs.replace(s, sigma_N=TOO_MUCH * s.sigma_N))
+    return traces_of(changed, lambda _run, _gauge, trace: TOO_MUCH * trace), Place()
 
 
 def _as_is(bench: Bench):

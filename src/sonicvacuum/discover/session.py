@@ -108,9 +108,8 @@ def discover(
     for one in ready if limits else ():
         check_extent(one)
     outcome = competition.discover(ready, catalogue, threads or available_threads())
-    found = outcome.found
+    found, forward = outcome.found, outcome.found.forward
     clock.mark("search")
-    forward = found.forward
     stages.begin("places and limits")
     places = locate.locate(forward, found.null)
     found, free = unnamed.with_law(found)
@@ -150,8 +149,7 @@ def discover(
         next_experiment=proposal,
         reasons=[
             *found.reasons,
-            *_taken_as_stated(found),
-            *(line for one in records for line in copies(one)),
+            *_taken_as_stated(found, records),
             *(law.reasons(told) if free else ()),
             *verdict.corrections(outcome.findings),
         ],
@@ -172,15 +170,15 @@ def discover(
     return Result(outcome.record, records, said, found, places, after, limits, result, free, tuple(drawn))
 
 
-def _taken_as_stated(found: Investigation) -> list[str]:
+def _taken_as_stated(found: Investigation, records: tuple[Record, ...]) -> list[str]:
     """What was taken as exact, or as known so well, where something is named: a tolerance might explain it
-    instead. And what the nominal model would have of the record otherwise than stated.
+    instead. And what the nominal model would have of the record otherwise than stated, and files read twice.
     """
     e, said = found.forward.experiment, []
     if found.named and e.record is not None:
         said = [exact(e.record, e.shared), assumed(e.record, (b.chain for b in e.batches))]
     moved = strained.told(found.forward, found.null, found.final) if verdict.named_effects(found) else []
-    return [*filter(None, said), *moved]
+    return [*filter(None, said), *moved, *(line for one in records for line in copies(one))]
 
 
 def _doubts(found: Investigation, record: Record) -> list[str]:

@@ -324,10 +324,8 @@ class Turns:
 
         What is stated of a set holds only beside all of these: laws of loss often stand in for each other.
         """
-        gained, starts = self.null.objective - fit.objective, {}
-        fewer = self._each_less(fit, range(len(fit.hypothesis.components)))
-        ends = bounds.near(fit)
-        for k, less in enumerate(fewer):
+        gained, starts, ends = self.null.objective - fit.objective, {}, bounds.near(fit)
+        for k, less in enumerate(self._each_less(fit, range(len(fit.hypothesis.components)))):
             left = self.null.objective - less.objective
             promised = pairs.beside(self.forward, self.null, less, self.setup)
             if any(ends[fit.hypothesis.columns[k]]):
