@@ -10,12 +10,12 @@ from made_slips import altered
 
 from sonicvacuum.discover.faults import traces
 from sonicvacuum.discover.faults.examine import examine
-from sonicvacuum.discover.faults.expected import predicted
 from sonicvacuum.discover.fit.goodness import goodness
 from sonicvacuum.discover.fit.refit import fit
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Hypothesis
 from sonicvacuum.discover.model.noise import noise
+from sonicvacuum.discover.model.nominal import predicted
 from sonicvacuum.discover.model.problem import together
 
 SEED = np.random.SeedSequence(31)

@@ -10,12 +10,12 @@ from made_slips import altered
 
 from sonicvacuum.blas import one_thread
 from sonicvacuum.discover.faults.examine import examine
-from sonicvacuum.discover.faults.expected import predicted
 from sonicvacuum.discover.faults.found import Finding
 from sonicvacuum.discover.faults.retract import retracted
 from sonicvacuum.discover.fit.refit import fit
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, variants
+from sonicvacuum.discover.model.nominal import predicted
 from sonicvacuum.discover.model.problem import together
 from sonicvacuum.discover.search import singles
 from sonicvacuum.effects import effect

@@ -12,9 +12,9 @@ from made_slips import altered
 
 from sonicvacuum.discover.faults import traces
 from sonicvacuum.discover.faults.examine import examine
-from sonicvacuum.discover.faults.expected import predicted
 from sonicvacuum.discover.model.masks import cut, spikes
 from sonicvacuum.discover.model.noise import noise
+from sonicvacuum.discover.model.nominal import predicted
 from sonicvacuum.discover.model.problem import together
 from sonicvacuum.report.bench import slip
 

@@ -6,7 +6,8 @@ from made_records import SIGMA, made
 from made_slips import altered
 
 from sonicvacuum.discover.faults.examine import examine
-from sonicvacuum.discover.faults.expected import EXPECTED, predicted
+from sonicvacuum.discover.faults.expected import EXPECTED
+from sonicvacuum.discover.model.nominal import predicted
 from sonicvacuum.discover.model.problem import together
 
 SEED = np.random.SeedSequence(31)

@@ -15,7 +15,6 @@ import numpy as np
 
 from sonicvacuum.discover.faults import policy
 from sonicvacuum.discover.faults.examine import examine, with_noise_of
-from sonicvacuum.discover.faults.expected import predicted
 from sonicvacuum.discover.faults.found import Bench, Finding
 from sonicvacuum.discover.faults.judged import (
     Judged,
@@ -46,6 +45,7 @@ from sonicvacuum.discover.faults.weights import (
 from sonicvacuum.discover.fit import evidence
 from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.judge import explanations
+from sonicvacuum.discover.model.nominal import predicted
 from sonicvacuum.discover.model.problem import together
 from sonicvacuum.discover.policy import SAME_MINIMUM
 from sonicvacuum.discover.rounds import Investigation, investigate

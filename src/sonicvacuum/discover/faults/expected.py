@@ -1,13 +1,8 @@
 """Traces beside the nominal model's: is there a pulse at all, and is it the right way up?"""
 
-from dataclasses import replace
-
 import numpy as np
 
 from sonicvacuum.discover.correlation import correlated
-from sonicvacuum.discover.model.experiment import Experiment
-from sonicvacuum.discover.model.forward import Forward
-from sonicvacuum.discover.model.hypothesis import Hypothesis
 from sonicvacuum.discover.model.noise import QUIET_PEAK, QUIET_SHARE, flicker, rounding
 
 # A pulse is expected where the model's reading is this many standard deviations of the noise high ...
@@ -129,19 +124,3 @@ def still_to_come(model: np.ndarray, time: np.ndarray, delays: list[float]) -> b
         return False
     rises = float(time[int((np.abs(model) > 0.5 * np.abs(model).max()).argmax())])
     return max(delays) * rises > time[-1] - (1.0 - WITHIN) * (time[-1] - time[0])
-
-
-def predicted(experiment: Experiment, threads: int = 1) -> dict[str, dict[str, np.ndarray]]:
-    """Run → gauge → (T,) reading of the nominal model at the recorded numbers, for the gauges of each run."""
-    bare = tuple(replace(r, present=None, scalars=()) for r in experiment.runs)
-    forward = Forward(replace(experiment, runs=bare, correlation=np.zeros(len(experiment.gauges))), threads)
-    found = forward.sampled(Hypothesis(), np.zeros((1, 0)), np.zeros((1, forward.layout.size)))
-    result = {}
-    for run, value in zip(experiment.runs, found, strict=True):
-        rows = value[0].reshape(len(experiment.gauges), -1) * experiment.sigma[:, None]
-        result[run.id] = {
-            g.id: row
-            for s, (g, row) in enumerate(zip(experiment.gauges, rows, strict=True))
-            if run.has_signals and (run.present is None or run.present[s].any())
-        }
-    return {k: v for k, v in result.items() if v}

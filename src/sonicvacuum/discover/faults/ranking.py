@@ -6,7 +6,6 @@ to their size (`judging`), and the likeliest come first.
 
 from sonicvacuum import stages
 from sonicvacuum.discover.faults import policy
-from sonicvacuum.discover.faults.expected import predicted
 from sonicvacuum.discover.faults.found import Bench, Finding
 from sonicvacuum.discover.faults.judged import (
     Judged,
@@ -29,6 +28,7 @@ from sonicvacuum.discover.fit.refit import polish
 from sonicvacuum.discover.fit.wide import nominal
 from sonicvacuum.discover.model.experiment import Experiment
 from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.model.nominal import predicted
 from sonicvacuum.discover.model.problem import together
 from sonicvacuum.discover.rounds import Investigation
 from sonicvacuum.effects import Catalogue

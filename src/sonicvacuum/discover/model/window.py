@@ -11,6 +11,7 @@ from dataclasses import replace
 import numpy as np
 from msgspec import structs
 
+from sonicvacuum.discover.model import horizon
 from sonicvacuum.physics.scales import passage_of
 from sonicvacuum.records import Record, Signals
 from sonicvacuum.records.assemble import chain_of
@@ -28,7 +29,16 @@ ROOM, LONGEST, AFTER = 1.2, 150, 10
 
 
 def fitted(record: Record) -> tuple[Record, tuple[str, ...]]:
-    """The record with long traces cut and thinned, and what was done, one line each."""
+    """The record with long traces cut and thinned, and cut where nothing can be foretold; what was done, one
+    line each.
+    """
+    passing, notes = _passing(record)
+    told, more = horizon.predictable(passing)
+    return told, notes + more
+
+
+def _passing(record):
+    """The record with long traces as the passage needs them, and what was done."""
     long = [run for run in record.runs if run.signals and run.signals.samples > ENOUGH]
     if not long or not record.beads:
         return record, ()
