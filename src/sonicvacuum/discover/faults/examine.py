@@ -12,7 +12,7 @@ from sonicvacuum.discover.faults.found import Bench, Finding
 from sonicvacuum.discover.faults.pulses import pulses
 from sonicvacuum.discover.faults.table import FAULTS
 from sonicvacuum.discover.model.masks import cut, spikes
-from sonicvacuum.discover.model.noise import flicker, loudness, rounding
+from sonicvacuum.discover.model.noise import audible, loudness, rounding, stepped
 from sonicvacuum.records import Record, Signals
 
 
@@ -131,7 +131,7 @@ class _Look:
     def _sample_slips(self, run, gauge):
         """Spikes and clipping: samples that are masked."""
         trace = self.readings[run][gauge.id]
-        noise = max(gauge.sigma, flicker(trace))
+        noise = audible(trace, gauge.sigma)
         held = cut(trace, noise)
         at = spikes(trace, noise) & ~held
         if at.any():
@@ -165,8 +165,10 @@ class _Look:
             trace = trace - traces.line(stretch, np.arange(len(trace)))
             stretch = trace[: len(stretch)]
         self.stretches[gauge.id][run.id] = stretch
-        self.rests[gauge.id][run.id] = traces.rest(stretch, gauge.sigma)
-        self.levels[gauge.id][run.id] = len(stretch), traces.level(stretch, gauge.sigma)
+        # All readings on one step of the recorder are off by as much.
+        steps = rounding(trace) if stepped(trace, audible(trace, gauge.sigma)) else 0.0
+        self.rests[gauge.id][run.id] = traces.rest(stretch, gauge.sigma, steps)
+        self.levels[gauge.id][run.id] = len(stretch), traces.level(stretch, gauge.sigma, steps)
         self.readings[run.id][gauge.id] = trace
 
     def _unsure(self, gauge, what, error):

@@ -150,25 +150,25 @@ def drift(stretch: np.ndarray, sigma: float) -> tuple[float, float] | None:
     return (slope, error) if abs(slope) > SURE * error else None
 
 
-def rest(stretch: np.ndarray, sigma: float) -> tuple[float, float]:
-    """Mean of a quiet stretch and its standard error."""
+def rest(stretch: np.ndarray, sigma: float, common: float = 0.0) -> tuple[float, float]:
+    """Mean of a quiet stretch and its standard error, `common` the error that all its samples share."""
     if len(stretch) < FEWEST:
         return 0.0, math.inf
-    return float(stretch.mean()), _error_of_mean(stretch, sigma)
+    return float(stretch.mean()), _error_of_mean(stretch, sigma, common)
 
 
-def _error_of_mean(stretch, sigma):
+def _error_of_mean(stretch, sigma, common):
     error = max(sigma, float(stretch.std())) / math.sqrt(len(stretch))
-    return error * coloured.wider(stretch - line(stretch))
+    return math.hypot(error * coloured.wider(stretch - line(stretch)), common)
 
 
-def level(stretch: np.ndarray, sigma: float) -> tuple[float, float] | None:
-    """Mean of a quiet stretch and its standard error; None where it is too short, without noise, or does not
-    stand still: the foot of a slow pulse shows in the second half, a level in both.
+def level(stretch: np.ndarray, sigma: float, common: float = 0.0) -> tuple[float, float] | None:
+    """Mean of a quiet stretch and its standard error as in `rest`; None where it is too short, without noise,
+    or does not stand still: the foot of a slow pulse shows in the second half, a level in both.
     """
     if len(stretch) < _LEVEL_EACH or not max(sigma, float(np.ptp(stretch))) > 0.0:
         return None
-    mean, error = float(stretch.mean()), _error_of_mean(stretch, sigma)
+    mean, error = float(stretch.mean()), _error_of_mean(stretch, sigma, common)
     halves = [float(half.mean()) for half in np.array_split(stretch, 2)]
     return (mean, error) if max(abs(h - mean) for h in halves) < max(0.5 * abs(mean), 3.0 * error) else None
 

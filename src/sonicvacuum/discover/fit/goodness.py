@@ -17,7 +17,7 @@ from sonicvacuum.discover.fit import tails
 from sonicvacuum.discover.fit.discrepancy import width
 from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.model.forward import Forward
-from sonicvacuum.discover.model.noise import rounding
+from sonicvacuum.discover.model.noise import stepped
 
 LAGS = 20
 # Decay times of the bank, in widths of the pulse, and how often in one of them an oscillation may set in.
@@ -27,9 +27,6 @@ TOGETHER = (-1.0, 0.0, 1.0)
 # So many independent tests per sample is the bank of one trace, at most: by the largest value in simulated
 # noise it is 6 to 10, for 240 to 900 samples and pulses of 15 to 60.
 TRIALS = 10.0
-# Rounding errors of neighbours, σ of the noise beside them, are alike by exp(−4π²σ²/step²) at most: by a
-# hundredth at 0.35 steps, where rounding is this share of all noise. Of less noise they follow the pulse.
-STEPPED = 0.64
 # Sine and cosine of an oscillation are told apart where the determinant of their products is this share of
 # the largest possible.
 _APART = 0.2
@@ -81,11 +78,11 @@ def _tested(forward, fit):
     for run, s, r in left:
         data = forward.experiment.runs[run]
         own = r if data.present is None else r[data.present[s]]
-        stepped = _stepped(forward, run, s)
-        chi2, white = _chi2(own), 1.0 if stepped else _whiteness(own)
+        uneven = _stepped(forward, run, s)
+        chi2, white = _chi2(own), 1.0 if uneven else _whiteness(own)
         cells.append(Cell(data.id, forward.experiment.gauges[s].id, float(own @ own) / len(own), chi2, white))
         wide = width(_size(data, s))
-        ringing = 1.0 if stepped else _oscillation(r, wide)
+        ringing = 1.0 if uneven else _oscillation(r, wide)
         for name, p in zip(found, (chi2, white, _outliers(own), ringing), strict=True):
             found[name].append(p)
     total = sum(r @ r for *_, r in left) + _scalars(forward, fit)
@@ -112,11 +109,9 @@ def residuals(forward: Forward, fit: Fit) -> list[tuple[int, int, np.ndarray]]:
 
 
 def _stepped(forward, run, s):
-    """Whether the steps of a trace outweigh its noise: its rounding errors follow the pulse, and are no white
-    noise, as which the tests of whiteness and of oscillations take them.
-    """
+    """Whether rounding errors follow the pulse: tests of whiteness and oscillations take them for noise."""
     experiment = forward.experiment
-    return rounding(experiment.runs[run].readings[s]) > STEPPED * experiment.sigma[s]
+    return stepped(experiment.runs[run].readings[s], experiment.sigma[s])
 
 
 def _size(data, s):

@@ -1,7 +1,8 @@
 """Samples that must not be believed: spikes of the recorder, and readings cut off at the end of its range.
 
 Both are seen in the trace itself, before anything is simulated. A pulse is smooth over a few samples; a spike
-is not. What is masked contributes to no sum and no count (`RunData.present`).
+is not. Where the recorder's steps outweigh the noise, readings that rest on one of them count once. What is
+masked contributes to no sum and no count (`RunData.present`).
 """
 
 import numpy as np
@@ -24,6 +25,9 @@ FEWEST_CUT = 3
 # So many equal readings in a row at an extreme are no peak where noise exceeds a step of the recorder: two
 # neighbours are then equal with a chance of 0.4 at most, which makes 2e-4 of ten.
 FEWEST_FLAT = 10
+# Where the recorder's steps outweigh the noise, so many readings on one of them are one reading: medians of
+# so many samples tell those that rest there.
+FEWEST_RESTING, CALM = 3, 5
 # A cut hides a peak that overshoots it by more than so many steps of the recorder, or standard deviations; a
 # smooth peak of few steps does not.
 CUT_STEPS, CUT_SIGMAS = 5.0, 6.0
@@ -93,6 +97,24 @@ def _within(trace, far, sigma):
     found = np.flatnonzero((excess[2:-2] > 0.0) & (excess[2:-2] >= highest))
     rough = np.array([_rough_beside(far, k) for k in found])
     return 2 + found[far[found] > SPIKE_SIGMAS * _SPREAD * rough]
+
+
+def repeated(trace: np.ndarray) -> np.ndarray:
+    """(T,) whether each sample only repeats a reading: of those that rest on a step of the recorder the
+    middle one does not. Samples that noise lifts to the next step and back rest where their neighbours do.
+    """
+    found = np.zeros(len(trace), dtype=bool)
+    if len(trace) < FEWEST_WITH_SPIKES:
+        return found
+    calm = np.pad(trace, CALM // 2, mode="edge")
+    calm = np.median(np.lib.stride_tricks.sliding_window_view(calm, CALM), axis=1)
+    first = np.flatnonzero(np.diff(calm, prepend=np.nan) != 0.0)
+    for begin, end in zip(first, np.append(first[1:], len(trace)), strict=True):
+        if end - begin >= FEWEST_RESTING:
+            alike = begin + np.flatnonzero(trace[begin:end] == calm[begin])
+            found[begin:end] = True
+            found[alike[len(alike) // 2]] = False
+    return found
 
 
 def cut(trace: np.ndarray, sigma: float) -> np.ndarray:

@@ -26,6 +26,9 @@ _FEWEST, _LEAST = 40, 12
 _WEAK, _PART = 2.0, 20
 # Samples count as that much noisier than stated only from this factor on: flicker itself errs by a tenth.
 _NOISIER = 1.3
+# Rounding errors of neighbours, σ of the noise beside them, are alike by exp(−4π²σ²/step²) at most: by a
+# hundredth at 0.35 steps, where rounding is this share of all noise. Of less noise they follow the pulse.
+STEPPED = 0.64
 # Deviations from the stated white noise count from so many standard errors on.
 _SURE = 4.0
 # So many third differences of white noise are worth one independent sample: 1 + 2 (15² + 6² + 1)/20², from
@@ -62,8 +65,20 @@ def _believed(samples: bytes, sigma):
 def doubtful(samples: bytes, sigma: float) -> tuple[np.ndarray, np.ndarray]:
     """(T,) which samples of a trace, given as the bytes of its floats, are spikes, and which are cut off."""
     trace = np.frombuffer(samples)
-    noise_ = max(sigma, flicker(trace))
+    noise_ = audible(trace, sigma)
     return spikes(trace, noise_), cut(trace, noise_)
+
+
+def audible(trace: np.ndarray, sigma: float) -> float:
+    """What a single sample has to stand out of: the stated noise, or more that the trace shows."""
+    return max(sigma, flicker(trace), rounding(trace))
+
+
+def stepped(trace: np.ndarray, sigma: float) -> bool:
+    """Whether the recorder's steps outweigh the noise of a trace, `sigma` with its rounding: rounding errors
+    follow the pulse then, and are no white noise.
+    """
+    return rounding(trace) > STEPPED * sigma
 
 
 def noise(records: Sequence[Record]) -> tuple[np.ndarray, np.ndarray]:
@@ -111,7 +126,8 @@ def _off_its_line(stretch):
 def _sigma(traces, gauge, quiet):
     """What the record states, or more where the quiet stretches are surely louder."""
     peak = max((float(np.abs(t).max()) for t in traces), default=0.0)
-    floor = max(math.hypot(gauge.sigma or _estimated(traces, quiet), MODEL_FLOOR * peak), 1e-12)
+    level = _with_steps(gauge.sigma, traces, 1.0) if gauge.sigma else _estimated(traces, quiet)
+    floor = max(math.hypot(level, MODEL_FLOOR * peak), 1e-12)
     if not quiet:
         return floor
     count = sum(len(q) for q in quiet)
@@ -136,7 +152,15 @@ def _estimated(traces, quiet):
     white = abs(_correlation(quiet)) < _SURE / math.sqrt(count)
     if white and abs(ripple - level) < _AGREE * error * level:
         level = math.sqrt((count * level**2 + worth * ripple**2) / (count + worth))
-    return max(level, max(map(rounding, traces)))
+    return _with_steps(level, traces, STEPPED)
+
+
+def _with_steps(level, traces, most):
+    """A noise, with the rounding of the recorder's steps where this is more than a share that tells that the
+    noise does not hold it.
+    """
+    steps = max(map(rounding, traces), default=0.0)
+    return math.hypot(level, steps) if steps > most * level else level
 
 
 def flicker(trace: np.ndarray) -> float:

@@ -10,7 +10,8 @@ import numpy as np
 
 from sonicvacuum.discover.model.beginnings import begun
 from sonicvacuum.discover.model.experiment import Batch, Experiment, RunData, Scalar
-from sonicvacuum.discover.model.noise import MODEL_FLOOR, believed, doubtful, noise
+from sonicvacuum.discover.model.masks import repeated
+from sonicvacuum.discover.model.noise import MODEL_FLOOR, believed, doubtful, noise, stepped
 from sonicvacuum.discover.model.nuisances import shared
 from sonicvacuum.discover.model.present import acting, stated
 from sonicvacuum.discover.model.slow import slow
@@ -41,8 +42,8 @@ def _ready(data: Experiment, records) -> Experiment:
 
 
 def _experiment(record, catalogue):
-    runs = tuple(_run(record, run) for run in record.runs)
     sigma, correlation = noise((record,))
+    runs = tuple(_run(record, run, sigma) for run in record.runs)
     parts = batches(record)
     odds = _priors(record, catalogue)
     informed = catalogue.informed(parts[0].chain, record.tolerances)
@@ -133,7 +134,7 @@ def _joined(first: Experiment, record, other: Experiment) -> Experiment:
     return replace(first, runs=(*first.runs, *named), batches=(*first.batches, *moved))
 
 
-def _run(record, run):
+def _run(record, run, sigma):
     signals = run.signals
     time = signals.time_s if signals else np.zeros(0)
     shape = (len(record.gauges), len(time))
@@ -142,6 +143,8 @@ def _run(record, run):
         if signals and gauge.id in signals.readings:
             readings[s] = signals.readings[gauge.id]
             present[s] = believed(readings[s], gauge.sigma)
+            if stepped(readings[s], sigma[s]):
+                present[s] &= ~repeated(readings[s])
     scalars = tuple(
         Scalar(o.quantity, o.value, _error(o), o.options, o.bound, o.shared) for o in run.observables
     )
