@@ -18,7 +18,7 @@ from sonicvacuum.discover.verdict import Known, Value, write_json
 from sonicvacuum.effects import CATALOGUE
 from sonicvacuum.figures import discovery
 from sonicvacuum.files import InputError
-from sonicvacuum.records import Record
+from sonicvacuum.records import Record, read
 from sonicvacuum.records.described import chain_of
 from sonicvacuum.records.reader import parse
 from sonicvacuum.report import bench, inline, plots, rows, words
@@ -357,6 +357,21 @@ def test_quantities_are_told_with_unit_and_level():
     )
     assert (told("speed g9-g5", "m/s")[0], told("decay g9-g5", "1")[0]) == ("speed g9–g5", "decay g9–g5")
     assert told("amplitude g9", "N", "at_most") == ("amplitude g9", "at most 130 ± 14 N")
+
+
+def test_an_error_that_quantities_share_stands_beside_their_own(pytestconfig):
+    paper = read(pytestconfig.rootpath / "workflow/resources/measured/daraio-nesterenko-2006-coated")
+    empty = dict.fromkeys(("nominal", "extended", "held_out"), "1") | {"run": "light-striker", "bound": ""}
+    table = [
+        empty | {"quantity": "speed g9-g5", "unit": "m/s", "measured": "197", "sigma": "2"},
+        empty | {"quantity": "speed at amplitude g9 0.25 N", "unit": "m/s", "measured": "130", "sigma": "5"},
+        empty | {"quantity": "duration g9 at 0.02", "unit": "us", "measured": "130", "sigma": "14"},
+    ]
+    told = rows.quantities(table, [paper])
+    assert [r["measured"] for r in told] == ["197 ± 2 m/s ± 4.1 %", "130 ± 5 m/s ± 4.1 %", "130 ± 14 µs"]
+    assert [r["common"] for r in told] == [["gauge-places"], ["gauge-places"], []]
+    # A verdict that was written before its record was kept knows of its own errors only.
+    assert rows.quantities(table)[0]["measured"] == "197 ± 2 m/s"
 
 
 def test_the_place_of_an_effect_is_told_by_the_name_of_its_gauge():

@@ -76,8 +76,7 @@ def section(folder, catalogue: Catalogue = CATALOGUE) -> dict:
     tables = {name: _rows(folder / f"{name}.csv") for name in ("where", "candidates", "gap", "limits")}
     inputs, records = given.read(folder) or (None, [])
     with reading(folder, "run sonicvacuum discover again"):
-        gauges = [g.id for g in records[0].gauges] if records else []
-        told = _told(folder, verdict, model, tables, catalogue, gauges)
+        told = _told(folder, verdict, model, tables, catalogue, records)
         return told | _origin(inputs, records, verdict, model)
 
 
@@ -94,8 +93,9 @@ def _origin(inputs, records, verdict, model):
     }
 
 
-def _told(folder, verdict, model, tables, catalogue, gauges):
-    name, quantities_of = verdict.record, rows.quantities(_quantities(folder))
+def _told(folder, verdict, model, tables, catalogue, records):
+    name, quantities_of = verdict.record, rows.quantities(_quantities(folder), records)
+    gauges = [g.id for g in records[0].gauges] if records else []
     drawn = draws.read(folder)
     candidates = [
         r | {"parameters": rows.placed(r["parameters"], gauges, catalogue)} for r in tables["candidates"]
@@ -109,6 +109,7 @@ def _told(folder, verdict, model, tables, catalogue, gauges):
         "where": misfit.where(verdict, tables["where"]),
         "grid": rows.grid(tables["where"]),
         "quantities": quantities_of,
+        "common": sorted({name for r in quantities_of for name in r["common"]}),
         "moved": any(r["nominal"] != r["extended"] for r in quantities_of),
         "effects": rows.effects(verdict, catalogue, drawn, gauges),
         "drawn": words.drawn(drawn),

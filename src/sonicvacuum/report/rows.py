@@ -2,8 +2,11 @@
 
 import math
 import re
+from collections.abc import Sequence
 
 from sonicvacuum.discover import policy
+from sonicvacuum.records import Record
+from sonicvacuum.records.record import label_of
 from sonicvacuum.report.misfit import SIDES
 from sonicvacuum.report.tables import number, unit_of
 from sonicvacuum.report.words import plain, share
@@ -48,17 +51,34 @@ def _cell(c):
 _BOUNDS = {"": "", "at_most": "at most ", "at_least": "at least "}
 
 
-def quantities(table: list[dict]) -> list[dict]:
-    """What was measured without traces: what both models give, and what the fit would say without it."""
+def quantities(table: list[dict], records: Sequence[Record] = ()) -> list[dict]:
+    """What was measured without traces: what both models give, and what the fit would say without it.
+
+    A measured value has its own error and, behind its unit, the one that it has in common with others, in
+    parts of it; `common` names where that comes from. Only the `records` know of it.
+    """
+    shared = {
+        (run.id, label_of(one.quantity.replace("_", " "), one.options)): one.shared
+        for record in records
+        for run in record.runs
+        for one in run.observables
+    }
     return [
         {
             "run": r["run"],
             "quantity": in_full(r["quantity"]),
-            "measured": f"{_BOUNDS[r['bound']]}{_as_stated(r['measured'], r['sigma'])}" + unit_of(r["unit"]),
+            "measured": _measured(r, common := shared.get((r["run"], r["quantity"]), {})),
+            "common": sorted(common),
             **{name: number(r[name], 4) for name in ("nominal", "extended", "held_out")},
         }
         for r in table
     ]
+
+
+def _measured(row, common):
+    """`at most 3.0 ± 0.5 N`; `197 ± 2 m/s ± 4.1 %` with an error that others have as well."""
+    own = f"{_BOUNDS[row['bound']]}{_as_stated(row['measured'], row['sigma'])}{unit_of(row['unit'])}"
+    return f"{own} ± {number(100.0 * math.hypot(*common.values()), 2)} %" if common else own
 
 
 def _as_stated(value, sigma):
