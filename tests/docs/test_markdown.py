@@ -1,0 +1,26 @@
+"""Tables of the pages can be read: docs/tables.css keeps right-aligned cells on one line."""
+
+import re
+
+# Letters that a cell on one line may have, lest the other columns are left with a word a line.
+WIDEST = 60
+
+
+def cells(path):
+    """Alignment and text of each cell of the tables of a page."""
+    aligned = None
+    for line in path.read_text(encoding="utf-8").splitlines():
+        row = [cell.strip() for cell in re.split(r"(?<!\\)\|", line.strip())[1:-1]]
+        if not row:
+            aligned = None
+        elif all(re.fullmatch(r":?-+:?", cell) for cell in row):
+            aligned = row
+        elif aligned:
+            yield from zip(aligned, row, strict=True)
+
+
+def test_cells_that_stay_on_one_line_are_short(pytestconfig):
+    pages = sorted((pytestconfig.rootpath / "docs").glob("*.md"))
+    found = [(p.name, text) for p in pages for to, text in cells(p) if to.endswith(":")]
+    assert len(found) > 1000
+    assert [one for one in found if len(one[1]) > WIDEST] == []
