@@ -18,6 +18,23 @@ from sonicvacuum.report.inline import formula
 
 ROOT = Path(__file__).resolve().parents[1]
 _DRAWN = Path(tempfile.mkdtemp(prefix="gallery-"))
+LEDGER = """# Ledger of claims
+
+Every checkable statement of the paper (C. Daraio and V. F. Nesterenko, 2006), held against the simulation.
+The coating is taken as it is printed, a bonded layer of 50 µm and 2.76 GPa without losses, and nothing is
+fitted: this model decides the verdict. What other models give for each statement stands in
+`workflow/resources/reference/ledger.csv`; how each is tested, and where its error comes from, in
+`workflow/resources/claims.csv` and `claims.md`.
+
+* **reproduced**: within two standard errors of what is printed, or within the bound that it states.
+* **disagrees**: further off than that.
+* **outside the model**: only a model with a loss can show it.
+* **inconsistent in the paper**: printed numbers or labels contradict one another, or geometry.
+* **not testable**: what it would take is not printed.
+
+σ is one standard error of the paper's value, and the difference counts in it.
+
+"""
 
 
 def on_files(files, config):
@@ -39,11 +56,14 @@ def on_files(files, config):
 
 
 def on_page_markdown(markdown, page, config, files):
-    """Links as they are on the site: to committed figures, whose guide is only named, and to notebooks."""
+    """Links as they are on the site: to committed figures, whose guide is only named, to notebooks, and to
+    files of the repository, which stand two folders above the site.
+    """
     for written, there in (
         ("[figures/README.md](../figures/README.md)", "`figures/README.md`"),
         ("[docs/example](example/README.md)", "`docs/example`"),
         ("](../figures/", "](figures/"),
+        ("](../", "](../../"),
         (".ipynb)", ".md)"),
     ):
         markdown = markdown.replace(written, there)
@@ -68,11 +88,17 @@ def _notebook(path):
 
 def _ledger():
     """Every statement of the paper and what became of it."""
-    with open(ROOT / "workflow/resources/reference/ledger.csv", encoding="utf-8", newline="") as stream:
-        rows = list(csv.DictReader(stream))
-    head = "# Ledger of claims\n\nEvery checkable statement of the paper, held against the simulation.\n\n"
-    lines = ["| claim | where | verdict | why |", "|---|---|---|---|"]
-    for row in rows:
-        cells = (f"`{row['claim']}`", row["section"], row["verdict"], row["reason"])
+    resources = ROOT / "workflow/resources"
+    stated = {row["claim"]: row["statement"] for row in _rows(resources / "claims.csv")}
+    lines = ["| statement | where | verdict | why |", "|---|---|---|---|"]
+    for row in _rows(resources / "reference/ledger.csv"):
+        statement = f"{stated[row['claim']]} (`{row['claim']}`)"
+        cells = (statement, row["section"], row["verdict"], row["reason"])
         lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
-    return head + "\n".join(lines) + "\n"
+    return LEDGER + "\n".join(lines) + "\n"
+
+
+def _rows(path):
+    """Rows of a table."""
+    with open(path, encoding="utf-8", newline="") as stream:
+        return list(csv.DictReader(stream))
