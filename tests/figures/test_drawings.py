@@ -7,11 +7,13 @@ import sys
 
 import matplotlib.colors
 import numpy as np
+import pandas
 import pytest
 from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
 from sonicvacuum.figures import style
+from sonicvacuum.observe.pulse import PROMINENCE
 from sonicvacuum_paper import figures
 from sonicvacuum_paper.figures import traces
 from sonicvacuum_paper.figures.looks import look
@@ -234,6 +236,18 @@ def test_every_claim_about_a_figure_is_listed_with_it(pytestconfig):
     assert "`fig3a-speed`" not in part["fig4"]
 
 
+def test_the_hump_that_fig_6_does_not_count_dips_by_less_than_it_asks_for(pytestconfig):
+    table = pandas.read_csv(pytestconfig.rootpath / "figures/fig6.csv")
+    line = table[
+        (table.panel == "b") & (table.model == "layer-loss-geometry") & (table.series == "simulated")
+    ]
+    force = line.force_N.to_numpy()
+    falls, rises = force[1:-1] - force[:-2] < 0.0, force[2:] - force[1:-1] > 0.0
+    (valley,) = 1 + np.flatnonzero(falls & rises & (force[1:-1] > 0.15 * force.max()))
+    dip = (force[valley:].max() - force[valley]) / force.max()
+    assert 0.01 < dip < PROMINENCE
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_captions_say_what_is_simulated_printed_and_not_available(name):
     caption = figures.caption(name)
@@ -241,5 +255,5 @@ def test_captions_say_what_is_simulated_printed_and_not_available(name):
     assert "not available" in caption
     assert "paper" in caption
     assert "  " not in caption
-    assert len(caption.split()) <= 80
+    assert len(caption.split()) <= 60
     assert caption.endswith(".")

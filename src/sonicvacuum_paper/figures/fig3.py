@@ -14,11 +14,10 @@ COLUMNS = traces.COLUMNS
 UNTIL_US = {"a": 1100.0, "b": 300.0}
 
 CAPTION = style.paragraph(f"""
-Pulses of a 0.47 g striker at 0.44 m/s, simulated: Hertz and the bonded layer without losses, the layer with
-one loss. Readings at the 9th and 5th bead from the bottom (13 and 17 from the striker) and at the wall;
-scale bars {PRINTED.coated_bar:g} and {PRINTED.steel_bar:g} N; pale: reflections. Crosses: arrivals at the
-lower gauge that the printed speeds imply; bar: the printed duration, on which the loss is calibrated. The
-paper's traces are not available.
+Pulses of a 0.47 g striker at 0.44 m/s, simulated: Hertz and bonded layer without loss, layer with one.
+Gauges: 9th and 5th bead from the bottom (13 and 17 from the striker), wall; bars {PRINTED.coated_bar:g}
+and {PRINTED.steel_bar:g} N; pale: reflections. Crosses: arrivals by the printed speeds; bar: printed
+duration, which calibrates the loss. The paper's traces are not available.
 """)
 
 

@@ -14,11 +14,9 @@ COLUMNS = traces.COLUMNS
 UNTIL_US = {"a": 1600.0, "b": 400.0}
 
 CAPTION = style.paragraph(f"""
-Trains made by a 1.23 g striker at 0.44 m/s, simulated: Hertz without losses, the layer with loss.
-Gauges in the 9th and 5th bead from the bottom (13 and 17 from the striker); scale bars
-({PRINTED.coated_bar:g} and {PRINTED.steel_bar:g} N) and pale lines as in Fig. 3. Numbers mark, on the
-highest train, waves of at least {traces.TRAIN:.2f} of the first at the wall; (4) is a fourth below that
-threshold. The paper counts three; its traces are not available.
+Trains made by a 1.23 g striker at 0.44 m/s, simulated: Hertz without losses, layer with loss. Gauges, bars
+and pale lines as in Fig. 3. Numbers mark, on the highest train, waves of at least {traces.TRAIN:.2f} of the
+first at the wall; (4) is a fourth below that. The paper counts three; its traces are not available.
 """)
 
 

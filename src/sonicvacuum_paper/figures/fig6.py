@@ -21,11 +21,10 @@ WEAK = 0.2
 INSET, INSET_US = (0.52, 0.26, 0.46, 0.56), (200.0, UNTIL_US)
 _TITLES = {"a": "(a) Steel ball, 0.036 g", "b": "(b) PTFE ball, 0.123 g"}
 
-CAPTION = style.paragraph("""
-Wall below 22 small coated beads struck at 0.89 m/s by (a) steel, (b) PTFE balls, simulated: models
-as in Fig. 3, the lossy one also with masses by geometry (bead 0.056 g). Each panel has its own scale of
-force; inset: the models with loss, enlarged. In words: what the paper saw; its traces are not available.
-Legends: waves of at least 0.15 of the first.
+CAPTION = style.paragraph(f"""
+Wall below 22 small beads struck at 0.89 m/s, simulated: models as in Fig. 3, the lossy one also with masses
+by geometry (0.056 g a bead). Inset: enlarged. Legends count waves of at least {COUNTED:g} of the first behind
+dips of {PROMINENCE:g}; the hump of the dashed line in (b) has less. The paper's traces are not available.
 """)
 # What the paper says of each panel.
 _SEEN = {"a": "paper: one solitary wave", "b": "paper: one shock-like pulse"}
