@@ -24,7 +24,7 @@ TOLD = 0.005
 OF_MASSES = {
     ("speed", "g9-g5"): "speed, m/s",
     ("amplitude", "wall"): "peak at the wall, N",
-    ("duration_half", "wall"): "half duration at the wall, µs",
+    ("duration_half", "wall"): "duration at half height at the wall, µs",
     ("pulse_count", "wall"): "waves at the wall",
 }
 
