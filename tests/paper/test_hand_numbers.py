@@ -1,9 +1,12 @@
 """Theory, printed numbers, geometry and simulated cases against numbers worked out by hand."""
 
+import re
+
 import pytest
 from msgspec.structs import replace
 
 from sonicvacuum import config, simulation
+from sonicvacuum.materials import MATERIALS
 from sonicvacuum_paper.metrics import card_rows
 
 THEORY = {
@@ -122,3 +125,12 @@ def test_without_gravity_a_gauge_reads_0707_of_the_contact(metrics):
     # 0.70732 for the exact wave; 1e-3: at 4.9 N its shape still settles
     found = metrics.at("fig4a.matched-horizontal@0.4", "gauge_over_contact", "g9").value
     assert found == pytest.approx(0.70732, abs=1e-3)
+
+
+def test_constants_told_of_what_the_paper_leaves_out_are_those_of_the_table(pytestconfig):
+    text = (pytestconfig.rootpath / "workflow/resources/claims.md").read_text(encoding="utf-8")
+    told = re.findall(r"(alumina|brass|PTFE|steel) ([\d.]+) GPa, (\d\.\d+)", text)
+    assert len(told) == 4
+    for name, modulus, poisson in told:
+        material = MATERIALS["stainless-steel" if name == "steel" else name.lower()]
+        assert (float(modulus) * 1e9, float(poisson)) == pytest.approx((material.modulus, material.poisson))
