@@ -12,7 +12,7 @@ from sonicvacuum.stages import compilations_told_to
 # Told while kernels are compiled, which happens once for a computer: beside a stage, or by a verb that shows
 # none. A verb takes a few kernels, a search dozens.
 COMPILING = "compiling kernels, once on this computer"
-LENGTH = "some seconds; before a first search of all a minute or two"
+LENGTH = "some seconds; before a first search of all up to half a minute"
 # Where the folder of kernels cannot be written.
 NOT_KEPT = (
     "compiling kernels; they cannot be kept, so that each command does so again: "
