@@ -2,11 +2,13 @@
 
 import re
 
+import numpy as np
 import pytest
 from msgspec.structs import replace
 
 from sonicvacuum import config, simulation
 from sonicvacuum.materials import MATERIALS
+from sonicvacuum.physics.layered import Layer, solve
 from sonicvacuum_paper.metrics import card_rows
 
 THEORY = {
@@ -134,3 +136,11 @@ def test_constants_told_of_what_the_paper_leaves_out_are_those_of_the_table(pyte
     for name, modulus, poisson in told:
         material = MATERIALS["stainless-steel" if name == "steel" else name.lower()]
         assert (float(modulus) * 1e9, float(poisson)) == pytest.approx((material.modulus, material.poisson))
+
+
+def test_the_layer_would_ask_for_more_than_hertz_to_be_pressed_through():
+    coating, steel = (e / (1 - nu**2) for e, nu in ((2.76e9, 0.388), (193e9, 0.3)))
+    found = solve(Layer(0.388, coating / steel, 0.3), np.array([9.0, 9.3, 9.6]))
+    # Two layers of 50 um give way by 100 um; Hertz's force of the coating there is 75.5 N.
+    chi = (2.43e-3 / 2 * 100e-6) ** 0.5 / 50e-6
+    assert 75.5 * np.interp(chi, found.width, found.factor) == pytest.approx(1.43e3, rel=0.01)
