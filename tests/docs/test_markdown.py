@@ -24,3 +24,10 @@ def test_cells_that_stay_on_one_line_are_short(pytestconfig):
     found = [(p.name, text) for p in pages for to, text in cells(p) if to.endswith(":")]
     assert len(found) > 1000
     assert [one for one in found if len(one[1]) > WIDEST] == []
+
+
+def test_what_stands_within_a_list_is_indented_by_four(pytestconfig):
+    # By less, Python-Markdown ends the list there and runs the next item into the paragraph.
+    for page in sorted((pytestconfig.rootpath / "docs").glob("*.md")):
+        text = re.sub(r"```.*?```", "", page.read_text(encoding="utf-8"), flags=re.S)
+        assert re.findall(r"^\n {1,3}\S.*", text, re.M) == [], page.name
