@@ -330,6 +330,11 @@ def write(path, columns, rows):
     temporary.replace(path)
 
 
+def _plain(value, digits):
+    """A number of so many digits, without an exponent."""
+    return np.format_float_positional(value, precision=digits, unique=False, fractional=False, trim="-")
+
+
 def markdown(rows, absent):
     """The table for the README: milliseconds and, in brackets, the ratio to the limit."""
     names = list(dict.fromkeys(row[1] for row in rows))
@@ -339,8 +344,8 @@ def markdown(rows, absent):
         entries = []
         for problem in PROBLEMS:
             row = cells.get((problem, name))
-            ratio = f" ({row[3]:.2g})" if row and row[3] != "" else ""
-            entries.append(f"{1e3 * row[2]:.3g} ms{ratio}" if row else "–")
+            ratio = f" ({_plain(row[3], 2)})" if row and row[3] != "" else ""
+            entries.append(f"{_plain(1e3 * row[2], 3)} ms{ratio}" if row else "–")
         error = cells.get(("P3", name), [""] * 7)[5]
         entries.append(f"{error:.0e}" if error != "" else "–")
         lines.append(f"| {name} | " + " | ".join(entries) + " |")
