@@ -9,6 +9,7 @@ from made_records import SIGMA, made
 from made_slips import altered
 
 from sonicvacuum.blas import one_thread
+from sonicvacuum.discover.faults import competition
 from sonicvacuum.discover.faults.examine import examine
 from sonicvacuum.discover.faults.found import Finding
 from sonicvacuum.discover.faults.retract import retracted
@@ -114,3 +115,36 @@ def test_a_gauge_that_reads_nothing_is_no_effect_in_place_of_a_dead_one(dying):
     )
     slip = Finding("gauge-dead", sensor="g4", corrected=True)
     assert retracted(found, [slip], dying, {}, make) == set()
+
+
+def test_once_a_slip_is_taken_back_the_others_are_asked_for_again(monkeypatch):
+    """A gauge that a strong damper seemed to turn over hid that drift and level of another were its work."""
+    asked, searched = [], []
+    answers = [{("gauge-inverted", "g4")}, {("drift", "g7"), ("baseline", "g7")}, set()]
+
+    class Found:
+        forward, final, named = None, None, ("linear-dashpot",)
+
+    class Searched:
+        catalogue = threads = make = None
+
+        def __init__(self, *given):
+            searched.append(given)
+
+        def run(self):
+            return competition.Outcome(Found(), (), None, 1)
+
+    def retracted(found, findings, record, seen, make, spared):
+        asked.append(set(spared))
+        return answers[len(asked) - 1]
+
+    monkeypatch.setattr(competition, "Search", Searched)
+    monkeypatch.setattr(competition, "retracted", retracted)
+    monkeypatch.setattr(competition, "examine", lambda record, seen, spared: (frozenset(spared), []))
+    monkeypatch.setattr(competition, "value", lambda forward, final: 0.0)
+    monkeypatch.setattr(competition, "unexplained", lambda found: False)
+    first = competition.Outcome(Found(), (), None, 1)
+    found = competition._asked_again(first, [], None, {}, Searched())
+    assert asked == [set(), answers[0], answers[0] | answers[1]]
+    assert [given[0] for given in searched[1:]] == asked[1:]
+    assert found.simulations == 3

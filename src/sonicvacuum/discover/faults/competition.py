@@ -91,14 +91,26 @@ def discover(records: Sequence[Record], catalogue: Catalogue = CATALOGUE, thread
         return Outcome(_investigated(benches, catalogue, threads), tuple(findings), benches[0].record)
     search = Search(benches[0], catalogue, threads, findings)
     outcome = search.run()
-    spared = retracted(outcome.found, findings, records[0], seen[0], search.make)
-    if not spared:
-        return outcome
-    bench, findings = examine(records[0], seen[0], spared)
-    other = Search(bench, catalogue, threads, findings).run()
-    worse = value(other.found.forward, other.found.final) > value(outcome.found.forward, outcome.found.final)
-    chosen = outcome if unexplained(other.found) and worse else other
-    return replace(chosen, simulations=outcome.simulations + other.simulations)
+    return _asked_again(outcome, findings, records[0], seen[0], search)
+
+
+def _asked_again(outcome: Outcome, findings, record: Record, seen, search: "Search") -> Outcome:
+    """The outcome without slips that effects explain better; once one is gone, others may be."""
+    spared: set[tuple[str, str]] = set()
+    for _ in range(policy.MOST):
+        more = retracted(outcome.found, findings, record, seen, search.make, spared)
+        if not more:
+            break
+        spared |= more
+        bench, findings = examine(record, seen, spared)
+        search = Search(bench, search.catalogue, search.threads, findings)
+        other, before = search.run(), outcome
+        old, new = (value(o.found.forward, o.found.final) for o in (before, other))
+        chosen = before if unexplained(other.found) and new > old else other
+        outcome = replace(chosen, simulations=before.simulations + other.simulations)
+        if chosen is before:
+            break
+    return outcome
 
 
 def _investigated(benches, catalogue, threads):

@@ -5,7 +5,7 @@ down, and is put right before any effect is known; where it does not arrive, lik
 missed. Beside the right effect the trace as it is fits better, or as well.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -31,6 +31,7 @@ def retracted(
     record: Record,
     predicted: dict[str, dict[str, np.ndarray]],
     make: Callable[[Bench], Experiment],
+    spared: Collection[Slipped] = (),
 ) -> set[Slipped]:
     """Slips that effects named explain as well, or, where these leave a misfit, better.
 
@@ -39,11 +40,12 @@ def retracted(
         findings: slips that the traces showed.
         record, predicted: as `examine` takes them.
         make: a record → its data set.
+        spared: slips of which that is known already.
     """
     if found.final is found.null:
         return set()
     told = [(f.fault, f.sensor or f.run) for f in findings if f.corrected]
-    ask = _Asked(found, record, predicted, make)
+    ask = _Asked(found, record, predicted, make, spared)
     silent = {one for one in told if one[0] in SILENCE and ask.silence(one)}
     feigned = {one for one in told if one[0] in FEIGNED}
     return silent | (ask.better(feigned) if feigned and unexplained(found) else set())
@@ -57,14 +59,15 @@ def value(forward: Forward, one: Fit) -> float:
 class _Asked:
     """The effects found, fitted to the record with some of its slips left as they are."""
 
-    def __init__(self, found, record, predicted, make):
+    def __init__(self, found, record, predicted, make, spared):
         self.found, self.record, self.predicted, self.make = found, record, predicted, make
+        self.spared = spared
         experiment = found.forward.experiment
         # What an effect leaves in a trace would count as noise of another size.
         self.noise = {"sigma": experiment.sigma, "correlation": experiment.correlation}
 
     def _fitted(self, spared) -> tuple[Forward, Fit]:
-        bench, _ = examine(self.record, self.predicted, spared)
+        bench, _ = examine(self.record, self.predicted, {*self.spared, *spared})
         experiment = self.make(bench)
         if len(experiment.sigma) == len(self.noise["sigma"]):
             experiment = replace(experiment, **self.noise)
