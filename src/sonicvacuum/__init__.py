@@ -46,7 +46,7 @@ from typing import TYPE_CHECKING, Any
 __version__ = "0.1.0"
 
 if TYPE_CHECKING:
-    from sonicvacuum.api import compare, read, read_case, simulate
+    from sonicvacuum.api import catalogue, compare, read, read_case, simulate
     from sonicvacuum.builders import bead, case, chain, gauge, striker
     from sonicvacuum.card import Card
     from sonicvacuum.discover.session import discover
@@ -67,6 +67,7 @@ _PUBLIC = {
     "Simulation": "sonicvacuum.simulation:Simulation",
     "bead": "sonicvacuum.builders:bead",
     "case": "sonicvacuum.builders:case",
+    "catalogue": "sonicvacuum.api:catalogue",
     "chain": "sonicvacuum.builders:chain",
     "compare": "sonicvacuum.api:compare",
     "design": "sonicvacuum.prediction.design:design",
@@ -89,6 +90,7 @@ __all__ = [
     "Simulation",
     "bead",
     "case",
+    "catalogue",
     "chain",
     "compare",
     "design",

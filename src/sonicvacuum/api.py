@@ -8,13 +8,15 @@ unit in its name, as in `config.yaml` and `record.yaml`.
 
 from os import PathLike
 
-from sonicvacuum import config, simulation
+from sonicvacuum import config, plugins, simulation
 from sonicvacuum.card import Card
 from sonicvacuum.discover import compare as comparison
 from sonicvacuum.discover.compare import Comparison
 from sonicvacuum.discover.verdict import Model
+from sonicvacuum.effects import Catalogue
+from sonicvacuum.files import InputError
 from sonicvacuum.physics.run import available_threads
-from sonicvacuum.records import Record
+from sonicvacuum.records import Record, check_records
 from sonicvacuum.records import read as read_record
 from sonicvacuum.simulation import Simulation
 
@@ -54,18 +56,42 @@ def read_case(path: Path, name: str, variant: str = "nominal") -> Card:
     return config.card(config.read(path), name, variant, path)
 
 
-def simulate(card: Card) -> Simulation:
+def catalogue(*files: Path) -> Catalogue:
+    """The effects that a model may lack: the project's, those of installed packages, those of files.
+
+    Args:
+        *files: Python files with effects of one's own, as `--effects` takes them.
+
+    Returns:
+        Catalogue, what `sv.discover`, `sv.compare` and `sv.simulate` take; without one they take that of no
+        file. `.ids` are its effects.
+
+    Raises:
+        InputError: naming file, line or effect, what is wrong and the cure.
+
+    Examples:
+        >>> import sonicvacuum as sv
+        >>> sv.catalogue().effect("tsuji").parameters[0].name
+        'alpha'
+    """
+    return plugins.catalogue(files)
+
+
+def simulate(card: Card, catalogue: Catalogue | None = None, limits: bool = True) -> Simulation:
     """A card integrated at the chosen step and at half of it; `readings()` of the result are its gauges.
 
     Args:
         card: from `sv.case` or `sv.read_case`.
+        catalogue: holds the card's effects, see `sv.catalogue`.
+        limits: refuse what asks for more time or memory than a computer gives.
 
     Returns:
         Simulation: `time` (samples,) in s, `force` (samples, contacts, runs) in N, `readings()` gauge →
         (samples, runs) in the gauge's unit without the static part; runs in the order of the speeds.
 
     Raises:
-        InputError: for an effect that does not exist, or an aim that no speed reaches.
+        InputError: for what is no card, an effect that does not exist, an aim that no speed reaches, or
+            (`limits`) more than a computer gives.
 
     Examples:
         >>> import sonicvacuum as sv
@@ -77,16 +103,21 @@ def simulate(card: Card) -> Simulation:
         >>> seen.readings()["velocity-15"].shape  # samples, runs; m/s
         (1601, 1)
     """
-    return simulation.simulate(card)
+    if not isinstance(card, Card):
+        raise InputError(f"simulate: is given {card!r:.100}; give a card, as of sv.case or sv.read_case")
+    return simulation.simulate(card, plugins.catalogue() if catalogue is None else catalogue, limits)
 
 
-def compare(model: Model | Path, record: Record, threads: int | None = None) -> Comparison:
+def compare(
+    model: Model | Path, record: Record, threads: int | None = None, catalogue: Catalogue | None = None
+) -> Comparison:
     """A model's score on a record; only the record's own nuisances are fitted.
 
     Args:
         model: what `discover` found, or the path of a `model.json`.
         record: what to score it on.
         threads: as in `discover`.
+        catalogue: holds the model's effects, see `sv.catalogue`.
 
     Returns:
         Comparison: misfit over the noise before and after (`gap`), run by run too, and `warnings`.
@@ -94,5 +125,13 @@ def compare(model: Model | Path, record: Record, threads: int | None = None) -> 
     Raises:
         InputError: for a file that holds no model, or a model that does not fit the record.
     """
-    known = model if isinstance(model, Model) else comparison.read_model(model)
-    return comparison.compare(known, record, threads or available_threads())
+    check_records((record,), "compare")
+    effects = plugins.catalogue() if catalogue is None else catalogue
+    if isinstance(model, Model):
+        for name in model.effects:
+            comparison.check_source(f"model of {model.record}", name, model.sources, effects)
+    elif isinstance(model, str | PathLike):
+        model = comparison.read_model(model, effects)
+    else:
+        raise InputError(f"compare: is given {model!r:.100} as a model; give what discover found, or a path")
+    return comparison.compare(model, record, threads or available_threads(), effects)

@@ -96,14 +96,29 @@ def _installed():
         where = f"entry point {point.name} = {point.value} of {_package(point)}"
         try:
             found = point.load()
-        except Exception as error:
+            digest = hashlib.sha256(_text(point.module)).hexdigest()
+        except (Exception, SystemExit) as error:
             told = " ".join(str(error).split())
             raise InputError(
                 f"{where}: {type(error).__name__}: {told}; mend the package, or uninstall it"
             ) from None
         found = _found(vars(found), where) if isinstance(found, ModuleType) else found
-        text = Path(sys.modules[point.module].__file__).read_bytes()
-        yield where, _sourced(found, Source(_package(point), hashlib.sha256(text).hexdigest()), where)
+        yield where, _sourced(found, Source(_package(point), digest), where)
+
+
+def _text(module):
+    """What an installed law is written in: all of the package that it belongs to, whose other modules may
+    hold what it computes, or its module where that stands alone or in an archive.
+    """
+    parts = module.split(".")
+    above = (sys.modules[".".join(parts[: k + 1])] for k in range(len(parts)))
+    # Several distributions may share the name of a package that has no file.
+    package = next((m for m in above if hasattr(m, "__path__") and getattr(m, "__file__", None)), None)
+    files = sorted(Path(package.__file__).parent.rglob("*.py")) if package else []
+    if files:
+        return b"".join(file.read_bytes() for file in files)
+    own = sys.modules[module]
+    return own.__spec__.loader.get_data(own.__file__)
 
 
 def _package(point):

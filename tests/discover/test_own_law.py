@@ -7,9 +7,11 @@ import pytest
 from click.testing import CliRunner
 from made_records import made
 
+import sonicvacuum as sv
 from sonicvacuum import plugins, records
 from sonicvacuum.cli.compare import compare
 from sonicvacuum.cli.discover import discover
+from sonicvacuum.discover.compare import read_model
 from sonicvacuum.files import InputError
 
 LAW = Path(__file__).with_name("deep_damping.py")
@@ -61,11 +63,30 @@ def test_the_model_closes_the_gap_of_a_further_run(folder):
     assert gap["after"] == pytest.approx(1.0, abs=0.15)  # six standard errors √(2/2100), and the model's
 
 
+def test_python_scores_and_simulates_it_as_the_command_does(folder):
+    model, known = folder / "found/model.json", sv.catalogue(LAW)
+    assert known.ids[-1] == "deep-damping"
+    further = sv.read(folder / "further")
+    found = sv.compare(model, further, threads=1, catalogue=known)
+    assert found.effects == ["deep-damping"]
+    assert found.gap.after < 0.1 * found.gap.before
+    for given in (model, read_model(model, known)):
+        with pytest.raises(sv.InputError, match=r"comes from deep_damping\.py"):
+            sv.compare(given, further, threads=1)
+    ball = sv.bead(diameter_mm=5.0, material="glass")
+    effects = {"deep-damping": {"damping_kg_s_m": DAMPING}}
+    parts = sv.chain(bead=ball, beads=4), sv.striker(ball, speed_m_s=0.5), [sv.gauge("wall")]
+    card = sv.case(*parts, duration_us=100, effects=effects)
+    assert sv.simulate(card, known).readings()["wall"].max() > 0.0
+    with pytest.raises(sv.InputError, match="no effect is called 'deep-damping'"):
+        sv.simulate(card)
+
+
 def test_without_its_file_the_model_is_refused(folder):
     failed, _ = score(folder)
     assert isinstance(failed, InputError)
     assert "effects.deep-damping: comes from deep_damping.py" in str(failed)
-    assert "give that file with --effects" in str(failed)
+    assert "give its file with --effects" in str(failed)
 
 
 def test_with_an_edited_file_the_model_is_refused(folder, tmp_path):

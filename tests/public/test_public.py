@@ -8,13 +8,14 @@ import re
 import shutil
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from ball import RECORD
 
 import sonicvacuum as sv
-from sonicvacuum import api, blas, builders
+from sonicvacuum import api, blas, builders, plugins
 from sonicvacuum.discover import session
 from sonicvacuum.effects import CATALOGUE
 from sonicvacuum.physics import solitary, theory
@@ -82,6 +83,20 @@ def test_it_takes_what_the_function_takes(ball):
     assert found.verdict.named == []
     with pytest.raises(sv.InputError, match="give at least one"):
         sv.discover()
+
+
+def test_effects_of_installed_packages_are_searched_for_as_by_the_command(ball, monkeypatch):
+    class Reached(Exception):
+        pass
+
+    def search(records, catalogue, threads):
+        raise Reached(catalogue.ids)
+
+    longer = CATALOGUE.extended([replace(CATALOGUE.effect("tsuji"), id="packed")])
+    monkeypatch.setattr(plugins, "catalogue", lambda files=(): longer)
+    monkeypatch.setattr(session.competition, "discover", search)
+    with pytest.raises(Reached, match="packed"):
+        sv.discover(sv.read(ball), threads=1)
 
 
 def test_the_lines_of_the_readme_run_as_they_stand(pytestconfig, tmp_path, monkeypatch, capsys):

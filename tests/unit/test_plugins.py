@@ -1,6 +1,8 @@
 """Effects of the user's own: read from files, checked, tried, kept apart; and nobody else knows an id."""
 
+import hashlib
 import re
+import zipfile
 from dataclasses import replace
 from pathlib import Path
 
@@ -144,10 +146,38 @@ def test_an_installed_package_may_offer_effects(tmp_path, monkeypatch):
     assert known.effect("deep-damping").source.name == "laws 1.2"
 
 
-def test_a_broken_package_is_named(tmp_path, monkeypatch):
-    installed(tmp_path, monkeypatch, "EFFECT = 1 / 0\n")
-    with pytest.raises(InputError, match=r"entry point deep = .*:EFFECT of laws 1.2: ZeroDivisionError"):
+@pytest.mark.parametrize(("fault", "told"), [("1 / 0", "ZeroDivisionError"), ("exit(3)", "SystemExit")])
+def test_a_broken_package_is_named(tmp_path, monkeypatch, fault, told):
+    installed(tmp_path, monkeypatch, f"EFFECT = {fault}\n")
+    with pytest.raises(InputError, match=rf"entry point deep = .*:EFFECT of laws 1.2: {told}"):
         plugins.catalogue()
+
+
+def test_a_law_that_changes_in_another_module_of_its_package_is_another_law(tmp_path):
+    digests = []
+    for factor in ("1.0", "2.0"):
+        folder = tmp_path / f"by{factor[0]}"
+        folder.mkdir()
+        with pytest.MonkeyPatch.context() as patch:
+            installed(folder, patch, "")
+            package = folder / f"laws_of_{folder.name}"
+            (folder / f"{package.name}.py").unlink()
+            package.mkdir()
+            (package / "__init__.py").write_text("from .law import EFFECT\n")
+            (package / "law.py").write_text(TEXT.replace("damping * delta", f"{factor} * damping * delta"))
+            digests.append(plugins.catalogue().effect("deep-damping").source.sha256)
+    assert digests[0] != digests[1]
+
+
+def test_a_package_in_an_archive_may_offer_effects(tmp_path, monkeypatch):
+    installed(tmp_path, monkeypatch, "")
+    name = f"laws_of_{tmp_path.name}.py"
+    (tmp_path / name).unlink()
+    with zipfile.ZipFile(tmp_path / "laws.zip", "w") as archive:
+        archive.writestr(name, TEXT)
+    monkeypatch.syspath_prepend(str(tmp_path / "laws.zip"))
+    digest = hashlib.sha256(TEXT.encode()).hexdigest()
+    assert plugins.catalogue().effect("deep-damping").source.sha256 == digest
 
 
 def test_a_catalogue_is_never_changed():

@@ -87,7 +87,7 @@ def check_source(path, name: str, sources: Sources, catalogue: Catalogue) -> Non
     if name not in catalogue:
         raise InputError(
             f"{path}: effects.{name}: comes from {told.name} (SHA-256 {told.sha256[:12]}); "
-            "give that file with --effects"
+            "give its file with --effects (in Python catalogue=sv.catalogue(FILE)), or install its package"
         )
     given = catalogue.effect(name).source
     if told and given and told.sha256 != given.sha256:

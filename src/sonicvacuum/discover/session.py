@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from msgspec import UNSET
 
-from sonicvacuum import stages
+from sonicvacuum import plugins, stages
 from sonicvacuum.blas import one_thread
 from sonicvacuum.discover import (
     draws,
@@ -34,11 +34,10 @@ from sonicvacuum.discover.posterior import posterior
 from sonicvacuum.discover.rounds import Investigation
 from sonicvacuum.discover.search.free_law import FreeLaw
 from sonicvacuum.discover.verdict import Verdict
-from sonicvacuum.effects import CATALOGUE, Catalogue
-from sonicvacuum.files import InputError
+from sonicvacuum.effects import Catalogue
 from sonicvacuum.physics import validity
 from sonicvacuum.physics.run import available_threads
-from sonicvacuum.records import Record
+from sonicvacuum.records import Record, check_records
 from sonicvacuum.records.extent import check_extent
 from sonicvacuum.records.suspects import copies
 
@@ -82,7 +81,7 @@ class Result:
 
 @one_thread
 def discover(
-    *records: Record, threads: int | None = None, catalogue: Catalogue = CATALOGUE, limits: bool = True
+    *records: Record, threads: int | None = None, catalogue: Catalogue | None = None, limits: bool = True
 ) -> Result:
     """What the nominal model of measured data lacks.
 
@@ -90,7 +89,8 @@ def discover(
         *records: one record, or records of one chain and its gauges, which get one verdict.
         threads: processors to use, by threads of the compiled engine and, on Linux, copies of this process
             that follow hypotheses side by side; all of them by default. The result does not depend on it.
-        catalogue: the effects that may be missing, see `sonicvacuum.plugins.catalogue`.
+        catalogue: the effects that may be missing, as of `sv.catalogue("my_law.py")`; by default the
+            project's and those of installed packages.
         limits: refuse a search that asks for more memory than the machine has.
 
     Returns:
@@ -101,8 +101,8 @@ def discover(
         InputError: for no record, or records that cannot be simulated, do not belong together, or (`limits`)
             ask too much.
     """
-    if not records:
-        raise InputError("discover: is given no record; give at least one, as in discover(read(folder))")
+    check_records(records, "discover")
+    catalogue = plugins.catalogue() if catalogue is None else catalogue
     clock = Clock()
     ready, notes = zip(*map(window.fitted, records), strict=True)
     for one in ready if limits else ():

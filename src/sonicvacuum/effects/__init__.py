@@ -33,13 +33,14 @@ F = K delta^{3/2} + b delta v. Write `deep_damping.py`:
     EFFECT = Effect(id="deep-damping", title="Deep damping", ..., change=change)
 
 with the whole header filled in. A file of your own may be used at once: `sonicvacuum effects --effects
-deep_damping.py` checks it, `sonicvacuum discover ... --effects deep_damping.py` searches for it; a package
-offers it under the entry-point group `sonicvacuum.effects` (see `sonicvacuum.plugins`). To make it part of
-the project, put the file here and add `deep_damping` to the import and to `CATALOGUE` below. The contract
-tests run over the catalogue; they ask for one thing more, the law written a second time in
-`tests/effects/reference.py`. What needs no new force is shorter: change masses, stiffnesses, loads or sensors
-with `dataclasses.replace`, as `mass_defect.py`, `static_preload.py` and `sensor_gain.py` do. The order of the
-catalogue is the order of reports and of ties: append at the end, and never give an id another meaning.
+deep_damping.py` checks it, `sonicvacuum discover ... --effects deep_damping.py` searches for it, as does
+`sv.discover(record, catalogue=sv.catalogue("deep_damping.py"))`; a package offers it under the entry-point
+group `sonicvacuum.effects` (see `sonicvacuum.plugins`). To make it part of the project, put the file here and
+add `deep_damping` to the import and to `CATALOGUE` below. The contract tests run over the catalogue; they ask
+for one thing more, the law written a second time in `tests/effects/reference.py`. What needs no new force is
+shorter: change masses, stiffnesses, loads or sensors with `dataclasses.replace`, as `mass_defect.py`,
+`static_preload.py` and `sensor_gain.py` do. The order of the catalogue is the order of reports and of ties:
+append at the end, and never give an id another meaning.
 """
 
 from sonicvacuum.effects import (

@@ -5,8 +5,8 @@ any (`signals`). `read` gives a `Record`, in SI; `assemble` and `predict` say wh
 """
 
 from sonicvacuum.records.reader import read
-from sonicvacuum.records.record import Gauge, Observable, Record, Run, Striker
+from sonicvacuum.records.record import Gauge, Observable, Record, Run, Striker, check_records
 from sonicvacuum.records.signals import Signals
 from sonicvacuum.records.writer import write
 
-__all__ = ["Gauge", "Observable", "Record", "Run", "Signals", "Striker", "read", "write"]
+__all__ = ["Gauge", "Observable", "Record", "Run", "Signals", "Striker", "check_records", "read", "write"]

@@ -4,12 +4,14 @@ The blocks stay the truth, so that what is read is what is written; SI values ar
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import msgspec
 
+from sonicvacuum.files import InputError
 from sonicvacuum.gauges import KINDS, Gauge
 from sonicvacuum.laboratory.blocks import material_of, specimen_of, striker_of
 from sonicvacuum.laboratory.specimen import Specimen, Striker
@@ -225,3 +227,12 @@ def observable(block) -> Observable:
         options["amplitude"] = block.amplitude_N
     sigma = block.sigma or (COUNT_SIGMA if quantity == "pulse_count" else 0.0)
     return Observable(quantity, block.value * scale, sigma * scale, options, block.bound, dict(block.shared))
+
+
+def check_records(given: Iterable[Any], place: str) -> None:
+    """InputError for no record, or anything else in place of one, a folder's path above all."""
+    if not given:
+        raise InputError(f"{place}: is given no record; give at least one, as in {place}(read(folder))")
+    for one in given:
+        if not isinstance(one, Record):
+            raise InputError(f"{place}: is given {one!r:.100} as a record; give what sv.read(folder) returns")
