@@ -99,6 +99,7 @@ def test_a_place_is_in_the_middle(beads):
     [
         ({"effects": "sensor-drop"}, "is not in the catalogue; did you mean sensor-droop?"),
         ({"effects": "coating-thickness"}, "effects: coating-thickness cannot be in this chain"),
+        ({"effects": []}, "effects: none is given"),
         ({"most": 0}, "most: is 0; from 1 to 4"),
         ({"noise": -1.0}, "noise: is -1; it must be positive"),
         ({"gauges": "13"}, "gauges: '13' is no bead from 1 to 12"),

@@ -97,7 +97,11 @@ WRONG = [
     ({"aim": "9=5N", "gauges": "3,wall"}, "aim: '9' is none of the gauges 3, wall"),
     ({"aim": "900MN"}, "aim: 9e+08 N needs a striker"),
     ({"beads": 0}, "beads: is 0"),
-    ({"beads": 10**9}, "beads"),
+    ({"beads": 10**9}, "beads: the chain asks for 1e+09 beads"),
+    ({"beads": 10_000}, "beads: the chain asks for"),
+    ({"beads": "10"}, "beads: is '10'; write a whole number"),
+    ({"gauges": []}, "gauges: none is given"),
+    ({"gauges": 17}, "gauges: '17' is no bead from 1 to 16"),
 ]
 
 

@@ -7,10 +7,11 @@ from record_cases import BALL, CONTENT, TIME, TRACES, content, put
 from sonicvacuum.cli import cli
 from sonicvacuum.discover import session
 from sonicvacuum.files import InputError
-from sonicvacuum.records.extent import check_extent
+from sonicvacuum.records.extent import check_expected, check_extent
 from sonicvacuum.records.reader import parse
 from sonicvacuum.records.record import Record
 from sonicvacuum.records.signals import Signals
+from sonicvacuum.report import checked
 
 
 @pytest.mark.parametrize("base", [CONTENT, BALL])
@@ -45,3 +46,26 @@ def test_the_verb_refuses_and_may_be_overruled(tmp_path, monkeypatch):
     assert "rec: asks for 1e+09 beads" in str(refused.exception)
     assert isinstance(CliRunner().invoke(cli, [*call, "--no-limits"]).exception, Reached)
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("beads", [10**6, 10**9])
+def test_a_look_at_it_is_refused_as_well_and_may_be_overruled(tmp_path, monkeypatch, beads):
+    # What is expected of a chain is simulated until its pulse has come back, however short the record is.
+    class Reached(Exception):
+        pass
+
+    def look(record):
+        raise Reached
+
+    monkeypatch.setattr(checked, "looked_through", look)
+    folder = put(tmp_path / "rec", chain__beads=beads)
+    call = ["record", "check", str(folder)]
+    refused = CliRunner().invoke(cli, call)
+    assert isinstance(refused.exception, InputError)
+    assert "rec: asks for" in str(refused.exception)
+    assert "fewer beads" in str(refused.exception)
+    assert isinstance(CliRunner().invoke(cli, [*call, "--no-limits"]).exception, Reached)
+
+
+def test_one_ball_asks_for_nothing():
+    check_expected(Record(parse(BALL), {}, "made-up"))

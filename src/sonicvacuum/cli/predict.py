@@ -46,7 +46,10 @@ def chain_options(command):
 @click.option("--aim", metavar="[GAUGE=]FORCE", help="Find the speed for this peak at the first gauge.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @click.option("--out", type=WRITTEN, help="Picture (.svg, .png, .pdf) to write as well.")
-def predict(as_json, out, **given):
+@click.option(
+    "--no-limits", is_flag=True, help="Simulate even what seems to need more than a computer gives."
+)
+def predict(as_json, out, no_limits, **given):
     """Say what a chain of equal beads will show: wave speed, forces, durations, arrivals, what to record."""
     if out:
         from sonicvacuum.figures.prediction import check_name, write
@@ -55,7 +58,7 @@ def predict(as_json, out, **given):
     from sonicvacuum.prediction import predict as predicted
     from sonicvacuum.prediction.text import content, text
 
-    found = predicted(**given)
+    found = predicted(**given, limits=not no_limits)
     if out:
         write(found, out)
     click.echo(json.dumps(content(found), indent=1, allow_nan=False) if as_json else text(found))

@@ -41,7 +41,8 @@ record.add_command(import_)
 )
 @click.argument("folders", nargs=-1, required=True, type=click.Path())
 @click.option("--json", "as_json", is_flag=True, help="Print JSON, in SI units.")
-def check(folders, as_json):
+@click.option("--no-limits", is_flag=True, help="Check even what seems to need more than a computer gives.")
+def check(folders, as_json, no_limits):
     """Say what is in the records in FOLDERS, what the nominal model expects, what looks suspicious.
 
     Arrival, amplitude, speed and width of each gauge and run stand beside those of the nominal model; slips
@@ -50,4 +51,4 @@ def check(folders, as_json):
     """
     from sonicvacuum.report import checked
 
-    click.echo(checked.check(folders, as_json))
+    click.echo(checked.check(folders, as_json, limits=not no_limits))

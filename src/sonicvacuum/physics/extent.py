@@ -18,6 +18,7 @@ MOST_WORK = 1e12
 MOST_MEMORY = 8 << 30
 # The step is estimated from so many bodies.
 _SEEN = 64
+LIFT = "lift the ceilings with --no-limits (limits=False in Python)"
 
 
 class TooLargeError(ValueError):
@@ -40,9 +41,11 @@ class Extent:
     work: float
     memory: float
 
-    def check(self) -> None:
-        """TooLargeError where it lies beyond a ceiling."""
-        for what, asked, most, cure in (
+    def check(self, cure: str = "") -> None:
+        """TooLargeError where it lies beyond a ceiling; `cure` is what to take instead, where it is known
+        better here than there.
+        """
+        for what, asked, most, usual in (
             ("beads", self.beads, MOST_BEADS, "fewer beads"),
             ("samples per contact", self.samples, MOST_SAMPLES, "a shorter duration or a longer interval"),
             ("steps of a bead", self.work, MOST_WORK, "a shorter duration, a softer chain or fewer speeds"),
@@ -50,8 +53,8 @@ class Extent:
         ):
             if not asked <= most:
                 raise TooLargeError(
-                    f"asks for {asked:.3g} {what}, more than {most:.3g}: are all units right? Take {cure}, "
-                    "or lift the ceilings with --no-limits"
+                    f"asks for {asked:.3g} {what}, more than {most:.3g}: are all units right? "
+                    f"Take {cure or f'{usual}, or {LIFT}'}"
                 )
 
 

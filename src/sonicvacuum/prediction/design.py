@@ -23,8 +23,8 @@ from sonicvacuum.files import InputError, likely
 from sonicvacuum.laboratory.next_run import FASTEST, SLOWEST
 from sonicvacuum.materials import MODULUS_REL_SIGMA
 from sonicvacuum.physics.scales import COUNTING, passage_of, sampling_of
-from sonicvacuum.prediction.setup import card_of
-from sonicvacuum.simulation import check_extent, set_up
+from sonicvacuum.prediction.setup import card_of, check_size
+from sonicvacuum.simulation import set_up
 
 NONE = "none"
 # What is told apart with so many standard errors counts as told apart.
@@ -133,7 +133,7 @@ def design(
     card = card_of(
         beads=beads, diameter=diameter, material=material, speed=speed, gauges=places, aim=None, **asked
     )
-    check_extent(card)
+    check_size(card, "fewer beads")
     own = card.striker.speeds_m_s[0]
     speeds = [own * factor for factor in SPEEDS if SLOWEST <= own * factor <= FASTEST]
     setup = set_up(card, np.array(speeds))
@@ -165,7 +165,9 @@ def _places(beads):
 
 def _effects(given, setup: Setup) -> tuple[Effect, ...]:
     names = given.split(",") if isinstance(given, str) else list(given)
-    names = list(dict.fromkeys(name.strip() for name in names))
+    names = list(dict.fromkeys(str(name).strip() for name in names))
+    if not names:
+        raise InputError("effects: none is given; name one to tell from none, or several")
     lacking = CATALOGUE.left_out(setup)
     for name in names:
         if name not in CATALOGUE:

@@ -19,6 +19,7 @@ from sonicvacuum.observe.pulse import main_pulse
 from sonicvacuum.observe.quantities import measure_run
 from sonicvacuum.observe.run import Geometry, Run
 from sonicvacuum.observe.trace import Trace
+from sonicvacuum.physics.extent import LIFT
 from sonicvacuum.physics.scales import (
     COUNTING,
     EMBEDDED_SHARE,
@@ -27,14 +28,15 @@ from sonicvacuum.physics.scales import (
     passage_of,
     sampling_of,
 )
-from sonicvacuum.prediction.setup import card_of
-from sonicvacuum.simulation import Simulation, check_extent, set_up, simulate
+from sonicvacuum.prediction.setup import card_of, check_size
+from sonicvacuum.simulation import Simulation, set_up, simulate
 
 # Samples across a pulse at half its height: with so many its arrival is read to 2e-5 of that width, its
 # duration to 7e-4 (module `observe.trace`).
 SAMPLES_PER_PULSE = 10
 # At rest before the impact, in durations of the longest pulse: baseline and noise are read there.
 REST = 2.0
+_FEWER = f"fewer beads, or {LIFT}"
 
 
 @dataclass(frozen=True)
@@ -117,6 +119,7 @@ def predict(
     striker_material: str | None = None,
     gauges: str | Sequence[int | str] | None = None,
     aim: str | float | None = None,
+    limits: bool = True,
 ) -> ChainPrediction:
     """What a chain of equal beads will show: speed, forces, durations, arrivals, what the recorder needs.
 
@@ -141,6 +144,7 @@ def predict(
         striker_material: the beads' (their core's) where not given.
         gauges: numbers of beads and `wall`, as `3,7,wall` or [3, 7, "wall"].
         aim: peak force at the first of the gauges, or `GAUGE=FORCE`.
+        limits: refuse a chain that asks for more time or memory than a computer gives.
 
     Returns:
         What is expected, SI units or those in the names: the wave's speed, force and duration, arrival and
@@ -155,11 +159,14 @@ def predict(
         >>> round(seen.bead_mass_g, 1), round(seen.wave_speed_m_s, -1)
         (32.7, 580.0)
     """
-    card = _layered(card_of(**locals()))
-    check_extent(card)
+    asked = {**locals()}
+    del asked["limits"]
+    card = _layered(card_of(**asked))
+    if limits:
+        check_size(card, _FEWER)
     if card.striker.aim is not None:
-        card = _settled(card)
-    return measured(simulate(_cut(card)))
+        card = _settled(card, limits)
+    return measured(_simulated(card, limits))
 
 
 def _layered(card: Card) -> Card:
@@ -176,14 +183,21 @@ def _cut(card: Card) -> Card:
     return changed(card, duration_s=passage_of(chain, COUNTING), interval_s=sampling_of(chain))
 
 
-def _settled(card: Card) -> Card:
+def _simulated(card: Card, limits: bool) -> Simulation:
+    card = _cut(card)
+    if limits:
+        check_size(card, _FEWER)
+    return simulate(card, limits=limits)
+
+
+def _settled(card: Card, limits: bool) -> Card:
     """The case with the striker speed at which the aimed gauge reads the wanted peak, and no aim."""
     speed = card.striker.speeds_m_s[0]
     force = EMBEDDED_SHARE * impact_scales(set_up(card).chain)[0]
     speed *= (card.striker.aim.amplitude_N / force) ** STRIKER_POWER
     for name, found in (("started", speed), ("settled", None)):
         if found is None:
-            found = float(simulate(_cut(card)).speeds[0])
+            found = float(_simulated(card, limits).speeds[0])
         try:
             ranges.SPEED.check("aim", found)
         except LaboratoryError:

@@ -4,6 +4,8 @@ Quantities are numbers in SI units or texts with their unit (`20mm`, `33 g`, `50
 """
 
 import math
+from collections.abc import Iterable
+from numbers import Integral
 from typing import Any
 
 from sonicvacuum.builders import ball_mass
@@ -12,7 +14,9 @@ from sonicvacuum.files import InputError, convert, likely
 from sonicvacuum.laboratory.next_run import gauge_beads
 from sonicvacuum.laboratory.ranges import LaboratoryError
 from sonicvacuum.materials import MATERIALS
+from sonicvacuum.physics.extent import Extent, TooLargeError
 from sonicvacuum.scope.units import quantity
+from sonicvacuum.simulation import extent
 
 # What is asked for → base unit (or `g`, which here is the gram) → factor to SI; an example to write.
 _UNITS = {
@@ -92,7 +96,7 @@ def card_of(
     sensors = _sensors(gauges, beads)
     hit = _striker(striker, in_si("striker_mass", striker_mass), striker_diameter, striker_material, ball)
     hit |= _start(speed, aim, sensors)
-    chain = {"beads": beads, "orientation": orientation, "bead": ball}
+    chain = {"beads": int(beads), "orientation": orientation, "bead": ball}
     chain |= {
         "wall": {"material": wall or core or material},
         "static_force_N": in_si("preload", preload) or 0.0,
@@ -148,11 +152,16 @@ def _striker(shape, mass, diameter, material, bead):
 
 def _sensors(gauges, beads):
     """Keys of the gauges: numbers of beads and `wall`; by default early, late and at the wall."""
+    if not isinstance(beads, Integral) or isinstance(beads, bool):
+        raise InputError(f"beads: is {beads!r}; write a whole number, as in 10")
     if beads < 1:
         raise InputError(f"beads: is {beads}; a chain has at least 1")
     if gauges is None:
         gauges = [*gauge_beads(beads), "wall"]
-    places = gauges.split(",") if isinstance(gauges, str) else list(gauges)
+    places = gauges.split(",") if isinstance(gauges, str) else gauges
+    places = list(places) if isinstance(places, Iterable) else [places]
+    if not places:
+        raise InputError("gauges: none is given; as in 3,7,wall, or leave them out")
     return [_sensor(str(place).strip(), beads) for place in dict.fromkeys(places)]
 
 
@@ -177,3 +186,12 @@ def _start(speed, aim, sensors):
         raise InputError(f"aim: {gauge!r} is none of the gauges {', '.join(ids)}; as in {ids[-1]}=5N")
     target = {"sensor": gauge, "amplitude_N": in_si("aim", force)}
     return {"speed_m_s": in_si("speed", speed) or 1.0, "aim": target}
+
+
+def check_size(card: Card, cure: str) -> None:
+    """InputError, with the cure, for a chain that asks for more than a computer gives."""
+    try:
+        Extent(card.beads, 1.0, 1.0, 1.0).check(cure)  # before anything is made for each bead
+        extent(card).check(cure)
+    except TooLargeError as error:
+        raise InputError(f"beads: the chain {error}") from None

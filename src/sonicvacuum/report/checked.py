@@ -10,17 +10,21 @@ from sonicvacuum.discover.faults.examine import examine
 from sonicvacuum.discover.model import window
 from sonicvacuum.records import Record, read
 from sonicvacuum.records.commands import summary
+from sonicvacuum.records.extent import check_expected
 from sonicvacuum.records.review import Review, content, review
 from sonicvacuum.report.bench import slip
 
 
-def check(folders, as_json: bool = False) -> str:
+def check(folders, as_json: bool = False, limits: bool = True) -> str:
     """Summaries of the records in folders, one after the other, or JSON (format 1, SI units).
 
     Raises:
-        InputError: for the first that cannot be read, before anything is said of another.
+        InputError: for the first that cannot be read, or (`limits`) whose nominal model asks for more than a
+            computer gives, before anything is said of another.
     """
     records = [read(folder) for folder in folders]
+    for record in records if limits else ():
+        check_expected(record)
     if as_json:
         found = [content(looked_through(record)) for record in records]
         return json.dumps({"format": 1, "records": found}, indent=1, ensure_ascii=False, allow_nan=False)
