@@ -188,3 +188,9 @@ def test_gauges_are_linear(a, b, offset, lowpass, droop):
 
     # Terms of order 5 × 4 × gain; a few roundings per sample of memory.
     np.testing.assert_allclose(read(a * x + b * y), a * read(x) + b * read(y), rtol=0, atol=1e-11)
+
+
+def test_a_bandwidth_of_next_to_no_time_changes_nothing_and_overflows_nowhere():
+    steps = np.linspace(0.0, 1.0, 20)
+    with np.errstate(divide="raise", invalid="raise", over="raise"):
+        assert np.array_equal(filtered(steps, 1e-6, lowpass_s=1e-314), steps)

@@ -64,7 +64,7 @@ def high_passed(
     constant of a few intervals comes out some per cent too short.
     """
     signal = np.asarray(signal, dtype=float)
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         h = interval_s / np.asarray(time_constant_s, dtype=float)
         weight = -np.expm1(-h) / h
     response = signal.copy()
@@ -83,7 +83,8 @@ def _bend(h):
 
     A sum of exponentials that cancel where h is small: a series there.
     """
-    with np.errstate(divide="ignore", invalid="ignore"):
+    # Where the other branch is what counts, or h is infinite.
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         whole = (h - 2.0 + (h + 2.0) * np.exp(-h)) / h**2
-    series = h * (1.0 / 6.0 - h * (1.0 / 12.0 - h * (1.0 / 40.0 - h / 180.0)))
+        series = h * (1.0 / 6.0 - h * (1.0 / 12.0 - h * (1.0 / 40.0 - h / 180.0)))
     return 0.25 * np.where(h < 0.01, series, np.where(np.isinf(h), 0.0, whole))

@@ -16,7 +16,8 @@ _COLUMNS = {TIME: "times"}
 
 
 def check_chain(chain: ChainBlock) -> None:
-    """Preload, sizes, masses and coatings."""
+    """Number, preload, sizes, masses and coatings."""
+    ranges.BEADS.check("chain.beads", chain.beads)
     ranges.STATIC_FORCE.check("chain.static_force_N", chain.static_force_N)
     for key, bead in bead_blocks(chain).kinds:
         ranges.check_bead(key, bead)

@@ -68,6 +68,8 @@ def suspicion(unit: str, value: float, low: float, high: float, others: Mapping[
     return f"; the number looks like one in {' or '.join(fitting)}: convert it to {unit}"
 
 
+# More would overflow the engine's counters; what a computer can do lies far below (`physics.extent`).
+BEADS = Range("beads", 0.0, 1e12, {})
 LENGTH = {"m": 1e-3, "cm": 0.1, "um": 1e3}
 DIAMETER = Range("mm", 0.02, 500.0, LENGTH)
 COATING = Range("um", 1e-3, 2e4, {"m": 1e-6, "mm": 1e-3, "nm": 1e3})
@@ -86,11 +88,19 @@ CLOCK = Range("(a fraction)", 0.0, 0.2, {"%": 1e2, "ppm": 1e6})
 TOLERANCE = Range("(a fraction)", 0.0, 1.0, {"%": 1e2})
 ODDS = Range("(odds)", 0.0, 1e6, {})
 _FORCES = {"mN": 1e3, "kN": 1e-3}
+AMPLITUDE = Range("N", 1e-9, 1e9, _FORCES)
 WAVE_SPEED = Range("m/s", 1.0, 6000.0, {"km/s": 1e-3, "mm/s": 1e3, "cm/s": 1e2})
 RATIO = Range("(a ratio)", 0.0, 100.0, {"%": 1e2})
 RESTITUTION = Range("(a ratio)", -1.0, 1.2, {"%": 1e2})
 COUNT = Range("(a count)", 0.0, 1000.0, {})
 WIDTH = Range("diameters", 0.3, 1e3, {"m": 5e-3, "mm": 5.0})
+
+
+def error_range(unit: str) -> Range:
+    """What a standard error may be, whatever it is of and whatever an uncalibrated gauge counts in: no
+    recorder is finer, and its square can be computed with.
+    """
+    return Range(unit, 1e-15, 1e12, {})
 
 
 def force_range(impact_N: float) -> Range:

@@ -91,6 +91,9 @@ def _check_units(sensor, key):
                     f"{key}.{name}_{suffix}",
                     f"a sensor of kind {sensor.kind} reads {KINDS[sensor.kind].unit}: give {name}_{own}",
                 )
+    for name in SCALED:
+        if size := getattr(sensor, f"{name}_{own}"):
+            ranges.error_range(KINDS[sensor.kind].unit).check(f"{key}.{name}_{own}", size)
 
 
 def _check_shared(block):
@@ -200,6 +203,10 @@ def _check_observable(block, observable, key):
         raise LaboratoryError(f"{key}.shared", "a count has no relative error; leave the key out")
     if observable.sigma == 0.0 and quantity != "pulse_count":
         raise LaboratoryError(f"{key}.sigma", "is 0; give the standard error of the value")
+    if observable.sigma:
+        ranges.error_range(observable.unit).check(f"{key}.sigma", observable.sigma)
+    if isinstance(observable, SpeedAtAmplitudeBlock):
+        ranges.AMPLITUDE.check(f"{key}.amplitude_N", observable.amplitude_N)
 
 
 def _check_pair(block, observable, key):
