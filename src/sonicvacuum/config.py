@@ -49,6 +49,7 @@ def read(path) -> Config:
             )
     _check_spelling(f"{path}: cases", config.cases)
     for case, block in config.cases.items():
+        _check_variants(block, f"{path}: cases.{case}")
         for variant in variant_names(block):
             card(config, case, variant, path)
             _check_model(config, case, variant, path)
@@ -117,17 +118,7 @@ def card(config: Config, case: str, variant: str, path="config.yaml") -> Card:
     if case not in config.cases:
         raise InputError(f"{path}: cases.{case}: no such case; known: {', '.join(config.cases)}")
     written = config.cases[case]
-    variants = written.get("variants")
-    if variants is not None and not (
-        isinstance(variants, dict) and all(isinstance(v, dict | None) for v in variants.values())
-    ):
-        raise InputError(f"{path}: cases.{case}.variants: expected name: {{overrides}}, one line each")
-    for name in variant_names(written):
-        if not (isinstance(name, str) and re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_-]{,99}", name)):
-            raise InputError(
-                f"{path}: cases.{case}.variants: {name!r} becomes a file's name: use letters, digits, _, - "
-                "(at most 100)"
-            )
+    _check_variants(written, f"{path}: cases.{case}")
     if variant not in variant_names(written):
         known = ", ".join(variant_names(written))
         raise InputError(f"{path}: cases.{case}: no variant {variant!r}; known: {known}")
@@ -136,6 +127,32 @@ def card(config: Config, case: str, variant: str, path="config.yaml") -> Card:
         return resolve(case, variant, block)
     except LaboratoryError as error:
         raise InputError(f"{path}: {_written(written, case, variant, error.key)}.{error}") from None
+
+
+def _check_variants(case, key):
+    """Variants are names of files, each with overrides of what the case itself says."""
+    variants = case.get("variants")
+    if variants is not None and not (
+        isinstance(variants, dict) and all(isinstance(v, dict | None) for v in variants.values())
+    ):
+        raise InputError(f"{key}.variants: expected name: {{overrides}}, one line each")
+    for name, changes in (variants or {}).items():
+        if not (isinstance(name, str) and re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_-]{,99}", name)):
+            raise InputError(
+                f"{key}.variants: {name!r} becomes a file's name: use letters, digits, _, - (at most 100)"
+            )
+        _check_overrides(case, changes or {}, key, f"variants.{name}")
+
+
+def _check_overrides(base, changes, key, variant):
+    """Keys can only be laid over keys: what stands there in their place would go unread."""
+    for name, change in changes.items():
+        below = base.get(name)
+        if not isinstance(change, dict) or below is None:
+            continue
+        if not isinstance(below, dict):
+            raise InputError(f"{key}.{name}: is {below!r}; write keys and values, as {variant} does")
+        _check_overrides(below, change, f"{key}.{name}", variant)
 
 
 def _block(written, case, variant, path) -> CaseBlock:

@@ -55,3 +55,25 @@ def test_the_model_of_a_record_is_refused_by_file_and_variant():
     case = CASE | {"variants": {"soft": {"model": {"record": "r", "losses": "none"}}}}
     with pytest.raises(InputError, match=r"other\.yaml: cases\.one\.variants\.soft\.model\.losses"):
         model(Config(cases={"one": case}), "one", "soft", "other.yaml")
+
+
+@pytest.mark.parametrize(
+    ("changes", "place"),
+    [
+        ({"variants": -1}, "variants: expected name"),
+        ({"variants": True}, "variants: expected name"),
+        (
+            {"effects": "tsuji", "variants": {"a": {"effects": {"tsuji": {"alpha": 0.1}}}}},
+            "effects: is 'tsuji'",
+        ),
+        (
+            {"chain": 7, "variants": {"a": {"chain": CHAIN}}},
+            "chain: is 7; write keys and values, as variants.a",
+        ),
+    ],
+)
+def test_nothing_of_a_case_goes_unread(tmp_path, changes, place):
+    path = tmp_path / "other.yaml"
+    path.write_text(json.dumps({"cases": {"one": CASE | changes}}))
+    with pytest.raises(InputError, match=re.escape(f"{path}: cases.one.{place}")):
+        read(path)
