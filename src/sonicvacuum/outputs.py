@@ -23,7 +23,8 @@ def check_apart(outputs: Iterable, inputs: Iterable) -> None:
     outputs = [Path(path) for path in outputs if path is not None]
     places: dict[Path, Path] = {}
     for path in outputs:
-        other = places.setdefault(path.resolve(), path)
+        # Not `Path.resolve`, which a link that points to itself ends in an error of its own.
+        other = places.setdefault(Path(os.path.realpath(path)), path)
         if other is not path:
             raise InputError(f"{path}: {other} is written there too; give each output a place of its own")
     standing = {_identity(path): path for path in outputs if path.is_file()}
@@ -43,7 +44,7 @@ def _identity(path):
 
 def check_folder(folder) -> None:
     """InputError where a folder cannot be made or written; nothing is left of the trial."""
-    folder = Path(folder).resolve()
+    folder = Path(os.path.realpath(folder))
     existing = next(place for place in (folder, *folder.parents) if os.path.lexists(place))
     if not existing.is_dir():
         raise InputError(f"{folder}: {existing} is a file; give another folder to write")

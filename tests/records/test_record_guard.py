@@ -47,6 +47,23 @@ def snapshot(folder):
     } | {top: b"" for top, _, _ in os.walk(folder)}
 
 
+def test_the_path_of_an_unset_variable_is_refused(place, monkeypatch, capsys):
+    assert "is empty" in refused(monkeypatch, capsys, "discover", "rec", "--out", "")
+    assert "record is empty" in refused(monkeypatch, capsys, "discover", "", "--out", "found")
+
+
+def test_a_link_to_itself_is_no_place_for_results(place):
+    (place / "loop").symlink_to("loop")
+    with pytest.raises(InputError, match="loop is a file"):
+        check_out("loop")
+
+
+def test_a_link_to_itself_beside_the_results_stops_nothing(place):
+    (place / "out").mkdir()
+    (place / "out/loop").symlink_to("loop")
+    check_out("out", ["rec"])
+
+
 @pytest.mark.parametrize(
     "arguments",
     [

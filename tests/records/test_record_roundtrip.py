@@ -183,3 +183,21 @@ def test_defaults_are_left_out_and_keys_keep_the_order_of_the_contract():
     assert list(written["chain"]) == ["beads", "orientation", "bead", "wall", "static_force_N"]
     assert list(written["runs"][1]["observables"][0]) == ["quantity", "from", "to", "value", "sigma", "unit"]
     assert "bead" not in written["sensors"][2]
+
+
+def test_a_record_that_cannot_be_written_to_its_end_leaves_the_old_one(tmp_path, monkeypatch):
+    record = made()
+    write(record, tmp_path)
+    before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+    put, done = signals.write, []
+
+    def once(traces, path):
+        if done:
+            raise OSError(28, "No space left on device")
+        done.append(path)
+        put(Signals(traces.time_s + 1.0, traces.readings), path)
+
+    monkeypatch.setattr(signals, "write", once)
+    with pytest.raises(OSError, match="No space left"):
+        write(record, tmp_path)
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before

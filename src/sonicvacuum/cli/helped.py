@@ -39,10 +39,16 @@ class Checked(click.Path):
         return path
 
 
+def _check_named(path):
+    """The empty path of a shell's unset variable would be the folder at work."""
+    if not path:
+        raise click.BadParameter("is empty; give the path of a folder, . for this one")
+
+
 # Paths: a file to write, a folder to write, a folder to read, a file to write or the folder for
 # several; a file to read is `sonicvacuum.cli.existing`.
 WRITTEN = Checked(check_written, dir_okay=False)
-FOLDER = click.Path(file_okay=False)
+FOLDER = Checked(_check_named, file_okay=False)
 PRESENT = click.Path(exists=True, file_okay=False)
 PLACE = click.Path()
 # Digits of a SHA-256 that tell locks apart.

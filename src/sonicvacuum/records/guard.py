@@ -1,5 +1,6 @@
 """No result is written into a record: measured data are irreplaceable."""
 
+import os
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
@@ -19,7 +20,7 @@ def check_out(folder, records: Iterable = ()) -> None:
         InputError: where the folder is that of a record (any, not only those read), lies in one, or holds a
             file of one that is read, be it through links; or where it cannot be made or written.
     """
-    place = Path(folder).resolve()
+    place = Path(os.path.realpath(folder))
     for above in (place, *place.parents):
         if (above / FILE).is_file():
             told = "is the folder of a record" if above == place else f"lies in the record {above}"

@@ -1,6 +1,7 @@
 """Reading a record: closed schema, physical ranges, traces; the first fault ends it with one message."""
 
 import hashlib
+import os
 import re
 from pathlib import Path
 
@@ -39,6 +40,8 @@ def read(path) -> Record:
     Raises:
         InputError: naming the file, the key or line, the value and the cure.
     """
+    if not os.fspath(path):  # of a shell's unset variable; to Python it is the folder at work
+        raise InputError(f"the path of a record is empty; give the folder that holds {FILE}")
     folder = Path(path)
     if folder.name == FILE and folder.is_file():
         folder = folder.parent

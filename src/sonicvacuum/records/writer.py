@@ -5,6 +5,7 @@ from pathlib import Path
 import msgspec
 
 from sonicvacuum.files import InputError, replacing, writing
+from sonicvacuum.outputs import renewed
 from sonicvacuum.records import signals
 from sonicvacuum.records.reader import FILE, parse
 from sonicvacuum.records.record import Record
@@ -16,7 +17,7 @@ _FIRST_OF_OBSERVABLE = (
 
 
 def write(record: Record, path) -> None:
-    """Write a record into a folder, made if need be; each file takes its name once it is complete.
+    """Write a record into a folder, made if need be; files take their names once all are complete.
 
     Raises:
         InputError: for a record that `read` would refuse (nothing is written then) or an unwritable folder.
@@ -30,10 +31,10 @@ def write(record: Record, path) -> None:
             f"{folder}: runs {sorted(files)} name signals and {sorted(record.signals)} have traces; "
             "each run with traces needs its own file name"
         )
-    with writing(folder):
+    with writing(folder), renewed(folder, last=FILE) as fresh:
         for run, name in files.items():
-            signals.write(record.signals[run], folder / name)
-        with replacing(folder / FILE) as stream:
+            signals.write(record.signals[run], fresh / name)
+        with replacing(fresh / FILE) as stream:
             stream.write(text(content))
 
 

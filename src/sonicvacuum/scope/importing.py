@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from sonicvacuum.files import InputError, check_values, replacing, writing
+from sonicvacuum.outputs import renewed
 from sonicvacuum.records import reader, signals
 from sonicvacuum.scope import draft
 from sonicvacuum.scope.clean import CleanRun, clean
@@ -43,10 +44,10 @@ def _spare(folder, runs, raw, force):
 
 
 def _write(folder, text, runs: list[CleanRun]):
-    with writing(folder):
+    with writing(folder), renewed(folder, last=reader.FILE) as fresh:
         for run in runs:
-            signals.write(run.signals, folder / f"{run.id}.csv")
-        with replacing(folder / reader.FILE) as stream:
+            signals.write(run.signals, fresh / f"{run.id}.csv")
+        with replacing(fresh / reader.FILE) as stream:
             stream.write(text)
 
 
