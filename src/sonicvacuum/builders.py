@@ -5,14 +5,14 @@ units. What a ball's size and material decide (its mass) or what is usual (a wal
 be left out. A wrong value is named where it is written; what only the whole shows, `sv.case` says.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Literal, TypeVar
 
 from msgspec import Struct, to_builtins
 from msgspec.structs import asdict, replace
 
 from sonicvacuum.card import Card, CaseBlock, SensorBlock, StrikerBlock, resolve
-from sonicvacuum.files import InputError, convert
+from sonicvacuum.files import InputError, check_values, convert
 from sonicvacuum.laboratory.blocks import BeadBlock, ChainBlock
 from sonicvacuum.laboratory.ranges import LaboratoryError, check_coating
 from sonicvacuum.materials import MATERIALS
@@ -73,7 +73,7 @@ def bead(
 def chain(
     *,
     bead: BeadBlock | None = None,
-    pattern: Sequence[BeadBlock] | None = None,
+    pattern: Iterable[BeadBlock] | None = None,
     beads: int | None = None,
     bodies: Mapping[int, BeadBlock | Mapping[str, Any]] | None = None,
     wall: str | None = None,
@@ -104,6 +104,12 @@ def chain(
         >>> tapered.beads, tapered.wall.material
         (6, 'glass')
     """
+    if pattern is not None:
+        if not isinstance(pattern, Iterable):
+            raise InputError(f"chain: pattern: is a {type(pattern).__name__}; give several of sv.bead")
+        pattern = list(pattern)
+    if not isinstance(bodies or {}, Mapping):
+        raise InputError(f"chain: bodies: is a {type(bodies).__name__}; give number of a bead: what is there")
     first = bead or (pattern[0] if pattern else None)
     if not isinstance(first, BeadBlock):
         raise InputError(
@@ -116,7 +122,7 @@ def chain(
         "beads": len(pattern or ()) if beads is None else beads,
         "orientation": orientation,
         "bead": bead,
-        "pattern": pattern and list(pattern),
+        "pattern": pattern,
         "bodies": changed,
         "wall": {"material": wall or first.core or first.material},
         "static_force_N": static_force_N,
@@ -193,7 +199,7 @@ def gauge(
         >>> sv.gauge("velocity", bead=15).id
         'velocity-15'
     """
-    keys = {"id": id or (kind if bead is None else f"{kind}-{bead}"), "kind": kind, "bead": bead}
+    keys = {"kind": kind, "bead": bead, "id": id or (kind if bead is None else f"{kind}-{bead}")}
     return _block(SensorBlock, "gauge", keys | {"droop_us": droop_us, "lowpass_us": lowpass_us})
 
 
@@ -253,7 +259,10 @@ def _block(kind: type[_Made], place: str, keys: dict[str, Any]) -> _Made:
         raise InputError(f"{place}: holds a {type(value).__name__}; give numbers, texts, lists and mappings")
 
     given = {key: value for key, value in keys.items() if value is not None}
-    return convert(to_builtins(given, enc_hook=plain), kind, place)
+    content = to_builtins(given, enc_hook=plain)
+    # Parameters of effects may be infinite, which the effects themselves look at.
+    check_values({key: value for key, value in content.items() if key != "effects"}, place)
+    return convert(content, kind, place)
 
 
 def _ball(kind: type[_Made], place: str, mass_g: float | None, keys: dict[str, Any]) -> _Made:

@@ -92,6 +92,14 @@ def whole(**changes):
             lambda: sv.bead(diameter_mm=5, material="parylene-c", coating_um=5000, core="glass"),
             r"bead\.coating_um: .*5000",
         ),
+        (lambda: sv.bead(diameter_mm=float("inf"), material="glass"), "bead: diameter_mm: is inf"),
+        (lambda: sv.gauge("velocity", bead=1.5), r"gauge: bead: is 1\.5"),
+        (lambda: sv.chain(pattern=3, beads=3), "chain: pattern: is a int"),
+        (lambda: sv.chain(bead=BALL, beads=3, bodies=[BALL]), "chain: bodies: is a list"),
+        (lambda: sv.simulate("card.json"), "simulate: is given 'card.json'; give a card"),
+        (lambda: sv.discover("rec"), r"discover: is given 'rec' as a record; give what sv\.read"),
+        (lambda: sv.compare("model.json", "rec"), r"compare: is given 'rec' as a record; give what sv\.read"),
+        (lambda: sv.read(""), "the path of a record is empty"),
         (lambda: sv.chain(beads=3), "chain: bead: missing"),
         (lambda: sv.chain(bead=BALL), "chain: beads: missing"),
         (lambda: sv.striker(speed_m_s=1.0, shape="flat", material="glass"), "striker: mass_g: missing"),
@@ -104,3 +112,9 @@ def whole(**changes):
 def test_mistakes_are_named_with_key_value_and_cure(make, told):
     with pytest.raises(sv.InputError, match=told):
         make()
+
+
+def test_a_pattern_may_be_any_series_of_beads():
+    balls = [sv.bead(diameter_mm=d, material="glass") for d in (5.0, 4.0, 3.0)]
+    assert sv.chain(pattern=(ball for ball in balls)) == sv.chain(pattern=balls)
+    assert sv.chain(pattern=np.array(balls, dtype=object)) == sv.chain(pattern=balls)
