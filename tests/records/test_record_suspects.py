@@ -116,6 +116,11 @@ def test_masses_are_held_against_densities():
     one(slip(chain__bead__mass_g=0.6), "chain.bead.mass_g: is 0.6 g", "of stainless-steel weighs 0.4518 g")
 
 
+def test_a_mass_is_named_by_the_bead_that_has_it():
+    said = slip(chain__bodies={4: {"mass_g": 0.6}})
+    assert any(line.startswith("chain.bodies.4.mass_g: is 0.6 g") for line in said), said
+
+
 def test_a_window_too_short_is_told_with_the_one_needed():
     def cut(s):
         return Signals(s.time_us[:420], {g: r[:420] for g, r in s.readings.items()})

@@ -12,6 +12,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from sonicvacuum.laboratory.blocks import bead_blocks
 from sonicvacuum.physics.scales import WAVE_POWER
 from sonicvacuum.physics.theory import bead_mass
 from sonicvacuum.records.expected import Expected
@@ -63,15 +64,14 @@ def _same(one, other) -> bool:
 def _masses(record) -> Iterator[str]:
     """Balls that do not weigh what their materials weigh."""
     bodies = record.specimen.bodies
-    for kind, bead in enumerate(bodies.kinds):
+    for (place, _), bead in zip(bead_blocks(record.block.chain).kinds, bodies.kinds, strict=True):
         inner = bead.core or bead.surface
         if bead.flat or inner.density_kg_m3 is None or bead.surface.density_kg_m3 is None:
             continue
         coating = bead.coating_m or 0.0
         densities = inner.density_kg_m3, bead.surface.density_kg_m3
         mass = float(bead_mass(bead.diameter_m / 2.0 - coating, coating, *densities))
-        key = "chain.bead.mass_g" if len(bodies.kinds) == 1 else f"chain: mass_g of kind {kind + 1} of bead"
-        yield from _mass(key, bead.mass_kg, mass, bead.diameter_m, inner.name)
+        yield from _mass(f"{place}.mass_g", bead.mass_kg, mass, bead.diameter_m, inner.name)
     for k, run in enumerate(record.runs):
         s = run.striker
         if record.beads and math.isfinite(s.radius_m) and s.surface.density_kg_m3:
