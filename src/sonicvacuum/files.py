@@ -25,8 +25,9 @@ MOST_VALUES = 200_000
 DEEPEST = 50
 
 
-# What moves a terminal's cursor or turns its writing round; tabs and new lines aside.
-_CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069]")
+# What moves a terminal's cursor or turns its writing round, tabs and new lines aside; halves of characters
+# (surrogates: escapes in YAML, bytes of a file's name), which nothing can write.
+_CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ud800-\udfff]")
 
 # What parsers raise at content that is not theirs; programming errors elsewhere stay visible.
 _DAMAGED = (
@@ -138,7 +139,9 @@ def read_text(path: str | os.PathLike) -> str:
     except OSError as error:
         raise InputError(f"{path}: {error.strerror or error}; give the path of a readable file") from None
     except UnicodeDecodeError as error:
-        raise InputError(f"{path}: not a text file (byte {error.start} is not UTF-8)") from None
+        raise InputError(
+            f"{path}: not a text file (byte {error.start} is not UTF-8); save it as UTF-8"
+        ) from None
 
 
 def read_json(path: str | os.PathLike, kind: type) -> Any:
@@ -176,7 +179,8 @@ def read_yaml(path: str | os.PathLike) -> dict[str, Any]:
         # What the YAML library stumbles over without a word of its own: impossible dates, lists as keys.
         raise _not_yaml(path, "", error) from None
     if not isinstance(content, dict):
-        raise InputError(f"{path}: expected keys and values at the top level, found {type(content).__name__}")
+        found = "nothing" if content is None else f"a {type(content).__name__}"
+        raise InputError(f"{path}: expected keys and values (key: value), found {found}")
     return content
 
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from sonicvacuum import files
 from sonicvacuum.cli import main
-from sonicvacuum.files import InputError, check_values, convert, read_text, read_yaml, replacing
+from sonicvacuum.files import InputError, check_values, convert, in_one_line, read_text, read_yaml, replacing
 
 
 def test_a_failure_leaves_what_stood_there(tmp_path):
@@ -41,8 +41,8 @@ def test_success_replaces_and_makes_folders(tmp_path):
         ("a: 0x1F\n", "0x1F is 31 in YAML"),
         ("a: 1:30\n", "1:30 is 90 in YAML"),
         ("a: 1_000.5\n", "1_000.5 is 1000.5 in YAML"),
-        ("- 1\n", "found list"),
-        ("", "found NoneType"),
+        ("- 1\n", "found a list"),
+        ("", "found nothing"),
         ("a: !!python/object:os.system {}\n", "not valid YAML"),
     ],
 )
@@ -53,6 +53,13 @@ def test_bad_yaml_is_one_line(tmp_path, text, hint):
         read_yaml(path)
     assert str(path) in str(error.value)
     assert hint in str(error.value)
+
+
+def test_half_a_character_is_none():
+    """YAML has an escape for it, names of files may hold it, and nothing could write it again."""
+    with pytest.raises(InputError, match=r"rec: title: is .* which holds control characters"):
+        check_values({"title": "a\ud800"}, "rec")
+    assert in_one_line("bad\udcff") == r"bad\udcff"
 
 
 def test_merge_keys_are_allowed(tmp_path):
@@ -126,7 +133,7 @@ def test_missing_and_binary_files_are_named(tmp_path):
     with pytest.raises(InputError, match=r"nothing\.yaml: No such file"):
         read_text(tmp_path / "nothing.yaml")
     (tmp_path / "b").write_bytes(b"\xff\xfe\x00")
-    with pytest.raises(InputError, match="not a text file"):
+    with pytest.raises(InputError, match=r"not a text file.*save it as UTF-8"):
         read_text(tmp_path / "b")
 
 
