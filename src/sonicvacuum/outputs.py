@@ -8,6 +8,8 @@ from pathlib import Path
 
 from sonicvacuum.files import InputError
 
+_PARTIAL = ".partial"
+
 
 def check_apart(outputs: Iterable, inputs: Iterable) -> None:
     """Refuse to write over what is read.
@@ -73,15 +75,18 @@ def renewed(folder, last: str, stale: Iterable[str] = ()) -> Iterator[Path]:
     made = not folder.exists()
     folder.mkdir(parents=True, exist_ok=True)
     try:
-        with tempfile.TemporaryDirectory(prefix=".", suffix=".partial", dir=folder) as fresh:
+        with tempfile.TemporaryDirectory(prefix=".", suffix=_PARTIAL, dir=folder) as fresh:
             yield Path(fresh)
             names = {path.name for path in Path(fresh).iterdir()}
             for name in (last, *sorted(set(stale) - names)):
                 (folder / name).unlink(missing_ok=True)
             for name in sorted(names, key=lambda name: (name == last, name)):
                 os.replace(Path(fresh, name), folder / name)
-    except BaseException:
+    except BaseException as error:
         if made:
             with suppress(OSError):
                 folder.rmdir()
+        named = getattr(error, "filename", None)
+        if isinstance(named, str) and Path(named).parent.name.endswith(_PARTIAL):
+            error.filename = str(folder / Path(named).name)  # where the file was to stand
         raise

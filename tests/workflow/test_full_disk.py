@@ -98,6 +98,7 @@ def test_what_stood_there_is_whole(made, monkeypatch, capsys, verb):
     told = capsys.readouterr().err.strip()
     assert code == 1
     assert told.startswith("Error: ") and "\n" not in told
+    assert ".partial" not in told  # of no file that the user would look for
     assert snapshot(made) == before
 
 
