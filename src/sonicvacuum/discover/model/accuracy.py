@@ -1,10 +1,15 @@
 """How accurate the simulations of a search are: the stepper and finite differences, as far as noise asks for.
 
 Both follow the norm of the whitened data, in standard errors: a weak record is simulated with longer steps
-than a precise one, so that the error stays the same small part of the noise.
+than a precise one, so that the error stays the same small part of the noise. Where a record's own chain errs
+by more than the rule expects, its steps are cut.
 """
 
+from copy import copy
+
 import numpy as np
+
+from sonicvacuum.discover.model.hypothesis import Hypothesis
 
 # Largest steps of speed and modulus for finite differences, relative; smaller where the data are precise, so
 # that all data together change by about this many standard errors, and collinear columns come out collinear.
@@ -14,6 +19,13 @@ LARGEST_STEP, STEP_AIM = 3e-3, 10.0
 # any law, and contacts that forget ten times the elastic force in 0.3 us, err by some 1e-4 of a gauge's peak;
 # at twice that a step is as long as one of a memory can be.
 ERROR, ERROR_AIM, LONGEST = 1e-6, 0.05, 3.0
+# Contacts of a preloaded chain that open and close for many reflections multiply what a step errs by: the
+# prediction of a record is held against one of half the step, until they agree within TOLERATED standard
+# errors over all data together or steps are shorter than SHORTEST. Effects whose steppers err otherwise are
+# named for a difference of ten and more.
+TOLERATED, SHORTEST = 0.25, 2.0
+# Striker speeds, in their standard errors, at which that is done.
+PROBED = (-1.0, 0.0, 1.0)
 # The same of running integrals, which only lead to where fits start.
 LEADING_AIM = 1.0
 
@@ -29,3 +41,35 @@ def refinement(norm: float, leading: bool = False) -> float:
     """
     aim = LEADING_AIM if leading else ERROR_AIM
     return float(np.clip((ERROR * norm / aim) ** 0.25, 1.0 / LONGEST, 1.0))
+
+
+def chosen(forward) -> float:
+    """By what the stepper's full accuracy is refined for a `Forward`: what its norm asks for, doubled until
+    the error of its nominal chains is tolerated; what only leads elsewhere is not held to that.
+    """
+    refine = refinement(forward.norm, leading=forward.experiment.integrated)
+    if forward.experiment.integrated:
+        return refine
+    seen = _nominal(forward, refine)
+    while refine < SHORTEST:
+        finer = _nominal(forward, 2.0 * refine)
+        if _apart(seen, finer) <= TOLERATED:
+            break
+        refine, seen = 2.0 * refine, finer
+    return refine
+
+
+def _nominal(forward, refine):
+    """(lanes, data) whitened predictions of the nominal chains at the speeds probed."""
+    other = copy(forward)
+    other._refine = refine
+    nu = np.zeros((len(PROBED), forward.layout.size))
+    nu[:, : len(forward.experiment.runs)] = np.array(PROBED)[:, None]
+    seen = other.sampled(Hypothesis(), np.zeros((len(nu), 0)), nu)
+    forward.simulations = other.simulations
+    return np.concatenate(seen, axis=1)
+
+
+def _apart(one, other):
+    """Largest distance of two predictions in standard errors; what is not shown does not count."""
+    return np.sqrt(np.nansum((one - other) ** 2, axis=1)).max()

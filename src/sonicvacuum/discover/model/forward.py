@@ -114,7 +114,7 @@ class Forward:
     @cached_property
     def _refine(self) -> float:
         """What divides the steps of simulations."""
-        return accuracy.refinement(self.norm, leading=self.experiment.integrated)
+        return accuracy.chosen(self)
 
     @cached_property
     def _whitened(self):
