@@ -48,6 +48,29 @@ def test_a_weak_pulse_is_no_noise(empty, height, stated):
     assert correlation[1] == 0.0
 
 
+def test_the_foot_of_a_pulse_is_no_noise(empty):
+    """A weak pulse comes in steps, the first below what ends the quiet stretch, and a gauge that discharges
+    lies below rest behind it."""
+    rng = np.random.default_rng(SEED)
+
+    def stepwise(_):
+        foot = 3.0 * np.clip((TIME - 150.0) / 40.0, 0.0, 1.0) * (TIME < 330.0)
+        crest = 9.0 * np.sin(np.pi * np.clip((TIME - 300.0) / 80.0, 0.0, 1.0)) ** 2
+        behind = -2.0 * np.exp(-(TIME - 360.0) / 300.0) * (TIME > 360.0)
+        return SIGMA * (foot + crest + behind + rng.normal(size=700))
+
+    sigma, correlation = noise([altered(empty, "g7", stepwise)])
+    assert sigma[1] == pytest.approx(SIGMA, rel=1e-3)  # as stated, with the floor of the model
+    assert correlation[1] == 0.0
+
+
+@pytest.mark.parametrize("ratio", [1.3, 3.0])
+def test_louder_noise_is_believed(empty, ratio):
+    rng = np.random.default_rng(SEED)
+    louder = altered(empty, "g7", lambda y: y + np.sqrt(ratio**2 - 1.0) * SIGMA * rng.normal(size=700))
+    assert noise([louder])[0][1] == pytest.approx(ratio * SIGMA, rel=0.15)
+
+
 def stepped(share, seed=0):
     """The nominal model's readings in a recorder's steps; noise is this share of one."""
     rng = np.random.default_rng(np.random.SeedSequence([33, seed]))

@@ -31,6 +31,8 @@ _NOISIER = 1.3
 STEPPED = 0.64
 # Deviations from the stated white noise count from so many standard errors on.
 _SURE = 4.0
+# Noise is there from the first sample to the last: its first half shows this share of it (in logarithms).
+_BEGUN = 0.5
 # So many third differences of white noise are worth one independent sample: 1 + 2 (15² + 6² + 1)/20², from
 # their correlations −15/20, 6/20, −1/20. They and the quiet stretch agree within so many standard errors.
 _RIPPLE, _AGREE = 1.0 + 2.0 * (15.0**2 + 6.0**2 + 1.0) / 20.0**2, 3.0
@@ -110,11 +112,24 @@ def _traces(records, gauge):
 def _quiet_of(traces, gauge):
     """The quiet stretches of a gauge that are long enough."""
     sigma = gauge.sigma or max(map(flicker, traces), default=0.0)
-    quiet = [q for t in traces if len(q := _quiet(t, sigma)) >= _LEAST]
+    quiet = [q for t in traces if len(q := _unrisen(_quiet(t, sigma), gauge.sigma)) >= _LEAST]
     if gauge.baseline_sigma or gauge.drift_sigma:
         # Where level and slope are open, noise is what is left of both.
         quiet = [_off_its_line(q) for q in quiet]
     return quiet if sum(map(len, quiet)) >= _FEWEST else []
+
+
+def _unrisen(stretch, sigma):
+    """A stretch, or as many halves off it as its noise asks for: what is surely louder than stated, while its
+    first half shows less than half of that (in logarithms), began within it, and is the foot of a pulse.
+    """
+    while sigma and len(stretch) >= 2 * _LEAST:
+        half = stretch[: len(stretch) // 2]
+        whole, begun = (0.5 * math.log(max(q @ q / len(q), 1e-300) / sigma**2) for q in (stretch, half))
+        if whole < math.log1p(_SURE / math.sqrt(len(stretch))) or begun > _BEGUN * whole:
+            break
+        stretch = half
+    return stretch
 
 
 def _off_its_line(stretch):
