@@ -23,7 +23,7 @@ ERROR, ERROR_AIM, LONGEST = 1e-6, 0.05, 3.0
 # prediction of a record is held against one of half the step, until they agree within TOLERATED standard
 # errors over all data together or steps are shorter than SHORTEST. Effects whose steppers err otherwise are
 # named for a difference of ten and more.
-TOLERATED, SHORTEST = 0.25, 2.0
+TOLERATED, SHORTEST = 0.25, 4.0
 # Striker speeds, in their standard errors, at which that is done.
 PROBED = (-1.0, 0.0, 1.0)
 # The same of running integrals, which only lead to where fits start.

@@ -112,7 +112,7 @@ def _traces(records, gauge):
 def _quiet_of(traces, gauge):
     """The quiet stretches of a gauge that are long enough."""
     sigma = gauge.sigma or max(map(flicker, traces), default=0.0)
-    quiet = [q for t in traces if len(q := _unrisen(_quiet(t, sigma), gauge.sigma)) >= _LEAST]
+    quiet = [q for t in traces if len(q := _unrisen(_quiet(t, sigma), sigma)) >= _LEAST]
     if gauge.baseline_sigma or gauge.drift_sigma:
         # Where level and slope are open, noise is what is left of both.
         quiet = [_off_its_line(q) for q in quiet]
@@ -120,8 +120,8 @@ def _quiet_of(traces, gauge):
 
 
 def _unrisen(stretch, sigma):
-    """A stretch, or as many halves off it as its noise asks for: what is surely louder than stated, while its
-    first half shows less than half of that (in logarithms), began within it, and is the foot of a pulse.
+    """A stretch, or its first half, quarter and so on: what is surely louder than stated, or than samples
+    flicker, while the first half shows less than half of that (in logarithms), is the foot of a pulse.
     """
     while sigma and len(stretch) >= 2 * _LEAST:
         half = stretch[: len(stretch) // 2]
