@@ -70,6 +70,22 @@ def test_the_foot_of_a_pulse_is_no_noise(empty, stated):
     assert correlation[1] == 0.0
 
 
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("share", [0.0, 0.3])
+def test_a_pulse_that_begins_is_no_drift(empty, seed, share):
+    """It rises with the square of time, below what ends the quiet stretch; a drift does so from the start."""
+    rng = np.random.default_rng(np.random.SeedSequence([34, seed]))
+    rise = 60.0 * np.clip((TIME - 200.0 * share) / 250.0, 0.0, None) ** 2 * (TIME < 250.0)
+    for slip, trace in (None, rise), ("drift", 8.0 * TIME / 250.0 - 4.0), ("baseline", np.full(700, 3.0)):
+        pulse = 60.0 * np.sin(np.pi * np.clip((TIME - 250.0) / 200.0, 0.0, 1.0)) ** 2
+
+        def read(y, trace=trace, pulse=pulse):
+            return SIGMA * (trace + pulse + rng.normal(size=len(y)))
+
+        told = {f.fault for f in examine(altered(empty, "g7", read))[1]}
+        assert told == ({slip} if slip else set())
+
+
 @pytest.mark.parametrize("ratio", [1.3, 3.0])
 def test_louder_noise_is_believed(empty, ratio):
     rng = np.random.default_rng(SEED)

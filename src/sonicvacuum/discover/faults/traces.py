@@ -25,6 +25,8 @@ _SWING, _PULSE = 1.5, 0.35
 # Periods of a line that a stretch must hold, for one that is seen as a line in the spectrum, and for one that
 # leaves nothing but noise.
 _SEEN, _FEWEST_PERIODS = 4, 1.5
+# Where in a stretch a pulse may begin, as shares of its length.
+_ONSETS = np.linspace(0.0, 0.9, 19)
 # Frequencies tried for one that several stretches share.
 TRIED = 401
 
@@ -136,7 +138,8 @@ def _straight(stretch):
 def drift(stretch: np.ndarray, sigma: float) -> tuple[float, float] | None:
     """Slope per sample of a quiet stretch and its standard error, None where it may be flat or is no line.
 
-    Of a line only the noise is left once it is taken off; of a pulse that began early, or of a bend, more.
+    Of a line only the noise is left once it is taken off; of a pulse that began early, or of a bend, more, or
+    as much as a pulse leaves that begins in the stretch.
     """
     n = len(stretch)
     if n < FEWEST:
@@ -144,10 +147,19 @@ def drift(stretch: np.ndarray, sigma: float) -> tuple[float, float] | None:
     slope, _ = _straight(stretch)
     bare = stretch - line(stretch)
     left = float(bare.std(ddof=2))
-    if left > NOISE_FACTOR * max(sigma, flicker(stretch)):
+    if left > NOISE_FACTOR * max(sigma, flicker(stretch)) or _foot(stretch) < bare @ bare:
         return None
     error = max(sigma, left) * math.sqrt(12.0 / n**3) * coloured.wider(bare)
     return (slope, error) if abs(slope) > SURE * error else None
+
+
+def _foot(stretch):
+    """Squares that are left of a stretch beside a pulse that begins in it: from rest at 0, with the square of
+    time from some sample on.
+    """
+    place = np.arange(len(stretch)) / len(stretch)
+    feet = np.maximum(place - _ONSETS[:, None], 0.0) ** 2
+    return float(stretch @ stretch - ((feet @ stretch) ** 2 / (feet**2).sum(axis=1)).max())
 
 
 def rest(stretch: np.ndarray, sigma: float, common: float = 0.0) -> tuple[float, float]:
@@ -169,6 +181,8 @@ def level(stretch: np.ndarray, sigma: float, common: float = 0.0) -> tuple[float
     if len(stretch) < _LEVEL_EACH or not max(sigma, float(np.ptp(stretch))) > 0.0:
         return None
     mean, error = float(stretch.mean()), _error_of_mean(stretch, sigma, common)
+    if _foot(stretch) < np.square(stretch - mean).sum():
+        return None
     halves = [float(half.mean()) for half in np.array_split(stretch, 2)]
     return (mean, error) if max(abs(h - mean) for h in halves) < max(0.5 * abs(mean), 3.0 * error) else None
 
