@@ -10,6 +10,8 @@ from copy import copy
 import numpy as np
 
 from sonicvacuum.discover.model.hypothesis import Hypothesis
+from sonicvacuum.physics.chain import Chain
+from sonicvacuum.physics.scales import passage_of
 
 # Largest steps of speed and modulus for finite differences, relative; smaller where the data are precise, so
 # that all data together change by about this many standard errors, and collinear columns come out collinear.
@@ -26,6 +28,9 @@ ERROR, ERROR_AIM, LONGEST = 1e-6, 0.05, 3.0
 TOLERATED, SHORTEST = 0.25, 4.0
 # Striker speeds, in their standard errors, at which that is done.
 PROBED = (-1.0, 0.0, 1.0)
+# Only where traces last this share of the time in which the slowest wave would cross the chain and come back:
+# a preloaded chain, whose waves are faster, has then been crossed several times. Ordinary records end before.
+LASTING = 0.3
 # The same of running integrals, which only lead to where fits start.
 LEADING_AIM = 1.0
 
@@ -47,8 +52,10 @@ def chosen(forward) -> float:
     """By what the stepper's full accuracy is refined for a `Forward`: what its norm asks for, doubled until
     the error of its nominal chains is tolerated; what only leads elsewhere is not held to that.
     """
-    refine = refinement(forward.norm, leading=forward.experiment.integrated)
-    if forward.experiment.integrated:
+    experiment = forward.experiment
+    refine = refinement(forward.norm, leading=experiment.integrated)
+    long = any(lasting(batch.chain, _recorded(experiment, batch)) for batch in experiment.batches)
+    if experiment.integrated or not long:
         return refine
     seen = _nominal(forward, refine)
     while refine < SHORTEST:
@@ -57,6 +64,17 @@ def chosen(forward) -> float:
             break
         refine, seen = 2.0 * refine, finer
     return refine
+
+
+def lasting(chain: Chain, time_s: float) -> bool:
+    """Whether waves run to and fro several times in so many seconds after the impact."""
+    return bool(chain.beads) and time_s > LASTING * passage_of(chain)
+
+
+def _recorded(experiment, batch) -> float:
+    """Last instant in s of the traces of a batch, 0 without any."""
+    runs = [experiment.runs[k] for k in batch.runs]
+    return max((float(run.time[-1]) for run in runs if run.has_signals), default=0.0)
 
 
 def _nominal(forward, refine):

@@ -13,16 +13,14 @@ from dataclasses import replace
 
 import numpy as np
 
+from sonicvacuum.discover.model.accuracy import lasting
 from sonicvacuum.discover.model.experiment import Experiment
 from sonicvacuum.discover.model.nominal import predicted
 from sonicvacuum.discover.model.problem import experiment
-from sonicvacuum.physics.scales import STRIKER_POWER, WAVE_POWER, passage_of
+from sonicvacuum.physics.scales import STRIKER_POWER, WAVE_POWER
 from sonicvacuum.records import Record, Signals
 from sonicvacuum.records.assemble import chain_of
 
-# Only traces are looked at that last this share of the time in which the slowest wave crosses the chain
-# and comes back; a preloaded chain, whose waves are faster, has then been crossed several times.
-LASTING = 0.5
 # Relative change of speeds that slopes are taken with: far above rounding, far below where readings bend.
 CHANGE = 1e-5
 # A pulse's force goes as v^{6/5}, its speed as v^{1/5}: Hertz contacts, the steepest of common laws.
@@ -91,7 +89,7 @@ def _note(run, time, end):
 def _lasting(record, run) -> bool:
     if not record.beads or run.signals.samples < FEWEST:
         return False
-    return bool(run.signals.time_s[-1] > LASTING * passage_of(chain_of(record, [run])))
+    return lasting(chain_of(record, [run]), float(run.signals.time_s[-1]))
 
 
 def _faster(data: Experiment) -> Experiment:
