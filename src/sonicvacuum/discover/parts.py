@@ -2,7 +2,7 @@
 
 from typing import Literal
 
-from msgspec import Struct, UnsetType
+from msgspec import UNSET, Struct, UnsetType
 
 from sonicvacuum.discover.faults.table import FAULTS
 
@@ -113,10 +113,13 @@ Sources = dict[str, Source] | UnsetType
 
 
 class Fault(Part, kw_only=True):
-    """One slip of the laboratory; `sensor` one id or several, null where it concerns none."""
+    """One slip of the laboratory; `sensor` one id or several, null where it concerns none; `quantity` where
+    it concerns one of a table without traces.
+    """
 
     fault: FaultId
     run: str | None
     sensor: str | list[str] | None
     probability: float
     value: float | None
+    quantity: str | UnsetType = UNSET

@@ -147,6 +147,7 @@ def faults(findings: Iterable[Finding]) -> list[Fault]:
             sensor=list(f.sensor) if isinstance(f.sensor, tuple) else f.sensor,
             probability=float(f.probability),
             value=None if f.value is None else float(f.value),
+            quantity=f.quantity or UNSET,
         )
         for f in sorted(findings, key=lambda f: -f.probability)
     ]

@@ -33,10 +33,12 @@ def slips(verdict: Verdict) -> list[str]:
 
 
 def _slip(one) -> str:
-    said = slip(one)
     # The name of a gauge keeps its spelling.
-    said = f"Gauge {said}" if FAULTS[one.fault].says.startswith("{sensor}") else said[0].upper() + said[1:]
-    text = f"{said}: {FAULTS[one.fault].check}"
+    header, said = FAULTS[one.fault], slip(one)
+    if header.says.startswith("{sensor}") and not _tabled(one):
+        said = f"Gauge {said}"
+    said = said[0].upper() + said[1:]
+    text = f"{said}: {header.look_up if _tabled(one) else header.check}"
     return f"{text}. That it is so is {in_words(one.probability)}."
 
 
@@ -47,15 +49,22 @@ def corrected(verdict: Verdict) -> str:
     return re.sub(r"(?<=[a-z])-(?=[a-z])", " ", f"{said[0].upper()}{said[1:]}.") if said else ""
 
 
+def _tabled(one) -> bool:
+    """Whether a slip concerns values of a table: one quantity, or errors of no gauge."""
+    return bool(FAULTS[one.fault].of_table and (one.quantity or (one.sensor is None and not one.run)))
+
+
 def slip(one: Fault) -> str:
     """One slip in a few words."""
-    header = FAULTS[one.fault]
+    header, quantity = FAULTS[one.fault], one.quantity or "all values"
     sensors = [one.sensor] if isinstance(one.sensor, str) else (one.sensor or ["a gauge"])
-    says, number = header.says, one.value
+    says, number = header.of_table if _tabled(one) else header.says, one.value
     if number is not None and number < 0.0 and header.negative:
         says, number = header.negative, -number
     value = "some" if number is None else f"{number:.4g}"
-    text = says.format(sensor=joined(list(sensors)), run=one.run or "all runs", value=value)
+    text = says.format(
+        sensor=joined(list(sensors)), run=one.run or "all runs", value=value, quantity=quantity
+    )
     place = one.run and "{run}" not in says
     return f"{text} in run {one.run}" if place else text
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from sonicvacuum.gauges import KINDS
 from sonicvacuum.records import Record, Signals
-from sonicvacuum.records.blocks import SCALED, SUFFIXES
+from sonicvacuum.records.blocks import SCALED, SUFFIXES, DecayBlock
 
 # (run id, gauge id) → (T,) samples that must not be believed.
 Lost = dict[tuple[str, str], np.ndarray]
@@ -77,7 +77,20 @@ def gauges_swapped(record: Record, one: str, two: str) -> Record:
     def swapped(signals):
         return Signals(signals.time_us, {names.get(k, k): v for k, v in signals.readings.items()})
 
+    if not record.signals:
+        return _block(record, runs=[_renamed(run, names) for run in record.block.runs])
     return replace(record, signals={k: swapped(s) for k, s in record.signals.items()})
+
+
+def _renamed(run, names):
+    """A run whose amplitudes and durations are other gauges'; speeds are of the same two places, or none."""
+
+    def renamed(one):
+        keys = ("from_", "to") if isinstance(one, DecayBlock) else ("sensor",)
+        own = {key: getattr(one, key) for key in keys if hasattr(one, key)}
+        return msgspec.structs.replace(one, **{key: names.get(id, id) for key, id in own.items()})
+
+    return msgspec.structs.replace(run, observables=[renamed(one) for one in run.observables])
 
 
 def runs_swapped(record: Record, one: str, two: str) -> Record:

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sonicvacuum.discover.faults import policy
+from sonicvacuum.discover.faults import policy, tables
 from sonicvacuum.discover.faults.examine import examine, with_noise_of
 from sonicvacuum.discover.faults.found import Bench, Finding
 from sonicvacuum.discover.faults.judged import (
@@ -87,7 +87,7 @@ def discover(records: Sequence[Record], catalogue: Catalogue = CATALOGUE, thread
     seen = [predicted(together((r,), catalogue), threads) if r.signals else {} for r in records]
     looked = [examine(*one) for one in zip(records, seen, strict=True)]
     benches, findings = [bench for bench, _ in looked], [f for _, own in looked for f in own]
-    if len(records) > 1 or not benches[0].record.signals:
+    if len(records) > 1 or not (benches[0].record.signals or tables.asked(benches[0].record)):
         return Outcome(_investigated(benches, catalogue, threads), tuple(findings), benches[0].record)
     search = Search(benches[0], catalogue, threads, findings)
     outcome = search.run()
@@ -149,9 +149,10 @@ class Search(Ranking):
             model = self._nominal = Model(self.bench, model.forward, found.null)
             looked = suspicious(model)
             ranked = self.ranked(model) if looked else []
+        traced = bool(self.bench.record.signals)
         if not ranked and set(found.named) - {explanations.UNKNOWN}:
-            ranked = self.as_small(model, found)
-        elif ranked and any(self._like_slips(found, name) for name in found.named):
+            ranked = self.as_small(model, found) if traced else []
+        elif ranked and traced and any(self._like_slips(found, name) for name in found.named):
             ranked = self.ranked(model, afar=True)
         for _ in range(policy.MOST):
             better = self._instead(found, ranked)
@@ -170,9 +171,11 @@ class Search(Ranking):
         """Whether an effect alone explains about as much as a slip, or more: one that moves all pulses as an
         effect may, or leaves a misfit of its own. A gauge in volts fits far better in its neighbour's place.
         """
+        if judged.slip.plain:
+            return False
         rest = excess(model) - judged.gain
         leaves = rest > max(policy.SURE_GAIN, policy.REST * excess(model))
-        if not (FAULTS[judged.slip.fault].stretches or leaves):
+        if not (FAULTS[judged.slip.fault].stretches or judged.slip.of_values or leaves):
             return False
         forward, before = model.forward, model.forward.chains
         known = directions.catalogue(singles.setup_of(forward), forward.experiment.excluded)
@@ -195,10 +198,10 @@ class Search(Ranking):
         for judged, weight in zip(ranked, weights, strict=True):
             p = min(float(weight) * share, policy.PLAIN)
             if p >= policy.SHOWN or judged is chosen:
-                finding = judged.slip.finding(judged.size, p)
+                finding = judged.finding(p)
                 self.findings.append(replace(finding, corrected=judged is chosen))
         self.bench = chosen.model.bench
-        if chosen.slip.fault == "gauges-swapped":
+        if chosen.slip.fault == "gauges-swapped" and self.bench.record.signals:
             self.findings = with_noise_of(self.findings, self.bench.record, chosen.slip.sensor)
 
     def _instead(self, found: Investigation, ranked: list[Judged]) -> Investigation | None:
@@ -302,7 +305,7 @@ class Search(Ranking):
         weights = p * parts(rivals, like)
         for judged, weight in zip(rivals, weights, strict=False):
             if weight >= policy.SHOWN:
-                self.findings.append(judged.slip.finding(judged.size, float(weight)))
+                self.findings.append(judged.finding(float(weight)))
         share, told = float(weights[: len(rivals)].sum()), found.probabilities
         for name, own in list(told.items()):
             if kept := without(name, found, like):

@@ -20,6 +20,7 @@ class Finding:
         value: in the fault's unit, None where there is none.
         probability: that the slip was made.
         corrected: whether the rest of the verdict is of the record without it.
+        quantity: of a table, where it concerns one.
     """
 
     fault: str
@@ -28,6 +29,7 @@ class Finding:
     value: float | None = None
     probability: float = 1.0
     corrected: bool = False
+    quantity: str | None = None
 
 
 @dataclass(frozen=True)

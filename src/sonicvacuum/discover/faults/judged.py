@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sonicvacuum.discover.faults import policy
-from sonicvacuum.discover.faults.found import Bench
+from sonicvacuum.discover.faults.found import Bench, Finding
 from sonicvacuum.discover.faults.slips import Slip
 from sonicvacuum.discover.faults.table import FAULTS
 from sonicvacuum.discover.fit import tails
@@ -57,6 +57,11 @@ class Judged:
         """Log of prior times Bayes factor."""
         return self.log_bayes + policy.log_prior(self.slip.alternatives)
 
+    def finding(self, probability: float = 1.0) -> Finding:
+        """What is said of it."""
+        found = self.slip.finding(self.size, probability)
+        return replace(found, value=self.slip.seen(self.model)) if self.slip.seen and self.model else found
+
 
 def excess(model: Model) -> float:
     """χ² of a nominal fit, its nuisances' included, above the number of data."""
@@ -69,7 +74,11 @@ def most_of(objective: float, size: float) -> float:
 
 
 def obvious(judged: Judged, model: Model) -> bool:
-    """Whether a slip takes away nearly all misfit by itself."""
+    """Whether a slip takes away nearly all misfit by itself; of the values of a table, most of it."""
+    if judged.slip.plain:
+        return judged.gain > policy.SURE_VALUES
+    if judged.slip.of_values:
+        return judged.gain > max(policy.SURE_VALUES, policy.SHARE_VALUES * excess(model))
     return (
         judged.gain > policy.SURE_GAIN
         and judged.gain > policy.SHARE * excess(model)
@@ -107,6 +116,8 @@ def both_off(worth: list[Judged]) -> set[str]:
 def suspicious(model: Model) -> bool:
     """Whether a nominal fit leaves more than its noise, or strains its nuisances."""
     one, size = model.fit, data(model.forward)
+    if tabled(model.forward.experiment) and scale_gain(one.objective / size, size) > policy.LEAST_GAIN:
+        return True
     misfit = float(one.normal.chi2.sum()) - size
     strained = float(one.nu @ one.nu)
     return misfit > policy.SUSPICIOUS * math.sqrt(2.0 * size) or strained > tails.chi_squared_at(
@@ -114,8 +125,20 @@ def suspicious(model: Model) -> bool:
     )
 
 
+def tabled(experiment: Experiment) -> bool:
+    """Whether all data are values, without traces."""
+    return not any(run.has_signals for run in experiment.runs)
+
+
+def scale_gain(square: float, count: int) -> float:
+    """Δ(−2 log L) of so many values for the best factor on their errors, whose mean square is `square`."""
+    return count * (square - 1.0 - math.log(max(square, 1e-12)))
+
+
 def noise_volume(experiment: Experiment) -> float:
-    """Σ log σ² of all samples that count, their correlation included."""
+    """Σ log σ² of all samples that count, their correlation included; of values where there are no traces."""
+    if tabled(experiment):
+        return sum(2.0 * math.log(one.sigma) for run in experiment.runs for one in run.scalars)
     sigma2 = experiment.sigma**2 * (1.0 - experiment.correlation**2)
     counts = sum(
         np.full(len(sigma2), len(r.time)) if r.present is None else r.present.sum(axis=1)

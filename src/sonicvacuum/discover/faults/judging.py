@@ -13,7 +13,9 @@ from sonicvacuum.discover.fit.refit import Fit, fit
 from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.experiment import Experiment
 from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.model.problem import error
 from sonicvacuum.records import Record
+from sonicvacuum.records.record import observable
 
 # Steps of the search for a size, and the Δχ² below which a step is the last.
 STEPS, LAST = 6, 0.3
@@ -40,7 +42,7 @@ class Judge:
     def __init__(self, model: Model, make: Callable[[Bench], Experiment], threads: int | None = None):
         self.model, self.make, self.threads = model, make, threads or model.forward.threads
         self.simulations = 0
-        self._columns = None
+        self._columns = self._both = None
         self._own = self._residuals(model.bench.record)
 
     def _bench(self, record: Record) -> Bench:
@@ -80,8 +82,27 @@ class Judge:
             found.append((parts, nu))
         return found, noise_volume(forward.experiment)
 
+    def _look_at_values(self, slip: Slip) -> Judged:
+        """The same of a slip that changes values and errors of a table only: nothing is simulated for it."""
+        if self._both is None:
+            self._both = self._residuals(self.model.bench.record, slip)
+        (own,), volume = self._own
+        changed = slip.change(self.model.bench.record, 0.0)
+        after, numbers = np.inf, [_numbers(r) for r in (self.model.bench.record, changed)]
+        for parts, nu in self._both[0]:
+            moved = []
+            for part, (value, stated), (new, wider) in zip(parts, *numbers, strict=True):
+                moved.append(part * (stated / wider))
+                moved[-1][0] += (new - value) / wider
+            after = min(after, self._least(moved, nu))
+        after += sum(2.0 * float(np.log(wider).sum()) for _, wider in numbers[1])
+        gain = self._least(*own) + volume - after
+        return Judged(slip, 0.0, gain, 0.5 * gain + occam(slip, 0.0, gain))
+
     def look(self, slip: Slip) -> Judged:
         """Gain as the slopes have it: one simulated experiment or two, no fit."""
+        if slip.of_values:
+            return self._look_at_values(slip)
         (own,), volume = self._own
         record, size = self.model.bench.record, slip.start
         if slip.continuous and not size:
@@ -260,6 +281,12 @@ class Judge:
         found = fit(forward, one.hypothesis, many_u, np.stack(nu), reach=worse)
         self.simulations += forward.chains
         return size, Model(bench, forward, found)
+
+
+def _numbers(record: Record) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Values and errors of every run of a table, in SI."""
+    found = [list(map(observable, run.observables)) for run in record.block.runs]
+    return [(np.array([o.value for o in own]), np.array([error(o) for o in own])) for own in found]
 
 
 def _farther(before: tuple[float, float] | None, size: float, step: float) -> float:

@@ -22,6 +22,19 @@ FOLLOWED = 4
 # but a 180th where two runs had been swapped, a 330th where they had not. One that leaves more than so many
 # times the misfit as it is explains nothing, and is not fitted.
 REACH = 300.0
+# A table of fewer values than this says nothing of a single one.
+FEWEST_VALUES = 8
+# What is wrong in a table by itself, a value or the stated errors, is put right before any effect is searched
+# for where it gains so much (a value six or seven errors off), more than half of all misfit, and more
+# than any effect alone.
+SURE_VALUES, SHARE_VALUES = 30.0, 0.5
+# A value shows by itself that it is wrong where so much χ² of a straight course over the runs goes with it,
+# and so many times what is left of all courses then: in 108 sound tables it is twice that at most.
+PLAIN_GAIN, PLAIN_RATIO = 100.0, 10.0
+# Power of the striker's speed with which values go, at most or about.
+SPEED_POWER = 1.5
+# The speed of a run that a table asks for is off by no more, in its logarithm.
+FARTHEST_SPEED = math.log(4.0)
 # No more slips than this are put right in one record: a record with more should be made anew.
 MOST = 3
 # Probabilities below this are not worth a line.

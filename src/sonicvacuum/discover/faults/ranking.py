@@ -5,7 +5,7 @@ to their size (`judging`), and the likeliest come first.
 """
 
 from sonicvacuum import stages
-from sonicvacuum.discover.faults import policy
+from sonicvacuum.discover.faults import policy, tables
 from sonicvacuum.discover.faults.found import Bench, Finding
 from sonicvacuum.discover.faults.judged import (
     Judged,
@@ -18,7 +18,7 @@ from sonicvacuum.discover.faults.judged import (
 )
 from sonicvacuum.discover.faults.judging import Judge
 from sonicvacuum.discover.faults.lines import drifts
-from sonicvacuum.discover.faults.slips import hypotheses
+from sonicvacuum.discover.faults.slips import Slip, hypotheses
 from sonicvacuum.discover.faults.starts import with_starts
 from sonicvacuum.discover.faults.table import FAULTS
 from sonicvacuum.discover.faults.timing import late_runs, time_zero
@@ -36,6 +36,12 @@ from sonicvacuum.effects import Catalogue
 # Slopes foresee this share of what a small slip gains, or more: of beads a tenth too heavy, which gained 31
 # beside strained nuisances, they had foreseen 15.
 FORESEEN = 0.5
+
+
+def _as_well(judged: Judged, plain: Judged) -> bool:
+    """Whether the speed of a run explains a value of it that stands out: where it moves that one alone."""
+    same = judged.slip.fault == "run-off" and judged.slip.run == plain.slip.run
+    return same and judged.gain > plain.gain - ALIKE
 
 
 class Ranking:
@@ -75,6 +81,8 @@ class Ranking:
     def ranked(self, model: Model, afar: bool = False) -> list[Judged]:
         """Slips that gain enough beside a model, fitted, the likeliest first; masses also `afar`."""
         judge, record = Judge(model, self.judged), model.bench.record
+        if not record.signals:
+            return self._of_table(judge, tables.hypotheses(record, model))
         seen = predicted(self.make(model.bench), self.threads)
         done = {(f.fault, f.run, f.sensor) for f in self.findings}
         slips = [*with_starts(hypotheses(record), record, seen, model), *late_runs(record, model, seen)]
@@ -101,6 +109,22 @@ class Ranking:
         followed = judge.follow_all([*worth, *whole])
         if far and not any(obvious(j, model) for j in followed):
             followed += judge.follow_all([j for j in apart if j not in worth])
+        return self._kept(judge, followed)
+
+    def _of_table(self, judge: Judge, slips: list[Slip]) -> list[Judged]:
+        """The same of a table: the best of each kind are fitted."""
+        done = {(f.fault, f.run, f.sensor, f.quantity) for f in self.findings if f.corrected}
+        stages.begin("slips of the laboratory")
+        looked = judge.look_at([s for s in slips if s.at not in done])
+        worth = tables.worth(looked)
+        far = [j for j in looked if j.slip.far and j not in worth]
+        kept = self._kept(judge, judge.follow_all([*worth, *far]))
+        # What shows by itself is put right first, whatever may explain more of all that there is.
+        plain = next((j for j in kept if j.slip.plain), None)
+        return [j for j in kept if j is plain or _as_well(j, plain)] if plain else kept
+
+    def _kept(self, judge: Judge, followed: list[Judged]) -> list[Judged]:
+        """Those that gain enough, the likeliest first."""
         self.simulations += judge.simulations
         kept = [j for j in followed if j.gain > policy.LEAST_GAIN and j.log_odds > 0.0]
         return sorted(kept, key=lambda j: -j.log_odds)

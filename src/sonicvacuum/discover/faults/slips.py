@@ -41,6 +41,10 @@ class Slip:
         start: size from which the search starts.
         instead: kind of the run's nuisance that has followed the slip so far, "" where none is like it.
         lost: (samples lost before, record, size) → those that are lost in the record put right.
+        quantity: of a table, where it concerns one.
+        of_values: whether it changes values or their errors only, and nothing of what is simulated.
+        plain: whether the values show it by themselves, whatever acts in them.
+        seen: fitted model → value that is said, where the size does not tell it.
     """
 
     fault: str
@@ -55,6 +59,10 @@ class Slip:
     start: float = 0.0
     instead: str = ""
     lost: Callable[[changes.Lost, Record, float], changes.Lost] = lambda lost, _record, _size: lost
+    quantity: str | None = None
+    of_values: bool = False
+    plain: bool = False
+    seen: Callable[..., float | None] | None = None
 
     @property
     def continuous(self) -> bool:
@@ -66,9 +74,15 @@ class Slip:
         """Whether one run is so far off that the model's nuisances have followed it, or cannot."""
         return bool(self.instead and self.start)
 
+    @property
+    def at(self) -> tuple:
+        """What it is and where."""
+        return self.fault, self.run, self.sensor, self.quantity
+
     def finding(self, size: float, probability: float = 1.0) -> Finding:
         """What is said of it."""
-        return Finding(self.fault, self.run, self.sensor, self.value(size), probability)
+        value = self.value(size)
+        return Finding(self.fault, self.run, self.sensor, value, probability, quantity=self.quantity)
 
 
 def hypotheses(record: Record) -> list[Slip]:
@@ -76,9 +90,15 @@ def hypotheses(record: Record) -> list[Slip]:
     return [*_discrete(record), *_sizes(record)]
 
 
+def chain_slips(record: Record) -> list[Slip]:
+    """Those of them that values without traces show as well: numbers of beads, speeds of single runs."""
+    embedded = [g for g in record.gauges if g.bead is not None]
+    return [*_counts(record, embedded), *_runs_off(record)]
+
+
 def _discrete(record):
     embedded = [g for g in record.gauges if g.bead is not None]
-    yield from _swaps([g.id for g in record.gauges])
+    yield from swaps([g.id for g in record.gauges])
     moves = [(g, by) for g in embedded for by in (-1, 1) if 1 <= g.bead + by <= record.beads]
     taken = {g.bead for g in embedded}
     for g, by in moves:
@@ -95,7 +115,8 @@ def _discrete(record):
     yield from _exchanged(record)
 
 
-def _swaps(ids):
+def swaps(ids):
+    """Every two gauges in each other's place."""
     pairs = list(itertools.combinations(ids, 2))
     for one, two in pairs:
         change = partial(_ignoring, changes.gauges_swapped, one, two)
@@ -127,17 +148,12 @@ def _exchanged(record):
 
 
 def _sizes(record):
-    def one(fault, change, alternatives=1, **where):
-        return Slip(fault, change, alternatives=alternatives, width=WIDTH[fault], **where)
-
+    one = _sized
     yield one("bead-mass", partial(_keyed, changes.beads, "mass_g"))
     yield one("bead-size", partial(_keyed, changes.beads, "diameter_mm"))
     yield one("striker-mass", partial(_keyed, changes.strikers, "mass_g"))
     yield one("speed-common", partial(_keyed, changes.strikers, "speed_m_s"))
-    runs = [r.id for r in record.block.runs]
-    if len(runs) > 1:
-        for run in runs:
-            yield one("run-off", partial(_one_speed, run), len(runs), run=run, instead="speed")
+    yield from _runs_off(record)
     if record.signals:
         yield one("gain-common", changes.gains)
         yield one("clock", changes.clock, step=1e-3)
@@ -145,6 +161,17 @@ def _sizes(record):
     for id in ids if len(ids) > 1 else []:
         given = {"sensor": id, "step": 0.05, "value": float, "lost": partial(_lost_late, id)}
         yield one("gauge-delayed", partial(_late, id), len(ids), **given)
+
+
+def _sized(fault, change, alternatives=1, **where):
+    return Slip(fault, change, alternatives=alternatives, width=WIDTH[fault], **where)
+
+
+def _runs_off(record):
+    runs = [r.id for r in record.block.runs]
+    if len(runs) > 1:
+        for run in runs:
+            yield _sized("run-off", partial(_one_speed, run), len(runs), run=run, instead="speed")
 
 
 def _ignoring(change, *given):

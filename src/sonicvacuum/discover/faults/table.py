@@ -19,6 +19,8 @@ class Fault:
         stretches: whether effects may do much the same: it moves all times or forces at once, or stays behind
             after every pulse.
         curved: whether no nuisance is like it, so that beside strong pulses slopes mislead on its size.
+        of_table: what it is where it concerns values of a table, `{quantity}`; "" where `says` does.
+        look_up: what to look at there.
     """
 
     id: str
@@ -30,6 +32,8 @@ class Fault:
     negative: str = ""
     stretches: bool = False
     curved: bool = False
+    of_table: str = ""
+    look_up: str = ""
 
 
 FAULTS: dict[str, Fault] = {
@@ -40,11 +44,15 @@ FAULTS: dict[str, Fault] = {
             "the noise of {sensor} before the pulse is {value} times the stated one",
             "check the stated noise and the channel's range",
             corrected=False,
+            of_table="the errors of {quantity} look {value} times the stated ones",
+            look_up="check how sigma was worked out: of single values or of means, and in which unit",
         ),
         Fault(
             "spikes",
             "{sensor} has samples far off their neighbours: {value}",
             "check shielding and connectors",
+            of_table="{quantity} is {value} times what all others make it, a value that no other supports",
+            look_up="look it up where it was written down: its digits, the power of ten, the unit, the row",
         ),
         Fault(
             "drift",
@@ -63,7 +71,13 @@ FAULTS: dict[str, Fault] = {
             "check grounding, lamps, pumps and supplies",
             "kHz",
         ),
-        Fault("gauges-swapped", "gauges {sensor} look swapped", "check the cables and the channels' names"),
+        Fault(
+            "gauges-swapped",
+            "gauges {sensor} look swapped",
+            "check the cables and the channels' names",
+            of_table="{quantity} of gauges {sensor} look exchanged",
+            look_up="check the rows of that run",
+        ),
         Fault(
             "gauge-inverted", "gauge {sensor} has the wrong sign", "check its poles and the channel's sign"
         ),
@@ -95,6 +109,8 @@ FAULTS: dict[str, Fault] = {
             "runs-swapped",
             "runs {run} look exchanged",
             "check which file belongs to which striker speed",
+            of_table="{quantity} of runs {run} look exchanged",
+            look_up="check the rows of both runs",
         ),
         Fault("run-off", "run {run} was struck at {value} times the stated speed", "check that run's speed"),
         Fault(

@@ -146,7 +146,7 @@ def _run(record, run, sigma):
             if stepped(readings[s], sigma[s]):
                 present[s] &= ~repeated(readings[s])
     scalars = tuple(
-        Scalar(o.quantity, o.value, _error(o), o.options, o.bound, o.shared) for o in run.observables
+        Scalar(o.quantity, o.value, error(o), o.options, o.bound, o.shared) for o in run.observables
     )
     there = None if present.all() else present
     return RunData(run.id, time, readings, scalars, run.striker.speed_rel_sigma, there)
@@ -167,7 +167,7 @@ def _notes(record, runs):
     return tuple(notes)
 
 
-def _error(observable):
+def error(observable) -> float:
     """Standard error of an observable; one that is given as exact is known to the simulation's accuracy."""
     return max(observable.sigma, MODEL_FLOOR * abs(observable.value), 1e-12)
 

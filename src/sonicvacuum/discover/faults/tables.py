@@ -1,0 +1,308 @@
+"""Slips of records that have tables of values and no traces.
+
+A value that no other supports is known to its own size only from then on (`spikes`). Rows of two gauges or of
+two runs may stand in each other's place, a whole run or two gauges as well, a run may have been struck at
+another speed, a bead be miscounted, and stated errors of all values or of one quantity be too small or too
+large. What all strikers have in common is told as the effect that is just that; errors of all beads are asked
+of traces only: tables of a few numbers do not tell them from a law.
+"""
+
+import itertools
+import math
+from collections import defaultdict
+from dataclasses import replace
+from functools import partial
+
+import msgspec
+import numpy as np
+
+from sonicvacuum.discover.faults import policy
+from sonicvacuum.discover.faults.judged import Model, scale_gain
+from sonicvacuum.discover.faults.slips import Slip, chain_slips, swaps
+from sonicvacuum.discover.faults.starts import NEAR
+from sonicvacuum.records import Record
+from sonicvacuum.records.record import label_of, observable
+
+# A value that no other supports may be anything of its size, give or take this factor.
+ANYTHING = 3.0
+# Stated errors are off by e to this in the usual case, and by ten at most: what leaves more is no noise.
+ERRORS, MOST = 2.0, math.log(10.0)
+# What is left of noise stands by itself: neighbouring runs have no more in common than this many standard
+# deviations of chance; no value is further off than so many errors, and half of them by this share of one
+# (0.67 of white noise).
+ALIKE, FARTHEST, HALF = 1.7, 4.0, 0.4
+
+
+def asked(record: Record) -> bool:
+    """Whether a record is a table of enough values for some to be held against the others."""
+    values = sum(_is_value(o) for run in record.block.runs for o in run.observables)
+    return not record.signals and values >= policy.FEWEST_VALUES
+
+
+def hypotheses(record: Record, model: Model) -> list[Slip]:
+    """All slips of a table, beside a model of it."""
+    runs = _runs(record)
+    start = _at_stated(model)
+    whole = [s for s in chain_slips(record) if s.fault != "run-off"]
+    off = [_started(s, model, start) for s in chain_slips(record) if s.fault == "run-off"]
+    gauges = swaps([g.id for g in record.gauges])
+    rows = [*_values(runs, start, model), *_gauges(runs), *_exchanged(runs), *_noise(runs, model)]
+    return [*whole, *off, *gauges, *rows]
+
+
+def _runs(record):
+    """For each run its id and its observables with their places in the record; counts and bounds left out."""
+    return [
+        (run.id, [(j, observable(o)) for j, o in enumerate(run.observables) if _is_value(o)])
+        for run in record.block.runs
+    ]
+
+
+def _is_value(block):
+    return block.bound is None and block.__struct_config__.tag != "pulse_count"
+
+
+def label(one) -> str:
+    """The name of a quantity as it is told."""
+    return label_of(one.quantity.replace("_", " "), one.options)
+
+
+def _at_stated(model):
+    """Columns of every run where all is as stated."""
+    one = model.fit
+    return model.forward.columns(one.hypothesis, one.u[None], 0.0 * one.nu[None])
+
+
+def _started(slip, model, start):
+    """A run's speed, from where its values lead in one step."""
+    forward, p = model.forward, len(model.fit.u)
+    run = [r.id for r in forward.experiment.runs].index(slip.run)
+    place = list(forward.layout.local(run)).index(forward.layout.speed(run))
+    sigma = float(forward.nuisance_sigma[forward.layout.speed(run)])
+    if not sigma > 0.0:
+        return slip
+    slope, left = start[run][0, 1 + p + place] / sigma, forward.data(run) - start[run][0, 0]
+    size = float(slope @ left) / (float(slope @ slope) + slip.width**-2.0)
+    size = math.copysign(min(abs(size), policy.FARTHEST_SPEED), size)
+    return replace(slip, start=size) if abs(size) > NEAR[slip.fault] * slip.width else slip
+
+
+def _values(runs, start, model):
+    """Each value by itself."""
+    count, out = sum(len(rows) for _, rows in runs), _standing_out(runs, start, model)
+    for k, (run, rows) in enumerate(runs):
+        for j, one in rows:
+            expected = abs(float(start[k][0, 0, j]) * model.forward.experiment.runs[k].scalars[j].sigma)
+            anything = ANYTHING * max(abs(one.value), expected)
+            yield Slip(
+                "spikes",
+                partial(_unsupported, k, j, anything / (one.sigma or 1.0)),
+                run,
+                _gauges_of(one),
+                count,
+                quantity=label(one),
+                of_values=True,
+                value=_nothing,
+                seen=partial(_times, k, j),
+                plain=(k, j) in out,
+            )
+
+
+def _standing_out(runs, start, model) -> set[tuple[int, int]]:
+    """The value that by itself leaves the course of its own quantity over the runs' speeds, if there is one.
+
+    Whatever effect acts, logarithms of measured over expected values lie along a line, roughly: without that
+    value they do, in all quantities.
+    """
+    experiment, series = model.forward.experiment, defaultdict(list)
+    for k, (_, rows) in enumerate(runs):
+        speed, error = (
+            math.log(experiment.record.runs[k].striker.speed_m_s),
+            experiment.runs[k].speed_rel_sigma,
+        )
+        for j, one in rows:
+            expected = float(start[k][0, 0, j]) * experiment.runs[k].scalars[j].sigma
+            if expected > 0.0 and one.value > 0.0:
+                own = math.hypot(one.sigma / max(one.value, expected), policy.SPEED_POWER * error)
+                row = math.log(one.value / expected) / own, 1.0 / own, speed / own
+                series[label(one)].append(((k, j), row))
+    courses = [_course(*zip(*own, strict=True)) for own in series.values() if len(own) > 3]
+    gain, at = max((best for _, best in courses), default=(0.0, (0, 0)))
+    left = sum(square for square, _ in courses) - gain
+    return {at} if gain > policy.PLAIN_GAIN and gain > policy.PLAIN_RATIO * (1.0 + left) else set()
+
+
+def _course(places, rows):
+    """χ² of one quantity along a line, and by how much it is less without one value, with its place."""
+    table = np.array(rows)
+
+    def squares(without=None):
+        own = np.delete(table, without, axis=0) if without is not None else table
+        best = np.linalg.lstsq(own[:, 1:], own[:, 0], rcond=None)[0]
+        return float(np.square(own[:, 0] - own[:, 1:] @ best).sum())
+
+    whole = squares()
+    return whole, max((whole - squares(n), place) for n, place in enumerate(places))
+
+
+def _gauges_of(one):
+    found = tuple(str(one.options[key]) for key in ("sensor", "from", "to") if key in one.options)
+    return found[0] if len(found) == 1 else found or None
+
+
+def _times(k, j, model):
+    """How many times what all others make of it a value is."""
+    found = model.forward.sampled(model.fit.hypothesis, model.fit.u[None], model.fit.nu[None])[k][0, j]
+    one = model.forward.experiment.runs[k].scalars[j]
+    return one.value / (float(found) * one.sigma) if found else None
+
+
+def _nothing(_):
+    return None
+
+
+def _edited(record, edits):
+    """The record with some numbers of its values changed: (run, place) → field → number."""
+    runs = list(record.block.runs)
+    by_run = defaultdict(dict)
+    for (k, j), given in edits.items():
+        by_run[k][j] = given
+    for k, changed in by_run.items():
+        own = [
+            msgspec.structs.replace(o, **changed[j]) if j in changed else o
+            for j, o in enumerate(runs[k].observables)
+        ]
+        runs[k] = msgspec.structs.replace(runs[k], observables=own)
+    return replace(record, block=msgspec.structs.replace(record.block, runs=runs))
+
+
+def _unsupported(k, j, factor, record, _):
+    own = record.block.runs[k].observables[j]
+    return _edited(record, {(k, j): {"sigma": (own.sigma or 1.0) * factor}})
+
+
+def _exchange(pairs, record, _):
+    """Values and errors of pairs of rows, each in the other's place."""
+    edits = {}
+    for a, b in pairs:
+        for here, there in ((a, b), (b, a)):
+            other = record.block.runs[there[0]].observables[there[1]]
+            edits[here] = {"value": other.value, "sigma": other.sigma}
+    return _edited(record, edits)
+
+
+def _gauges(runs):
+    """Rows of two gauges in one run."""
+    pairs = [
+        (k, run, a, b)
+        for k, (run, rows) in enumerate(runs)
+        for a, b in itertools.combinations(rows, 2)
+        if a[1].quantity == b[1].quantity and "sensor" in a[1].options and _level(a[1]) == _level(b[1])
+    ]
+    for k, run, (i, one), (j, other) in pairs:
+        yield Slip(
+            "gauges-swapped",
+            partial(_exchange, [((k, i), (k, j))]),
+            run,
+            (str(one.options["sensor"]), str(other.options["sensor"])),
+            len(pairs),
+            quantity=one.quantity.replace("_", " "),
+            of_values=True,
+            value=_nothing,
+        )
+
+
+def _level(one):
+    return {key: value for key, value in one.options.items() if key != "sensor"}
+
+
+def _exchanged(runs):
+    """Rows of one quantity in two runs, and all rows of two runs."""
+    places = [{label(one): (k, j) for j, one in rows} for k, (_, rows) in enumerate(runs)]
+    pairs = list(itertools.combinations(range(len(runs)), 2))
+    single = [(a, b, name) for a, b in pairs for name in places[a] if name in places[b]]
+    for a, b, name in single:
+        yield _swapped_runs(runs, a, b, [(places[a][name], places[b][name])], len(single), name)
+    for a, b in pairs:
+        if places[a] and places[a].keys() == places[b].keys():
+            yield _swapped_runs(runs, a, b, [(places[a][n], places[b][n]) for n in places[a]], len(pairs))
+
+
+def _swapped_runs(runs, a, b, rows, alternatives, name=None):
+    return Slip(
+        "runs-swapped",
+        partial(_exchange, rows),
+        f"{runs[a][0]} and {runs[b][0]}",
+        None,
+        alternatives,
+        quantity=name,
+        of_values=True,
+        value=_nothing,
+    )
+
+
+def _noise(runs, model):
+    """Stated errors of another size than what is left, of all values and of each quantity."""
+    one = model.fit
+    found = model.forward.sampled(one.hypothesis, one.u[None], one.nu[None])
+    left = [model.forward.data(k) - value[0] for k, value in enumerate(found)]
+    quantities = sorted({o.quantity for _, rows in runs for _, o in rows})
+    for name in (None, *(quantities if len(quantities) > 1 else ())):
+        rows = [(k, j, o) for k, (_, own) in enumerate(runs) for j, o in own if name in (None, o.quantity)]
+        z = {(k, j, label(o)): float(left[k][j]) for k, j, o in rows}
+        # What is fitted follows the noise: of all values the strain of the nuisances makes up for that.
+        strain = 0.0 if name else float(one.nu @ one.nu)
+        square = (sum(v**2 for v in z.values()) + strain) / len(z)
+        factor = math.sqrt(square)
+        if abs(math.log(max(factor, 1e-6))) > MOST:
+            continue
+        if scale_gain(square, len(z)) < policy.LEAST_GAIN or not _random(z, factor):
+            continue
+        price = math.log(math.sqrt(2.0 * math.pi / (2.0 * len(z))) / (2.0 * ERRORS))
+        yield Slip(
+            "noise-misstated",
+            partial(_rescaled, [at[:2] for at in z], factor),
+            # Whoever misjudges errors mostly misjudges all of them.
+            alternatives=2 * len(quantities) if name else 2,
+            quantity=name and name.replace("_", " "),
+            of_values=True,
+            value=partial(_constant, factor),
+            occam=price,
+        )
+
+
+def _constant(value, _):
+    return value
+
+
+def _rescaled(places, factor, record, _):
+    own = record.block.runs
+    edits = {(k, j): {"sigma": own[k].observables[j].sigma * factor} for k, j in places}
+    return _edited(record, edits)
+
+
+def _random(z, factor) -> bool:
+    """Whether what is left of some values is noise: neighbouring runs have nothing in common, none is far,
+    nor do a few make up all of it.
+    """
+    sizes = np.abs(list(z.values())) / factor
+    half = float(np.median(sizes))
+    if sizes.max() > FARTHEST or half < HALF:
+        return False
+    series = defaultdict(list)
+    for (_, _, name), value in z.items():
+        # The farthest must not hide what all others have in common.
+        series[name].append(np.clip(value / factor, -3.0 * half, 3.0 * half))
+    pairs = [a * b for own in series.values() for a, b in itertools.pairwise(own)]
+    mean = np.mean(np.square([v for own in series.values() for v in own]))
+    return sum(pairs) < ALIKE * math.sqrt(len(pairs)) * mean
+
+
+def worth(looked) -> list:
+    """The best of each kind, of those that gain enough."""
+    best = {}
+    for judged in looked:
+        kind = (judged.slip.fault, bool(judged.slip.quantity))
+        if judged.gain > policy.LEAST_GAIN and (kind not in best or judged.log_odds > best[kind].log_odds):
+            best[kind] = judged
+    return sorted(best.values(), key=lambda j: -j.log_odds)
