@@ -182,6 +182,8 @@ class Search(Ranking):
         found = singles.fit_all(forward, model.fit, screen.screen(forward, model.fit, known))
         self.simulations += forward.chains - before
         self._matching = {c.effect for c in found if c.gain > judged.gain - ALIKE}
+        if any(tables.beyond_chance(judged, c.gain) for c in found):
+            return True
         return bool(self._matching)
 
     def _like_slips(self, found: Investigation, name: str) -> bool:

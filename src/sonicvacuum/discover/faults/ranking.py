@@ -121,7 +121,7 @@ class Ranking:
         kept = self._kept(judge, judge.follow_all([*worth, *far]))
         # What shows by itself is put right first, whatever may explain more of all that there is.
         plain = next((j for j in kept if j.slip.plain), None)
-        return [j for j in kept if j is plain or _as_well(j, plain)] if plain else kept
+        return [j for j in kept if j is plain or _as_well(j, plain)] if plain else tables.earned(kept)
 
     def _kept(self, judge: Judge, followed: list[Judged]) -> list[Judged]:
         """Those that gain enough, the likeliest first."""

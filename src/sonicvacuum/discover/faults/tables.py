@@ -17,7 +17,7 @@ import msgspec
 import numpy as np
 
 from sonicvacuum.discover.faults import policy
-from sonicvacuum.discover.faults.judged import Model, scale_gain
+from sonicvacuum.discover.faults.judged import Judged, Model, scale_gain
 from sonicvacuum.discover.faults.slips import Slip, chain_slips, swaps
 from sonicvacuum.discover.faults.starts import NEAR
 from sonicvacuum.records import Record
@@ -44,7 +44,7 @@ def hypotheses(record: Record, model: Model) -> list[Slip]:
     runs = _runs(record)
     start = _at_stated(model)
     whole = [s for s in chain_slips(record) if s.fault != "run-off"]
-    off = [_started(s, model, start) for s in chain_slips(record) if s.fault == "run-off"]
+    off = _started([s for s in chain_slips(record) if s.fault == "run-off"], model, start)
     gauges = swaps([g.id for g in record.gauges])
     rows = [*_values(runs, start, model), *_gauges(runs), *_exchanged(runs), *_noise(runs, model)]
     return [*whole, *off, *gauges, *rows]
@@ -73,18 +73,25 @@ def _at_stated(model):
     return model.forward.columns(one.hypothesis, one.u[None], 0.0 * one.nu[None])
 
 
-def _started(slip, model, start):
-    """A run's speed, from where its values lead in one step."""
+def _started(slips, model, start):
+    """Speeds of single runs, from where their values lead in one step, beside what all runs show."""
+    sizes = np.array([_led(s, model, start) for s in slips])
+    sizes -= np.median(sizes) if len(sizes) > 2 else 0.0
+    sizes = np.clip(sizes, -policy.FARTHEST_SPEED, policy.FARTHEST_SPEED)
+    far = [abs(size) > NEAR[s.fault] * s.width for s, size in zip(slips, sizes, strict=True)]
+    return [replace(s, start=float(x)) if own else s for s, x, own in zip(slips, sizes, far, strict=True)]
+
+
+def _led(slip, model, start) -> float:
+    """The logarithm of a run's speed over the stated one to which its values lead in one step."""
     forward, p = model.forward, len(model.fit.u)
     run = [r.id for r in forward.experiment.runs].index(slip.run)
     place = list(forward.layout.local(run)).index(forward.layout.speed(run))
     sigma = float(forward.nuisance_sigma[forward.layout.speed(run)])
     if not sigma > 0.0:
-        return slip
+        return 0.0
     slope, left = start[run][0, 1 + p + place] / sigma, forward.data(run) - start[run][0, 0]
-    size = float(slope @ left) / (float(slope @ slope) + slip.width**-2.0)
-    size = math.copysign(min(abs(size), policy.FARTHEST_SPEED), size)
-    return replace(slip, start=size) if abs(size) > NEAR[slip.fault] * slip.width else slip
+    return float(slope @ left) / (float(slope @ slope) + slip.width**-2.0)
 
 
 def _values(runs, start, model):
@@ -298,11 +305,29 @@ def _random(z, factor) -> bool:
     return sum(pairs) < ALIKE * math.sqrt(len(pairs)) * mean
 
 
-def worth(looked) -> list:
-    """The best of each kind, of those that gain enough."""
+def earned(kept: list[Judged]) -> list[Judged]:
+    """Slips without errors of another size where another slip explains more than such errors leave to chance:
+    these are asked for again once that is put right.
+    """
+    return [
+        j
+        for j in kept
+        if not any(beyond_chance(j, other.gain) for other in kept if other.slip.fault != j.slip.fault)
+    ]
+
+
+def beyond_chance(judged: Judged, gain: float) -> bool:
+    """Whether something gains more than noise of the size that a slip of errors says would let it."""
+    factor = judged.slip.value(judged.size) if judged.slip.fault == "noise-misstated" else None
+    return factor is not None and gain > policy.CHANCE * factor**2
+
+
+def worth(looked: list[Judged]) -> list[Judged]:
+    """The best of each kind, of those that gain enough, and what shows by itself."""
     best = {}
     for judged in looked:
         kind = (judged.slip.fault, bool(judged.slip.quantity))
         if judged.gain > policy.LEAST_GAIN and (kind not in best or judged.log_odds > best[kind].log_odds):
             best[kind] = judged
-    return sorted(best.values(), key=lambda j: -j.log_odds)
+    chosen = [*best.values(), *(j for j in looked if j.slip.plain and j not in best.values())]
+    return sorted(chosen, key=lambda j: -j.log_odds)
