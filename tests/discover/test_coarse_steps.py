@@ -8,10 +8,12 @@ import pytest
 from made_records import SIGMA, made
 
 from sonicvacuum.discover import session
+from sonicvacuum.discover.faults.changes import delayed
 from sonicvacuum.discover.faults.examine import examine
 from sonicvacuum.discover.model.masks import repeated
 from sonicvacuum.discover.model.noise import noise, stepped
 from sonicvacuum.discover.model.problem import experiment
+from sonicvacuum.discover.model.window import fitted
 from sonicvacuum.records import Signals
 
 # Step of the recorder over the noise.
@@ -30,6 +32,20 @@ def coarse(effects=(), step=STEP, stated=True, seed=5):
         sensors = [msgspec.structs.replace(s, sigma_N=msgspec.UNSET) for s in record.block.sensors]
         record = replace(record, block=msgspec.structs.replace(record.block, sensors=sensors))
     return replace(record, signals=signals)
+
+
+def lsb(values, step=STEP * SIGMA):
+    """In steps of the recorder."""
+    return step * np.round(values / step)
+
+
+def begun(record, first):
+    """The same as if the recorder had started later, with no rest before the pulse."""
+    late = {
+        run: Signals(s.time_us[first:], {g: v[first:] for g, v in s.readings.items()})
+        for run, s in record.signals.items()
+    }
+    return replace(record, signals=late)
 
 
 def test_of_readings_on_one_step_one_counts():
@@ -58,6 +74,32 @@ def test_noise_holds_the_steps(stated):
 @pytest.mark.parametrize("step", [3.0, 5.0, STEP])
 def test_a_reading_of_the_next_step_is_no_spike(step):
     assert examine(coarse(step=step, stated=False))[1] == []
+
+
+@pytest.mark.parametrize("stated", [True, False])
+@pytest.mark.parametrize("change", [lambda r: delayed(r, "g7", 7.3), lambda r: begun(r, 120), lambda r: r])
+def test_what_is_done_to_traces_hides_no_steps(stated, change):
+    plain = fitted(coarse(stated=stated))[0]
+    assert plain.steps == pytest.approx({"g4": STEP * SIGMA, "g7": STEP * SIGMA, "wall": 2.0 * STEP * SIGMA})
+    sigma, _ = noise([change(plain)])
+    np.testing.assert_array_less(0.99 * STEP / np.sqrt(12.0) * np.array([SIGMA, SIGMA, 2.0 * SIGMA]), sigma)
+    counted = experiment(change(plain)).runs[1].present
+    assert counted[1, :40].sum() <= 3  # at rest; a shift leaves an edge beside
+
+
+def test_fine_steps_are_no_property_of_a_record():
+    record, _ = made()
+    assert fitted(record)[0] is record
+
+
+def test_a_drift_within_a_step_is_neither_told_nor_noise():
+    slope = np.linspace(0.0, 60.0 * SIGMA, 700)
+    record = coarse()
+    tilted = {
+        run: Signals(s.time_us, s.readings | {"g7": lsb(s.readings["g7"] + slope)})
+        for run, s in record.signals.items()
+    }
+    assert examine(replace(record, signals=tilted))[1] == []
 
 
 def test_only_what_rests_is_left_out():

@@ -61,7 +61,7 @@ def discover(records, out, together, figures, threads, own, quiet, no_limits):
         if len(groups) == 1:  # of many records, all at once may be more than the memory holds
             kept[path] = record
         elif not no_limits:
-            check_extent(window.fitted(record)[0])
+            check_extent(window.fitted(record, known)[0])
     # Long to load: what is wrong with a record is said before.
     from sonicvacuum.physics.run import available_threads
 

@@ -121,7 +121,7 @@ def hypothesis(model: Model, catalogue: Catalogue = CATALOGUE) -> Hypothesis:
 @one_thread
 def compare(model: Model, record: Record, threads: int = 1, catalogue: Catalogue = CATALOGUE) -> Comparison:
     """The model's score on a record; the catalogue knows its effects."""
-    forward = Forward(experiment(window.fitted(record)[0], catalogue), threads)
+    forward = Forward(experiment(window.fitted(record, catalogue)[0], catalogue), threads)
     sizes = np.array([forward.experiment.size(k) for k in range(len(forward.experiment.runs))])
     known = forward.experiment.present
     more = {name: given for name, given in model.effects.items() if name not in known}

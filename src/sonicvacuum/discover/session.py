@@ -104,7 +104,7 @@ def discover(
     check_records(records, "discover")
     catalogue = plugins.catalogue() if catalogue is None else catalogue
     clock = Clock()
-    ready, notes = zip(*map(window.fitted, records), strict=True)
+    ready, notes = zip(*(window.fitted(one, catalogue) for one in records), strict=True)
     for one in ready if limits else ():
         check_extent(one)
     outcome = competition.discover(ready, catalogue, threads or available_threads())

@@ -104,12 +104,15 @@ class Record:
         name: of its folder, "" where it was not read from one.
         digest: SHA-256 of the files read, one after the other (record.yaml, then the traces in the order of
             the runs), "" where it was not read from any.
+        steps: gauge id → step of its recorder in the gauge's unit, of those whose steps outweigh the noise;
+            what is done to traces hides it.
     """
 
     block: RecordBlock
     signals: Mapping[str, Signals] = field(default_factory=dict)
     name: str = ""
     digest: str = ""
+    steps: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def title(self) -> str:

@@ -12,7 +12,7 @@ from sonicvacuum.discover.faults.found import Bench, Finding
 from sonicvacuum.discover.faults.pulses import pulses
 from sonicvacuum.discover.faults.table import FAULTS
 from sonicvacuum.discover.model.masks import cut, spikes
-from sonicvacuum.discover.model.noise import audible, loudness, rounding, stepped
+from sonicvacuum.discover.model.noise import STEPPED, audible, loudness, rounding
 from sonicvacuum.records import Record, Signals
 
 
@@ -156,8 +156,10 @@ class _Look:
     def _quiet_slips(self, run, gauge):
         """What the stretch before the pulse shows: a slope, a level, the size of the noise."""
         trace = self.readings[run.id][gauge.id]
-        stretch = traces.quiet(trace, loudness(trace, gauge.sigma))
-        drifting = traces.drift(stretch, gauge.sigma)
+        steps = rounding(trace)
+        noise = max(gauge.sigma, steps)
+        stretch = traces.quiet(trace, loudness(trace, noise))
+        drifting = traces.drift(stretch, noise)
         if drifting is not None and ("drift", gauge.id) not in self.spared:
             slope, error = drifting
             self.seen["drift", gauge.id][run.id] = slope * len(trace)
@@ -166,9 +168,9 @@ class _Look:
             stretch = trace[: len(stretch)]
         self.stretches[gauge.id][run.id] = stretch
         # All readings on one step of the recorder are off by as much.
-        steps = rounding(trace) if stepped(trace, audible(trace, gauge.sigma)) else 0.0
-        self.rests[gauge.id][run.id] = traces.rest(stretch, gauge.sigma, steps)
-        self.levels[gauge.id][run.id] = len(stretch), traces.level(stretch, gauge.sigma, steps)
+        common = steps if steps > STEPPED * audible(trace, noise) else 0.0
+        self.rests[gauge.id][run.id] = traces.rest(stretch, noise, common)
+        self.levels[gauge.id][run.id] = len(stretch), traces.level(stretch, noise, common)
         self.readings[run.id][gauge.id] = trace
 
     def _unsure(self, gauge, what, error):

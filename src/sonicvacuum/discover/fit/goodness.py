@@ -17,7 +17,7 @@ from sonicvacuum.discover.fit import tails
 from sonicvacuum.discover.fit.discrepancy import width
 from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.model.forward import Forward
-from sonicvacuum.discover.model.noise import stepped
+from sonicvacuum.discover.model.noise import rounded, stepped
 
 LAGS = 20
 # Decay times of the bank, in widths of the pulse, and how often in one of them an oscillation may set in.
@@ -111,7 +111,8 @@ def residuals(forward: Forward, fit: Fit) -> list[tuple[int, int, np.ndarray]]:
 def _stepped(forward, run, s):
     """Whether rounding errors follow the pulse: tests of whiteness and oscillations take them for noise."""
     experiment = forward.experiment
-    return stepped(experiment.runs[run].readings[s], experiment.sigma[s])
+    known = rounded(experiment.record, experiment.gauges[s].id) if experiment.record else 0.0
+    return stepped(experiment.runs[run].readings[s], experiment.sigma[s], known)
 
 
 def _size(data, s):

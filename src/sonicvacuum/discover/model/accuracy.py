@@ -21,15 +21,13 @@ LARGEST_STEP, STEP_AIM = 3e-3, 10.0
 # any law, and contacts that forget ten times the elastic force in 0.3 us, err by some 1e-4 of a gauge's peak;
 # at twice that a step is as long as one of a memory can be.
 ERROR, ERROR_AIM, LONGEST = 1e-6, 0.05, 3.0
-# Contacts of a preloaded chain that open and close for many reflections multiply what a step errs by: the
-# prediction of a record is held against one of half the step, until they agree within TOLERATED standard
-# errors over all data together or steps are shorter than SHORTEST. Effects whose steppers err otherwise are
-# named for a difference of ten and more.
-TOLERATED, SHORTEST = 0.25, 4.0
-# Striker speeds, in their standard errors, at which that is done.
-PROBED = (-1.0, 0.0, 1.0)
-# Only where traces last this share of the time in which the slowest wave would cross the chain and come back:
-# a preloaded chain, whose waves are faster, has then been crossed several times. Ordinary records end before.
+# Contacts that open and close for many reflections multiply what a step errs by: the prediction of a long
+# record is held against one of half the step, until they agree within TOLERATED standard errors over all data
+# together or the step is the full one's SHORTEST part. Effects whose steppers err otherwise are named for a
+# difference of ten in χ² and more.
+TOLERATED, SHORTEST = 0.5, 4.0
+# Only where traces last this share of the time in which the slowest wave would cross the chain five times:
+# ordinary records end before.
 LASTING = 0.3
 # The same of running integrals, which only lead to where fits start.
 LEADING_AIM = 1.0
@@ -78,16 +76,14 @@ def _recorded(experiment, batch) -> float:
 
 
 def _nominal(forward, refine):
-    """(lanes, data) whitened predictions of the nominal chains at the speeds probed."""
+    """(data,) whitened prediction of the nominal chains."""
     other = copy(forward)
     other._refine = refine
-    nu = np.zeros((len(PROBED), forward.layout.size))
-    nu[:, : len(forward.experiment.runs)] = np.array(PROBED)[:, None]
-    seen = other.sampled(Hypothesis(), np.zeros((len(nu), 0)), nu)
+    seen = other.sampled(Hypothesis(), np.zeros((1, 0)), np.zeros((1, forward.layout.size)))
     forward.simulations = other.simulations
-    return np.concatenate(seen, axis=1)
+    return np.concatenate([value[0] for value in seen])
 
 
 def _apart(one, other):
-    """Largest distance of two predictions in standard errors; what is not shown does not count."""
-    return np.sqrt(np.nansum((one - other) ** 2, axis=1)).max()
+    """Distance of two predictions in standard errors; what is not shown does not count."""
+    return np.sqrt(np.nansum((one - other) ** 2))

@@ -99,10 +99,12 @@ def _within(trace, far, sigma):
     return 2 + found[far[found] > SPIKE_SIGMAS * _SPREAD * rough]
 
 
-def repeated(trace: np.ndarray) -> np.ndarray:
+def repeated(trace: np.ndarray, step: float = 0.0) -> np.ndarray:
     """(T,) whether each sample only repeats a reading: of those that rest on a step of the recorder the
     middle one does not. Samples that noise lifts to the next step and back rest where their neighbours do.
+    Of a changed trace readings within the same `step` of the recorder are equal.
     """
+    trace = np.round(trace / step) if step else trace
     found = np.zeros(len(trace), dtype=bool)
     if len(trace) < FEWEST_WITH_SPIKES:
         return found

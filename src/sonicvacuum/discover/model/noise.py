@@ -7,6 +7,7 @@ samples show as well. Spikes and samples that were cut off are left out (`masks`
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -76,46 +77,70 @@ def audible(trace: np.ndarray, sigma: float) -> float:
     return max(sigma, flicker(trace), rounding(trace))
 
 
-def stepped(trace: np.ndarray, sigma: float) -> bool:
+def stepped(trace: np.ndarray, sigma: float, known: float = 0.0) -> bool:
     """Whether the recorder's steps outweigh the noise of a trace, `sigma` with its rounding: rounding errors
-    follow the pulse then, and are no white noise.
+    follow the pulse then, and are no white noise. `known`: the rounding, where the trace was changed.
     """
-    return rounding(trace) > STEPPED * sigma
+    return max(known, rounding(trace)) > STEPPED * sigma
+
+
+def rounded(record: Record, gauge: str) -> float:
+    """Standard deviation of the rounding of a gauge's traces, where it is known of the record."""
+    return record.steps.get(gauge, 0.0) / math.sqrt(12.0)
+
+
+def as_recorded(record: Record) -> Record:
+    """The record with the steps of recorders whose steps outweigh the noise; itself where none is."""
+    sigma, _ = noise((record,))
+    steps = {}
+    for gauge, size in zip(record.gauges, sigma, strict=True):
+        found = max(map(rounding, _traces((record,), gauge)), default=0.0)
+        if found > STEPPED * size:
+            steps[gauge.id] = found * math.sqrt(12.0)
+    return replace(record, steps=steps) if steps else record
 
 
 def noise(records: Sequence[Record]) -> tuple[np.ndarray, np.ndarray]:
     """(S,) standard deviation of one sample and correlation of its neighbours, stated or seen."""
     gauges = records[0].gauges
-    seen = [_of_gauge(tuple(t.tobytes() for t in _traces(records, g)), g) for g in gauges]
+    known = [max(rounded(record, g.id) for record in records) for g in gauges]
+    seen = [
+        _of_gauge(tuple(t.tobytes() for t in _traces(records, g)), g, steps)
+        for g, steps in zip(gauges, known, strict=True)
+    ]
     sigma, own, weights = np.reshape(seen, (-1, 3)).T
     return sigma, _correlations(own, weights)
 
 
 @lru_cache(maxsize=256)
-def _of_gauge(samples: tuple[bytes, ...], gauge) -> tuple[float, float, float]:
+def _of_gauge(samples: tuple[bytes, ...], gauge, steps: float) -> tuple[float, float, float]:
     """Standard deviation, correlation of neighbours and what this is worth; remembered, as each hypothesis of
     a slip asks again of gauges that it leaves as they are.
     """
     traces = [np.frombuffer(one) for one in samples]
     quiet = _quiet_of(traces, gauge)
-    sigma = _sigma(traces, gauge, quiet)
+    sigma = _sigma(traces, gauge, quiet, max([steps, *map(rounding, traces)]))
     return sigma, *_neighbours(traces, gauge, quiet, sigma)
 
 
 def _traces(records, gauge):
     """Its traces, what is not believed left out."""
-    runs = [r for record in records for r in record.runs if r.signals and gauge.id in r.signals.readings]
-    traces = [np.asarray(r.signals.readings[gauge.id], dtype=float) for r in runs]
-    return [t[believed(t, gauge.sigma)] for t in traces]
+    found = []
+    for record in records:
+        least = max(gauge.sigma, rounded(record, gauge.id))
+        read = [s.readings[gauge.id] for s in record.signals.values() if gauge.id in s.readings]
+        found += [t[believed(t, least)] for t in (np.asarray(one, dtype=float) for one in read)]
+    return found
 
 
 def _quiet_of(traces, gauge):
     """The quiet stretches of a gauge that are long enough."""
     sigma = gauge.sigma or max(map(flicker, traces), default=0.0)
-    quiet = [q for t in traces if len(q := _unrisen(_quiet(t, sigma), sigma)) >= _LEAST]
+    quiet = [q for t in traces if len(q := _quiet(t, sigma)) >= _LEAST]
     if gauge.baseline_sigma or gauge.drift_sigma:
         # Where level and slope are open, noise is what is left of both.
         quiet = [_off_its_line(q) for q in quiet]
+    quiet = [_unrisen(q, sigma) for q in quiet]
     return quiet if sum(map(len, quiet)) >= _FEWEST else []
 
 
@@ -138,10 +163,11 @@ def _off_its_line(stretch):
     return stretch - stretch.mean() - place * (place @ stretch / (place @ place))
 
 
-def _sigma(traces, gauge, quiet):
+def _sigma(traces, gauge, quiet, steps):
     """What the record states, or more where the quiet stretches are surely louder."""
     peak = max((float(np.abs(t).max()) for t in traces), default=0.0)
-    level = _with_steps(gauge.sigma, traces, 1.0) if gauge.sigma else _estimated(traces, quiet)
+    known = (gauge.sigma, 1.0) if gauge.sigma else (_estimated(traces, quiet), STEPPED)
+    level = _with_steps(*known, steps)
     floor = max(math.hypot(level, MODEL_FLOOR * peak), 1e-12)
     if not quiet:
         return floor
@@ -167,14 +193,13 @@ def _estimated(traces, quiet):
     white = abs(_correlation(quiet)) < _SURE / math.sqrt(count)
     if white and abs(ripple - level) < _AGREE * error * level:
         level = math.sqrt((count * level**2 + worth * ripple**2) / (count + worth))
-    return _with_steps(level, traces, STEPPED)
+    return level
 
 
-def _with_steps(level, traces, most):
+def _with_steps(level, most, steps):
     """A noise, with the rounding of the recorder's steps where this is more than a share that tells that the
     noise does not hold it.
     """
-    steps = max(map(rounding, traces), default=0.0)
     return math.hypot(level, steps) if steps > most * level else level
 
 

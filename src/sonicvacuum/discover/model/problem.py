@@ -11,7 +11,7 @@ import numpy as np
 from sonicvacuum.discover.model.beginnings import begun
 from sonicvacuum.discover.model.experiment import Batch, Experiment, RunData, Scalar
 from sonicvacuum.discover.model.masks import repeated
-from sonicvacuum.discover.model.noise import MODEL_FLOOR, believed, doubtful, noise, stepped
+from sonicvacuum.discover.model.noise import MODEL_FLOOR, believed, doubtful, noise, rounded, stepped
 from sonicvacuum.discover.model.nuisances import shared
 from sonicvacuum.discover.model.present import acting, stated
 from sonicvacuum.discover.model.slow import slow
@@ -142,9 +142,10 @@ def _run(record, run, sigma):
     for s, gauge in enumerate(record.gauges):
         if signals and gauge.id in signals.readings:
             readings[s] = signals.readings[gauge.id]
-            present[s] = believed(readings[s], gauge.sigma)
-            if stepped(readings[s], sigma[s]):
-                present[s] &= ~repeated(readings[s])
+            known = rounded(record, gauge.id)
+            present[s] = believed(readings[s], max(gauge.sigma, known))
+            if stepped(readings[s], sigma[s], known):
+                present[s] &= ~repeated(readings[s], record.steps.get(gauge.id, 0.0))
     scalars = tuple(
         Scalar(o.quantity, o.value, error(o), o.options, o.bound, o.shared) for o in run.observables
     )
@@ -160,11 +161,24 @@ def _notes(record, runs):
         for run in record.runs:
             if run.signals and gauge.id in run.signals.readings:
                 trace = np.asarray(run.signals.readings[gauge.id], dtype=float)
-                found = doubtful(trace.tobytes(), float(gauge.sigma))
+                found = doubtful(trace.tobytes(), float(max(gauge.sigma, rounded(record, gauge.id))))
                 for what, at in zip(counts, found, strict=True):
                     counts[what] += int(np.count_nonzero(at))
+        if gauge.id in record.steps:
+            what = "readings that rest on a step of the recorder, beside one of them that counts,"
+            counts[what] = _missing(record, runs, gauge) - sum(counts.values())
         notes += [f"{gauge.id}: {n} {what} left out" for what, n in counts.items() if n]
     return tuple(notes)
+
+
+def _missing(record, runs, gauge) -> int:
+    """How many readings of a gauge do not count in the runs that have it."""
+    place = record.gauges.index(gauge)
+    having = [gauge.id in run.signals.readings if run.signals else False for run in record.runs]
+    present = [
+        data.present for data, has in zip(runs, having, strict=True) if has and data.present is not None
+    ]
+    return sum(int(np.count_nonzero(~one[place])) for one in present)
 
 
 def error(observable) -> float:

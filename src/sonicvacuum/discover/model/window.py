@@ -12,6 +12,8 @@ import numpy as np
 from msgspec import structs
 
 from sonicvacuum.discover.model import horizon
+from sonicvacuum.discover.model.noise import as_recorded
+from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.physics.scales import passage_of
 from sonicvacuum.records import Record, Signals
 from sonicvacuum.records.assemble import chain_of
@@ -28,13 +30,13 @@ BEFORE, LEAST = 15, 200
 ROOM, LONGEST, AFTER = 1.2, 150, 10
 
 
-def fitted(record: Record) -> tuple[Record, tuple[str, ...]]:
+def fitted(record: Record, catalogue: Catalogue = CATALOGUE) -> tuple[Record, tuple[str, ...]]:
     """The record with long traces cut and thinned, and cut where nothing can be foretold; what was done, one
-    line each.
+    line each. The catalogue holds effects that the record says act.
     """
     passing, notes = _passing(record)
-    told, more = horizon.predictable(passing)
-    return told, notes + more
+    told, more = horizon.predictable(passing, catalogue)
+    return as_recorded(told), notes + more
 
 
 def _passing(record):
