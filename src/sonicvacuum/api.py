@@ -23,6 +23,12 @@ from sonicvacuum.simulation import Simulation
 Path = str | PathLike[str]
 
 
+def _check_path(verb: str, given: object, cure: str) -> None:
+    """InputError for what is no path; a number would be taken for an open file."""
+    if not isinstance(given, str | PathLike):
+        raise InputError(f"{verb}: is given {given!r:.100}; give {cure}")
+
+
 def read(folder: Path) -> Record:
     """The record of measured data in a folder: `record.yaml` and a CSV of traces for each run that has any.
 
@@ -36,6 +42,7 @@ def read(folder: Path) -> Record:
     Raises:
         InputError: naming file, key or line, value and cure, where the folder does not hold a sound record.
     """
+    _check_path("read", folder, "the path of a record's folder")
     return read_record(folder)
 
 
@@ -53,6 +60,7 @@ def read_case(path: Path, name: str, variant: str = "nominal") -> Card:
     Raises:
         InputError: naming file, key, value and cure.
     """
+    _check_path("read_case", path, "the path of a configuration, as of config.yaml")
     return config.card(config.read(path), name, variant, path)
 
 
@@ -74,6 +82,8 @@ def catalogue(*files: Path) -> Catalogue:
         >>> sv.catalogue().effect("tsuji").parameters[0].name
         'alpha'
     """
+    for file in files:
+        _check_path("catalogue", file, "the path of a Python file, as in sv.catalogue('my_law.py')")
     return plugins.catalogue(files)
 
 

@@ -102,6 +102,14 @@ WRONG = [
     ({"beads": "10"}, "beads: is '10'; write a whole number"),
     ({"gauges": []}, "gauges: none is given"),
     ({"gauges": 17}, "gauges: '17' is no bead from 1 to 16"),
+    ({"gauges": [[1]]}, "gauges: '[1]' is no bead from 1 to 16; as in 3,7,wall"),
+    ({"diameter": [0.02]}, "diameter: is [0.02]; it must be a positive number, as in 20mm"),
+    ({"diameter": None}, "diameter: missing"),
+    ({"speed": 10**400}, "speed: is 1000"),
+    ({"material": ["brass"]}, "material: is ['brass']; write the name of a material"),
+    ({"material": None}, "material: missing"),
+    ({"wall": 7}, "wall: is 7; write the name of a material"),
+    ({"aim": ["5N"]}, "aim: is ['5N']; it must be a positive number, as in 5N"),
 ]
 
 

@@ -186,3 +186,10 @@ def test_public_classes_name_their_attributes_and_formulas_their_source():
     assert [f.__name__ for f in formulas if not re.search(r"Eqs?\.|equation", f.__doc__)] == []
     assert all(inspect.getdoc(f) for f in functions(solitary))
     assert "Eq. (3)" in solitary.__doc__
+
+
+@pytest.mark.parametrize("given", [None, 5, ["law.py"]])
+@pytest.mark.parametrize("verb", [sv.catalogue, sv.read, lambda given: sv.read_case(given, "chain")])
+def test_what_is_no_path_is_refused_with_the_cure(verb, given):
+    with pytest.raises(sv.InputError, match=r"^(catalogue|read|read_case): is given .*; give the path of"):
+        verb(given)

@@ -11,6 +11,7 @@ import itertools
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from numbers import Integral, Real
 
 import numpy as np
 
@@ -23,7 +24,7 @@ from sonicvacuum.files import InputError, likely
 from sonicvacuum.laboratory.next_run import FASTEST, SLOWEST
 from sonicvacuum.materials import MODULUS_REL_SIGMA
 from sonicvacuum.physics.scales import COUNTING, passage_of, sampling_of
-from sonicvacuum.prediction.setup import card_of, check_size
+from sonicvacuum.prediction.setup import card_of, check_beads, check_size
 from sonicvacuum.simulation import set_up
 
 NONE = "none"
@@ -126,6 +127,7 @@ def design(
         '7'
     """
     _check(most, strength, noise)
+    check_beads(beads)
     places = _places(beads) if gauges is None else gauges
     asked = dict.fromkeys(_OPTIONS) | {"orientation": "horizontal", "striker": "sphere"} | chain
     if unknown := set(chain) - set(_OPTIONS):
@@ -150,11 +152,11 @@ _OPTIONS = (
 
 
 def _check(most, strength, noise):
-    if not 1 <= most <= 4:
-        raise InputError(f"most: is {most}; from 1 to 4 gauges are tried")
+    if not (isinstance(most, Integral) and 1 <= most <= 4):
+        raise InputError(f"most: is {most!r:.100}; from 1 to 4 gauges are tried, write a whole number")
     for name, value, high in (("strength", strength, 10.0), ("noise", noise, 1.0)):
-        if not 0.0 < value <= high:
-            raise InputError(f"{name}: is {value:g}; it must be positive, at most {high:g}")
+        if not (isinstance(value, Real) and 0.0 < value <= high):
+            raise InputError(f"{name}: is {value!r:.100}; it must be a positive number, at most {high:g}")
 
 
 def _places(beads):
@@ -164,6 +166,10 @@ def _places(beads):
 
 
 def _effects(given, setup: Setup) -> tuple[Effect, ...]:
+    if not isinstance(given, Iterable):
+        raise InputError(
+            f"effects: is {given!r:.100}; write ids of the catalogue, as in 'sensor-droop,tsuji'"
+        )
     names = given.split(",") if isinstance(given, str) else list(given)
     names = list(dict.fromkeys(str(name).strip() for name in names))
     if not names:

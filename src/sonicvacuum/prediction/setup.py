@@ -51,7 +51,11 @@ def in_si(name: str, value: str | float | None) -> float | None:
     if value is None:
         return None
     if not isinstance(value, str):
-        return _positive(name, float(value), value)
+        try:
+            number = float(value)
+        except (TypeError, ValueError, OverflowError):
+            number = math.nan
+        return _positive(name, number, value)
     units, example = _UNITS[name]
     number, unit = quantity(value) or (math.nan, None)
     bare = unit is None and name in _BARE
@@ -62,7 +66,7 @@ def in_si(name: str, value: str | float | None) -> float | None:
 
 def _positive(name, number, given):
     if not (math.isfinite(number) and number > 0.0):
-        raise InputError(f"{name}: is {given!r}; it must be a positive number, as in {_UNITS[name][1]}")
+        raise InputError(f"{name}: is {given!r:.100}; it must be a positive number, as in {_UNITS[name][1]}")
     return number
 
 
@@ -90,6 +94,10 @@ def card_of(
     Raises:
         InputError: naming the argument, its value and the cure.
     """
+    check_beads(beads)
+    for name, needed in (("diameter", diameter), ("material", material)):
+        if needed is None:
+            raise InputError(f"{name}: missing; give that of a bead")
     for name, given in (("material", material), ("core", core), ("wall", wall)):
         _known(name, given)
     ball = _bead(in_si("diameter", diameter), material, in_si("mass", mass), in_si("coating", coating), core)
@@ -112,7 +120,11 @@ def card_of(
 
 def _known(name, material):
     """InputError for a material that the table does not have."""
-    if material is None or material in MATERIALS:
+    if material is None:
+        return
+    if not isinstance(material, str):
+        raise InputError(f"{name}: is {material!r:.100}; write the name of a material, as in 'brass'")
+    if material in MATERIALS:
         return
     hint = likely(material, list(MATERIALS)) or f"known are {', '.join(sorted(MATERIALS))}"
     raise InputError(f"{name}: {material!r} is not in the table of materials; {hint}")
@@ -150,26 +162,32 @@ def _striker(shape, mass, diameter, material, bead):
     return {"shape": shape, "material": material, "mass_g": mass * 1e3, "diameter_mm": diameter * 1e3}
 
 
-def _sensors(gauges, beads):
-    """Keys of the gauges: numbers of beads and `wall`; by default early, late and at the wall."""
+def check_beads(beads: int) -> None:
+    """InputError for what is no number of beads."""
     if not isinstance(beads, Integral) or isinstance(beads, bool):
-        raise InputError(f"beads: is {beads!r}; write a whole number, as in 10")
+        raise InputError(f"beads: is {beads!r:.100}; write a whole number, as in 10")
     if beads < 1:
         raise InputError(f"beads: is {beads}; a chain has at least 1")
+
+
+def _sensors(gauges, beads):
+    """Keys of the gauges: numbers of beads and `wall`; by default early, late and at the wall."""
     if gauges is None:
         gauges = [*gauge_beads(beads), "wall"]
     places = gauges.split(",") if isinstance(gauges, str) else gauges
     places = list(places) if isinstance(places, Iterable) else [places]
     if not places:
         raise InputError("gauges: none is given; as in 3,7,wall, or leave them out")
-    return [_sensor(str(place).strip(), beads) for place in dict.fromkeys(places)]
+    return [_sensor(place, beads) for place in dict.fromkeys(str(place).strip() for place in places)]
 
 
 def _sensor(place, beads):
     if place == "wall":
         return {"id": place, "kind": "wall"}
     if not (place.isascii() and place.isdigit() and 1 <= int(place) <= beads):
-        raise InputError(f"gauges: {place!r} is no bead from 1 to {beads}; as in 3,7,wall (bead 1 is struck)")
+        raise InputError(
+            f"gauges: {place!r:.100} is no bead from 1 to {beads}; as in 3,7,wall (bead 1 is struck)"
+        )
     return {"id": str(int(place)), "kind": "embedded", "bead": int(place)}
 
 
