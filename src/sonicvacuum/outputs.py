@@ -6,9 +6,9 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from sonicvacuum.files import InputError
+from sonicvacuum.files import InputError, check_written
 
-_PARTIAL = ".partial"
+_PARTIAL, _EARLIER = ".partial", ".earlier"
 
 
 def check_apart(outputs: Iterable, inputs: Iterable) -> None:
@@ -63,8 +63,11 @@ def check_folder(folder) -> None:
 def renewed(folder, last: str, stale: Iterable[str] = ()) -> Iterator[Path]:
     """A temporary folder whose files take their place in `folder` only once all are written.
 
-    An exception inside leaves what stood there before. While the files change places `last` is missing, so
-    that a folder that holds it holds the files of one run.
+    While files change places `last` is missing, so that a folder that holds it holds the files of one run. An
+    exception (a full disk, an interruption) leaves what stood there before, also where it comes in between.
+    A kill in between leaves a folder without `last`, which no reader takes for a result, and loses nothing:
+    the earlier files are in a hidden folder within, `.….earlier`, and new ones that have no place yet in
+    another, `.….partial`.
 
     Args:
         folder: where the files go; made if need be.
@@ -77,16 +80,40 @@ def renewed(folder, last: str, stale: Iterable[str] = ()) -> Iterator[Path]:
     try:
         with tempfile.TemporaryDirectory(prefix=".", suffix=_PARTIAL, dir=folder) as fresh:
             yield Path(fresh)
-            names = {path.name for path in Path(fresh).iterdir()}
-            for name in (last, *sorted(set(stale) - names)):
-                (folder / name).unlink(missing_ok=True)
-            for name in sorted(names, key=lambda name: (name == last, name)):
-                os.replace(Path(fresh, name), folder / name)
+            _exchange(Path(fresh), folder, last, stale)
     except BaseException as error:
         if made:
             with suppress(OSError):
                 folder.rmdir()
         named = getattr(error, "filename", None)
-        if isinstance(named, str) and Path(named).parent.name.endswith(_PARTIAL):
+        if isinstance(named, str) and Path(named).parent.name.endswith((_PARTIAL, _EARLIER)):
             error.filename = str(folder / Path(named).name)  # where the file was to stand
         raise
+
+
+def _exchange(fresh, folder, last, stale):
+    """Move the files of `fresh` into `folder`; an exception puts back what stood there."""
+    names = {path.name for path in fresh.iterdir()}
+    leaving = (last, *sorted({*names, *stale} - {last}))
+    for name in leaving:
+        check_written(folder / name)  # a folder of that name is none of ours
+    with tempfile.TemporaryDirectory(prefix=".", suffix=_EARLIER, dir=folder) as earlier:
+        try:
+            for name in leaving:
+                if os.path.lexists(folder / name):
+                    os.replace(folder / name, Path(earlier, name))
+            for name in sorted(names, key=lambda name: (name == last, name)):
+                os.replace(fresh / name, folder / name)
+        except BaseException:
+            if any(fresh.iterdir()):  # else the new ones stand already
+                _put_back(Path(earlier), fresh, folder, leaving, names)
+            raise
+
+
+def _put_back(earlier, fresh, folder, leaving, names):
+    """The files of before in their places again, `last` the last of them."""
+    for name in reversed(leaving):
+        if os.path.lexists(earlier / name):
+            os.replace(earlier / name, folder / name)
+        elif name in names and not (fresh / name).exists():
+            (folder / name).unlink()

@@ -1,6 +1,10 @@
 """A record is never written over, and a new result replaces an old one whole or not at all."""
 
+import itertools
 import os
+import signal
+import subprocess
+import sys
 
 import pytest
 import yaml
@@ -164,19 +168,78 @@ def test_a_new_result_replaces_what_an_earlier_one_left_and_nothing_else(tmp_pat
     }  # fmt: skip
 
 
-def test_an_interruption_while_files_change_places_leaves_no_verdict(tmp_path, monkeypatch):
-    """A folder with a verdict always holds the files of one run."""
-    for name in ("verdict.json", "gap.csv", "where.csv"):
+OLD = ("gap.csv", "index.html", "verdict.json", "where.csv")
+NEW = ("gap.csv", "new.csv", "verdict.json", "where.csv")
+
+
+# A result of three files that stand there and one that does not, in place of one of four.
+EXCHANGE = f"""
+from sonicvacuum import outputs
+def exchange(folder):
+    with outputs.renewed(folder, last="verdict.json", stale=["index.html"]) as fresh:
+        for name in {NEW}:
+            (fresh / name).write_text("new")
+"""
+KILLED = f"""{EXCHANGE}
+import itertools, os, pathlib, signal, sys
+replace, moves = os.replace, itertools.count()
+def moved(source, target):
+    if next(moves) == int(sys.argv[1]):
+        os.kill(os.getpid(), signal.SIGKILL)
+    replace(source, target)
+os.replace = moved
+exchange(pathlib.Path(sys.argv[2]))
+"""
+
+
+def exchange(folder):
+    """That result, in this process."""
+    names = {}
+    exec(EXCHANGE, names)
+    names["exchange"](folder)
+
+
+@pytest.mark.parametrize("at", range(9))
+def test_an_interruption_while_files_change_places_leaves_the_old_result_whole(tmp_path, monkeypatch, at):
+    """Four files go and four come; the ninth move is none."""
+    for name in OLD:
         (tmp_path / name).write_text("old")
-    replace = os.replace
+    before = snapshot(tmp_path)
+
+    replace, moves = os.replace, itertools.count()
 
     def interrupted(source, target):
-        if target.name == "where.csv":
+        if next(moves) == at:
             raise KeyboardInterrupt
         replace(source, target)
 
     monkeypatch.setattr(os, "replace", interrupted)
-    with pytest.raises(KeyboardInterrupt), outputs.renewed(tmp_path, last="verdict.json") as fresh:
-        for name in ("verdict.json", "gap.csv", "where.csv"):
-            (fresh / name).write_text("new")
-    assert not (tmp_path / "verdict.json").exists()
+    if at == 8:
+        exchange(tmp_path)
+        assert {path.name: path.read_text() for path in tmp_path.iterdir()} == dict.fromkeys(NEW, "new")
+        return
+    with pytest.raises(KeyboardInterrupt):
+        exchange(tmp_path)
+    assert snapshot(tmp_path) == before
+
+
+@pytest.mark.parametrize("at", range(9))
+def test_a_kill_while_files_change_places_loses_nothing_and_mixes_nothing(tmp_path, at):
+    """A folder with a verdict holds the files of one run, and both runs stand somewhere."""
+    for name in OLD:
+        (tmp_path / name).write_text("old")
+    ended = subprocess.run([sys.executable, "-c", KILLED, str(at), str(tmp_path)], check=False)
+    assert ended.returncode == (-signal.SIGKILL if at < 8 else 0)
+    shown = {path.name: path.read_text() for path in tmp_path.iterdir() if path.is_file()}
+    if "verdict.json" in shown:
+        assert shown == (dict.fromkeys(OLD, "old") if at == 0 else dict.fromkeys(NEW, "new"))
+    kept = sorted((path.name, path.read_text()) for path in tmp_path.rglob("*") if path.is_file())
+    assert at == 8 or kept == sorted([*((n, "old") for n in OLD), *((n, "new") for n in NEW)])
+
+
+def test_a_folder_where_a_file_is_to_stand_stays(tmp_path):
+    (tmp_path / "gap.csv").mkdir()
+    (tmp_path / "verdict.json").write_text("old")
+    with pytest.raises(InputError, match=r"gap\.csv: is a folder"):
+        exchange(tmp_path)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["gap.csv", "verdict.json"]

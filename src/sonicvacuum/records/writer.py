@@ -17,7 +17,8 @@ _FIRST_OF_OBSERVABLE = (
 
 
 def write(record: Record, path) -> None:
-    """Write a record into a folder, made if need be; files take their names once all are complete.
+    """Write a record into a folder, made if need be; files take their names once all are complete, see
+    `outputs.renewed` for what a kill in between leaves.
 
     Raises:
         InputError: for a record that `read` would refuse (nothing is written then) or an unwritable folder.
