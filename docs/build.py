@@ -32,7 +32,8 @@ fitted: this model decides the verdict. What other models give for each statemen
 * **inconsistent in the paper**: printed numbers or labels contradict one another, or geometry.
 * **not testable**: what it would take is not printed.
 
-σ is one standard error of the paper's value, and the difference counts in it.
+σ is one standard error of the paper's value; a difference counted in it stands in the last column, as in
+(+0.58 σ).
 
 """
 
