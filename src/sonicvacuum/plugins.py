@@ -4,14 +4,23 @@ A file stands alone: it may import what is installed, and holds one `EFFECT` or 
 `sonicvacuum.effects` for how one is written). A package names the same objects under the entry-point group
 `sonicvacuum.effects`. Both are checked and tried once (`effects.trial`) before anything is searched with
 them.
+
+A model says what its effects were written in, and another text is refused (`discover.compare`). Of a file it
+is the file; of a package the module that the entry point names and the modules of the same package that it
+imports, at any remove: neither its tests nor what else it does. Import statements are read, wherever they
+stand, so that one law has one digest, whatever else a process has loaded. Where one imports by names that are
+worked out (`import_module`, `__import__`, `*` of a package), all of its package counts. What is outside of
+it, and what is no Python text (tables, compiled extensions), does not.
 """
 
+import ast
 import hashlib
 import sys
 import traceback
 from collections.abc import Iterable
+from contextlib import suppress
 from dataclasses import replace
-from importlib import metadata
+from importlib import metadata, util
 from pathlib import Path
 from types import ModuleType
 
@@ -19,6 +28,9 @@ from sonicvacuum.effects import CATALOGUE, Catalogue, Effect, Source
 from sonicvacuum.files import InputError, read_text
 
 GROUP = "sonicvacuum.effects"
+_INIT = "__init__.py"
+# Who imports this imports modules that no statement names.
+_WORKED_OUT = ("importlib.import_module",)
 
 
 def catalogue(files: Iterable = ()) -> Catalogue:
@@ -96,7 +108,7 @@ def _installed():
         where = f"entry point {point.name} = {point.value} of {_package(point)}"
         try:
             found = point.load()
-            digest = hashlib.sha256(_text(point.module)).hexdigest()
+            digest = _digest(point.module)
         except (Exception, SystemExit) as error:
             told = " ".join(str(error).split())
             raise InputError(
@@ -106,19 +118,66 @@ def _installed():
         yield where, _sourced(found, Source(_package(point), digest), where)
 
 
-def _text(module):
-    """What an installed law is written in: all of the package that it belongs to, whose other modules may
-    hold what it computes, or its module where that stands alone or in an archive.
+def _digest(module):
+    """Of what an installed law is written in: modules of its package by name, length and text, or its own
+    module's text where that stands alone or in an archive.
     """
     parts = module.split(".")
     above = (sys.modules[".".join(parts[: k + 1])] for k in range(len(parts)))
     # Several distributions may share the name of a package that has no file.
     package = next((m for m in above if hasattr(m, "__path__") and getattr(m, "__file__", None)), None)
-    files = sorted(Path(package.__file__).parent.rglob("*.py")) if package else []
-    if files:
-        return b"".join(file.read_bytes() for file in files)
-    own = sys.modules[module]
-    return own.__spec__.loader.get_data(own.__file__)
+    files = _modules(module, package.__name__, Path(package.__file__).parent) if package else {}
+    if not files:
+        own = sys.modules[module]
+        return hashlib.sha256(own.__spec__.loader.get_data(own.__file__)).hexdigest()
+    whole = hashlib.sha256()
+    for name, text in sorted(files.items()):
+        whole.update(f"{name} {len(text)}\n".encode() + text)
+    return whole.hexdigest()
+
+
+def _modules(module, package, folder):
+    """Relative name → text of a module and of what it imports from its package, at any remove."""
+    found, seen, left = {}, set(), [module]
+    while left:
+        name = left.pop()
+        if name in _WORKED_OUT:
+            return {f.relative_to(folder).as_posix(): f.read_bytes() for f in folder.rglob("*.py")}
+        if name in seen or not f"{name}.".startswith(f"{package}."):
+            continue
+        seen.add(name)
+        above, _, own = name.rpartition(".")
+        place = folder.joinpath(*name.removeprefix(package).split("."))
+        file = _file(place)
+        if file:
+            found[file.relative_to(folder).as_posix()] = text = file.read_bytes()
+            left += _imports(text, name if file.name == _INIT else above)
+        elif own == "*" and (place.parent / _INIT).is_file():
+            left += _WORKED_OUT
+        left.append(above)  # the package that a module is in runs before it
+    return found
+
+
+def _file(path):
+    """The text of a package or a module, None for neither."""
+    return next((f for f in (path / _INIT, path.with_name(f"{path.name}.py")) if f.is_file()), None)
+
+
+def _imports(text, package):
+    """Absolute names that the import statements of a module in a package may mean, `NAME.*` for `*`."""
+    try:
+        nodes = list(ast.walk(ast.parse(text)))
+    except SyntaxError:  # of another Python: nothing that could have run
+        return
+    for node in nodes:
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            with suppress(ImportError):  # from above the uppermost package: nothing that could have run
+                base = util.resolve_name("." * node.level + (node.module or ""), package)
+                yield from (base, *(f"{base}.{alias.name}" for alias in node.names))
+        elif getattr(node, "id", getattr(node, "attr", "")) in ("import_module", "__import__"):
+            yield from _WORKED_OUT
 
 
 def _package(point):

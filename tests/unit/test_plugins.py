@@ -1,7 +1,9 @@
 """Effects of the user's own: read from files, checked, tried, kept apart; and nobody else knows an id."""
 
 import hashlib
+import importlib
 import re
+import sys
 import zipfile
 from dataclasses import replace
 from pathlib import Path
@@ -153,20 +155,84 @@ def test_a_broken_package_is_named(tmp_path, monkeypatch, fault, told):
         plugins.catalogue()
 
 
-def test_a_law_that_changes_in_another_module_of_its_package_is_another_law(tmp_path):
-    digests = []
-    for factor in ("1.0", "2.0"):
-        folder = tmp_path / f"by{factor[0]}"
-        folder.mkdir()
-        with pytest.MonkeyPatch.context() as patch:
-            installed(folder, patch, "")
-            package = folder / f"laws_of_{folder.name}"
-            (folder / f"{package.name}.py").unlink()
-            package.mkdir()
-            (package / "__init__.py").write_text("from .law import EFFECT\n")
-            (package / "law.py").write_text(TEXT.replace("damping * delta", f"{factor} * damping * delta"))
-            digests.append(plugins.catalogue().effect("deep-damping").source.sha256)
-    assert digests[0] != digests[1]
+NAMED = "laws_of_several_modules"
+# A package: its law, what that computes with, imported in all the ways there are, and what it has no part in.
+PARTS = {
+    "__init__.py": "from .laws.deep import EFFECT\n",
+    "laws/__init__.py": "",
+    "laws/deep.py": f"from .. import scale\nfrom ..tables.numbers import *\n{TEXT}",
+    "scale.py": "def later():\n    from {package}.tables import units\n",
+    "tables/__init__.py": "",
+    "tables/numbers.py": "import {package}.constants as constants\n",
+    "tables/units.py": "",
+    "constants.py": "import json\n",
+    "plots.py": "",
+    "tests/test_deep.py": "from .. import EFFECT\n",
+}
+
+
+def digest(folder, monkeypatch, parts, loaded=""):
+    """Of the law of a package with such modules, one of which is loaded already."""
+    folder.mkdir()
+    with monkeypatch.context() as patch:
+        installed(folder, patch, "")
+        (folder / f"laws_of_{folder.name}.py").unlink()
+        for name, text in parts.items():
+            (folder / NAMED / name).parent.mkdir(parents=True, exist_ok=True)
+            (folder / NAMED / name).write_text(text.replace("{package}", NAMED))
+        about = folder / "laws-1.2.dist-info" / "entry_points.txt"
+        about.write_text(f"[{plugins.GROUP}]\ndeep = {NAMED}:EFFECT\n")
+        try:
+            if loaded:
+                importlib.import_module(f"{NAMED}.{loaded}")
+            return plugins.catalogue().effect("deep-damping").source.sha256
+        finally:
+            for name in [n for n in sys.modules if n.split(".")[0] == NAMED]:
+                del sys.modules[name]
+
+
+@pytest.mark.parametrize("changed", PARTS)
+def test_a_law_is_what_it_imports_from_its_package(tmp_path, monkeypatch, changed):
+    """Another digest with any such module, the same whatever else the package holds."""
+    before = digest(tmp_path / "a", monkeypatch, PARTS)
+    after = digest(tmp_path / "b", monkeypatch, PARTS | {changed: PARTS[changed] + "# changed\n"})
+    assert (before == after) == (changed in ("plots.py", "tests/test_deep.py"))
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "import importlib\nlater = lambda name: importlib.import_module(name)",
+        "from importlib import import_module as brought",
+        "later = lambda name: __import__(name)",
+        "from {package}.tables import *",
+    ],
+)
+def test_all_of_a_package_counts_where_no_statement_names_what_is_imported(tmp_path, monkeypatch, line):
+    parts = PARTS | {"constants.py": f"{line}\n"}
+    before = digest(tmp_path / "a", monkeypatch, parts)
+    assert before != digest(tmp_path / "b", monkeypatch, parts | {"plots.py": "# changed\n"})
+
+
+@pytest.mark.parametrize("loaded", ["plots", "tables.units"])
+def test_what_else_is_loaded_makes_no_other_law(tmp_path, monkeypatch, loaded):
+    """One that the law has no part in; one that it imports later."""
+    before = digest(tmp_path / "a", monkeypatch, PARTS)
+    assert before == digest(tmp_path / "b", monkeypatch, PARTS, loaded)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"constants.py": "a = 1\n", "laws/__init__.py": "b = 2\n"},
+        {"constants/__init__.py": "a = 1\nb = 2\n"},
+    ],
+)
+def test_bounds_and_names_of_modules_count(tmp_path, monkeypatch, changes):
+    """Though their texts, one after the other, are the same."""
+    rest = {name: text for name, text in PARTS.items() if name != "constants.py"}
+    before = digest(tmp_path / "a", monkeypatch, rest | {"constants.py": "a = 1\nb = 2\n"})
+    assert before != digest(tmp_path / "b", monkeypatch, rest | changes)
 
 
 def test_a_package_in_an_archive_may_offer_effects(tmp_path, monkeypatch):
