@@ -40,23 +40,34 @@ def ball(speeds=(0.1, 0.18, 0.33, 0.6, 1.1, 2.0), seed=1) -> Record:
     return filled(content, [REBOUND, CONTACT], seed)
 
 
-def chain(speeds=(0.2, 0.35, 0.6), seed=1) -> Record:
-    """Peaks and speeds in ten beads."""
+def chain(speeds=(0.2, 0.35, 0.6), seed=1, departures=()) -> Record:
+    """Peaks and speeds in ten beads, with `departures` as in `filled`."""
     content = block(speeds)
     for run in content["runs"]:
         del run["signals"]
     for sensor in content["sensors"]:
         del sensor["sigma_N"]
-    return filled(content, [*PEAKS, *SPEEDS], seed)
+    return filled(content, [*PEAKS, *SPEEDS], seed, departures)
 
 
-def filled(content, wanted, seed) -> Record:
-    """A record with the nominal model's values of what is wanted, and noise."""
+def filled(content, wanted, seed, departures=()) -> Record:
+    """A record with the model's values of what is wanted, and noise.
+
+    `departures` (what, place, ratio) change stiffness or mass at places.
+    """
     for run in content["runs"]:
         run["observables"] = [{**one, "sigma": one["value"]} for one in wanted]
     empty = Record(parse(content), {}, "table")
     forward = Forward(experiment(empty))
-    shown = forward.sampled(Hypothesis(), np.zeros((1, 0)), np.zeros((1, forward.layout.size)))
+    none = np.zeros((1, 0)), np.zeros((1, forward.layout.size))
+
+    def change(setup, _):
+        chain = setup.chain
+        for what, place, ratio in departures:
+            chain = chain.with_defect(what, place, ratio)
+        return replace(setup, chain=chain)
+
+    shown = forward.sampled(Hypothesis(), *none, change=change)
     random, runs = np.random.default_rng(seed), []
     for run, values in zip(empty.block.runs, shown, strict=True):
         # SI values come in units of the errors, which are those of the record's own units.

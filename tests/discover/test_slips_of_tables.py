@@ -1,18 +1,30 @@
 """Slips in tables of values without traces."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from made_records import BEADS
 from made_tables import ball, chain, changed
 
 from sonicvacuum.discover import session
 from sonicvacuum.discover.faults import changes, judged, tables
+from sonicvacuum.discover.faults.found import Bench
+from sonicvacuum.discover.faults.ranking import Ranking
+from sonicvacuum.discover.fit.refit import fit
+from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, variants
+from sonicvacuum.discover.search import singles
+from sonicvacuum.effects import CATALOGUE
 from sonicvacuum.report import bench
 
 
 def discovered(record):
     return session.discover(record, threads=1, limits=False).verdict
+
+
+def ranked_of(record, threads=1):
+    return Ranking(Bench(record), CATALOGUE, threads, [])
 
 
 @pytest.fixture(scope="module")
@@ -74,6 +86,17 @@ def test_errors_that_are_too_small_are_told_and_nothing_is_named():
     assert {f.fault for f in found.faults} == {"noise-misstated"}
     assert sum(f.probability for f in found.faults) > 0.9
     assert bench.slips(found)[0].startswith("The errors of ")
+
+
+def test_slips_beside_an_effect_at_the_last_bead_leave_it_its_place():
+    ranking = ranked_of(chain(departures=[("mass", BEADS, 2.5)]))
+    model = ranking.nominal()
+    setup, defect = singles.setup_of(model.forward), CATALOGUE.effect("mass-defect")
+    beside = Hypothesis((Component(defect, variants(defect, setup)[0], place=BEADS),))
+    one = fit(model.forward, beside, np.full((1, 1), np.log(2.5)), model.fit.nu[None])
+    # A bead less has none of that number; a bead more has it elsewhere.
+    assert "bead-count" in {j.slip.fault for j in ranking.ranked(model)}
+    assert "bead-count" not in {j.slip.fault for j in ranking.ranked(replace(model, fit=one))}
 
 
 def test_what_is_left_counts_as_noise_only_where_it_looks_like_it():

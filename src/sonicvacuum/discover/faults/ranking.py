@@ -44,6 +44,14 @@ def _as_well(judged: Judged, plain: Judged) -> bool:
     return same and judged.gain > plain.gain - ALIKE
 
 
+def _possible(slips: list[Slip], model: Model) -> list[Slip]:
+    """Slips without those that move an effect: in a chain of another length the place of one at a bead or a
+    contact would be another one, or none.
+    """
+    placed = any(c.effect.places in ("bead", "contact") for c in model.fit.hypothesis.components)
+    return [s for s in slips if not (placed and of_the_chain(s))]
+
+
 class Ranking:
     """Slips of one record beside models of it.
 
@@ -82,14 +90,12 @@ class Ranking:
         """Slips that gain enough beside a model, fitted, the likeliest first; masses also `afar`."""
         judge, record = Judge(model, self.judged), model.bench.record
         if not record.signals:
-            return self._of_table(judge, tables.hypotheses(record, model))
+            return self._of_table(judge, _possible(tables.hypotheses(record, model), model))
         seen = predicted(self.make(model.bench), self.threads)
         done = {(f.fault, f.run, f.sensor) for f in self.findings}
         slips = [*with_starts(hypotheses(record), record, seen, model), *late_runs(record, model, seen)]
         slips = [s for s in slips if (s.fault, s.run, s.sensor) not in done]
-        if any(c.effect.places in ("bead", "contact") for c in model.fit.hypothesis.components):
-            # In a chain of another length its place would be another one, or none.
-            slips = [s for s in slips if not of_the_chain(s)]
+        slips = _possible(slips, model)
         shown = [*time_zero(record, seen), *drifts(record, seen)]
         stages.begin("slips of the laboratory")
         far = excess(model) > policy.SURE_GAIN
