@@ -40,11 +40,12 @@ def ball(speeds=(0.1, 0.18, 0.33, 0.6, 1.1, 2.0), seed=1) -> Record:
     return filled(content, [REBOUND, CONTACT], seed)
 
 
-def chain(speeds=(0.2, 0.35, 0.6), seed=1, departures=()) -> Record:
+def chain(speeds=(0.2, 0.35, 0.6), seed=1, departures=(), speed_error=0.01) -> Record:
     """Peaks and speeds in ten beads, with `departures` as in `filled`."""
     content = block(speeds)
     for run in content["runs"]:
         del run["signals"]
+        run["striker"]["speed_rel_sigma"] = speed_error
     for sensor in content["sensors"]:
         del sensor["sigma_N"]
     return filled(content, [*PEAKS, *SPEEDS], seed, departures)

@@ -46,8 +46,9 @@ def test_the_page_says_which_value_no_other_supports(mistyped):
     assert said.startswith("Restitution is 0.1") and "no other supports in run v2: look it up" in said
 
 
-def test_a_run_at_another_speed_is_told_by_all_its_values():
-    found = discovered(changes.strikers(chain(), "speed_m_s", -np.log(2.0), ("v1",)))
+@pytest.mark.parametrize("error", [0.0, 0.01])
+def test_a_run_at_another_speed_is_told_by_all_its_values(error):
+    found = discovered(changes.strikers(chain(speed_error=error), "speed_m_s", -np.log(2.0), ("v1",)))
     assert found.named == []
     (one,) = found.faults
     assert (one.fault, one.run) == ("run-off", "v1") and one.probability > 0.95

@@ -20,6 +20,8 @@ from sonicvacuum.discover.faults import policy
 from sonicvacuum.discover.faults.judged import Judged, Model, scale_gain
 from sonicvacuum.discover.faults.slips import Slip, chain_slips, swaps
 from sonicvacuum.discover.faults.starts import NEAR
+from sonicvacuum.discover.fit.refit import Fit
+from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.records import Record
 from sonicvacuum.records.record import label_of, observable
 
@@ -41,10 +43,12 @@ def asked(record: Record) -> bool:
 
 def hypotheses(record: Record, model: Model) -> list[Slip]:
     """All slips of a table, beside a model of it."""
-    runs = _runs(record)
-    start = _at_stated(model)
-    whole = [s for s in chain_slips(record) if s.fault != "run-off"]
-    off = _started([s for s in chain_slips(record) if s.fault == "run-off"], model, start)
+    runs, forward = _runs(record), _with_open_speeds(model.forward)
+    start = _at_stated(forward, model.fit)
+    whole, off = [], []
+    for one in chain_slips(record):
+        (off if one.fault == "run-off" else whole).append(one)
+    off = _started(off, forward, start)
     gauges = swaps([g.id for g in record.gauges])
     rows = [*_values(runs, start, model), *_gauges(runs), *_exchanged(runs), *_noise(runs, model)]
     return [*whole, *off, *gauges, *rows]
@@ -67,30 +71,41 @@ def label(one) -> str:
     return label_of(one.quantity.replace("_", " "), one.options)
 
 
-def _at_stated(model):
-    """Columns of every run where all is as stated."""
-    one = model.fit
-    return model.forward.columns(one.hypothesis, one.u[None], 0.0 * one.nu[None])
+def _with_open_speeds(forward: Forward) -> Forward:
+    """The predictor, or one of the same data whose exact speeds have an error: without any, no slope tells
+    where a run's values would lead its speed.
+    """
+    e = forward.experiment
+    if all(r.speed_rel_sigma for r in e.runs):
+        return forward
+    runs = tuple(replace(r, speed_rel_sigma=r.speed_rel_sigma or policy.OPEN_SPEED) for r in e.runs)
+    return Forward(replace(e, runs=runs), forward.threads)
 
 
-def _started(slips, model, start):
+def _at_stated(forward: Forward, one: Fit) -> list[np.ndarray]:
+    """(1, 1 + p + local, M) whitened predictions and slopes of every run, where all is as stated but for the
+    effects of a fit.
+    """
+    return forward.columns(one.hypothesis, one.u[None], 0.0 * one.nu[None])
+
+
+def _started(slips, forward, start):
     """Speeds of single runs, from where their values lead in one step, beside what all runs show."""
-    sizes = np.array([_led(s, model, start) for s in slips])
+    sizes = np.array([_led(s, forward, start) for s in slips])
     sizes -= np.median(sizes) if len(sizes) > 2 else 0.0
     sizes = np.clip(sizes, -policy.FARTHEST_SPEED, policy.FARTHEST_SPEED)
     far = [abs(size) > NEAR[s.fault] * s.width for s, size in zip(slips, sizes, strict=True)]
     return [replace(s, start=float(x)) if own else s for s, x, own in zip(slips, sizes, far, strict=True)]
 
 
-def _led(slip, model, start) -> float:
+def _led(slip, forward, start) -> float:
     """The logarithm of a run's speed over the stated one to which its values lead in one step."""
-    forward, p = model.forward, len(model.fit.u)
     run = [r.id for r in forward.experiment.runs].index(slip.run)
-    place = list(forward.layout.local(run)).index(forward.layout.speed(run))
-    sigma = float(forward.nuisance_sigma[forward.layout.speed(run)])
-    if not sigma > 0.0:
-        return 0.0
-    slope, left = start[run][0, 1 + p + place] / sigma, forward.data(run) - start[run][0, 0]
+    local, at = forward.local(run), forward.layout.speed(run)
+    columns = start[run][0]
+    # Columns stand in the order: predictions, parameters of effects, nuisances of the run.
+    own = columns[len(columns) - len(local) + list(local).index(at)]
+    slope, left = own / forward.nuisance_sigma[at], forward.data(run) - columns[0]
     return float(slope @ left) / (float(slope @ slope) + slip.width**-2.0)
 
 
