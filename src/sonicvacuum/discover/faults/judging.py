@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import cached_property
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from sonicvacuum.discover.model.experiment import Experiment
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.problem import error
 from sonicvacuum.records import Record
+from sonicvacuum.records.blocks import RunBlock
 from sonicvacuum.records.record import observable
 
 # Steps of the search for a size, and the Δχ² below which a step is the last.
@@ -42,7 +44,7 @@ class Judge:
     def __init__(self, model: Model, make: Callable[[Bench], Experiment], threads: int | None = None):
         self.model, self.make, self.threads = model, make, threads or model.forward.threads
         self.simulations = 0
-        self._columns = self._both = None
+        self._columns = None
         self._own = self._residuals(model.bench.record)
 
     def _bench(self, record: Record) -> Bench:
@@ -60,13 +62,18 @@ class Judge:
         return nu
 
     def _residuals(self, record, slip=None, near=False):
-        """Residuals and slopes of every run for a changed record, and its Σ log σ².
+        """`_linearised` at the model's parameters; with a `slip` at its `_nuisances` and at none."""
+        one = self.model.fit
+        starts = one.nu[None] if slip is None else np.stack([self._nuisances(slip), 0.0 * one.nu])
+        return self._linearised(record, starts, near)
 
-        At the model's parameters; with a `slip` at its `_nuisances` and at none, (starts, runs) then. Where
-        the record is `near` the one as it is, slopes that take a simulation each are those of that one.
+    def _linearised(self, record, starts, near=False):
+        """Residuals and slopes of every run for a changed record, with (L, q) nuisances, (L, runs), and its
+        Σ log σ².
+
+        Where the record is `near` the one as it is, slopes that take a simulation each are those of that one.
         """
         forward, one = self._forward(record), self.model.fit
-        starts = one.nu[None] if slip is None else np.stack([self._nuisances(slip), 0.0 * one.nu])
         many_u, held = np.repeat(one.u[None], len(starts), axis=0), self._columns if near else None
         # Nuisances take up nearly all of what a slip of time or speed changes: the slopes that all sizes are
         # held against must not err by as much as is left.
@@ -82,21 +89,39 @@ class Judge:
             found.append((parts, nu))
         return found, noise_volume(forward.experiment)
 
+    @cached_property
+    def _before(self) -> float:
+        """−2 log L of the record as it is in the linearised model."""
+        (own,), volume = self._own
+        return self._least(*own) + volume
+
+    @cached_property
+    def _as_it_is(self):
+        """Of a table: residuals and slopes of every run at the model's nuisances and at none, with these, and
+        every run's values and errors; what slips of values change.
+        """
+        record, one = self.model.bench.record, self.model.fit
+        both, _ = self._linearised(record, np.stack([one.nu, 0.0 * one.nu]))
+        return both, [_numbers(run) for run in record.block.runs]
+
     def _look_at_values(self, slip: Slip) -> Judged:
         """The same of a slip that changes values and errors of a table only: nothing is simulated for it."""
-        if self._both is None:
-            self._both = self._residuals(self.model.bench.record, slip)
-        (own,), volume = self._own
-        changed = slip.change(self.model.bench.record, 0.0)
-        after, numbers = np.inf, [_numbers(r) for r in (self.model.bench.record, changed)]
-        for parts, nu in self._both[0]:
+        both, stated = self._as_it_is
+        old, new = self.model.bench.record, slip.change(self.model.bench.record, 0.0)
+        # Runs that a slip leaves alone are the same objects.
+        runs = zip(old.block.runs, new.block.runs, stated, strict=True)
+        numbers = [own if now is run else _numbers(now) for run, now, own in runs]
+        after = np.inf
+        for parts, nu in both:
             moved = []
-            for part, (value, stated), (new, wider) in zip(parts, *numbers, strict=True):
-                moved.append(part * (stated / wider))
-                moved[-1][0] += (new - value) / wider
+            for part, own, given in zip(parts, stated, numbers, strict=True):
+                if given is not own:
+                    part = part * (own[1] / given[1])
+                    part[0] += (given[0] - own[0]) / given[1]
+                moved.append(part)
             after = min(after, self._least(moved, nu))
-        after += sum(2.0 * float(np.log(wider).sum()) for _, wider in numbers[1])
-        gain = self._least(*own) + volume - after
+        after += sum(2.0 * float(np.log(error).sum()) for _, error in numbers)
+        gain = self._before - after
         return Judged(slip, 0.0, gain, 0.5 * gain + occam(slip, 0.0, gain))
 
     def look(self, slip: Slip) -> Judged:
@@ -112,11 +137,15 @@ class Judge:
             changed, own_volume = self._residuals(slip.change(record, size), slip)
             after = min(self._least(*one) for one in changed)
             after += volume if slip.continuous else own_volume
-        gain = self._least(*own) + volume - after
+        gain = self._before - after
         return Judged(slip, size, gain, 0.5 * gain + occam(slip, size, gain))
 
     def look_at(self, slips: Sequence[Slip]) -> list[Judged]:
-        """`look` at all of them, side by side."""
+        """`look` at all of them, side by side; what all have in common first, and once."""
+        if any(s.of_values for s in slips):
+            _ = self._as_it_is
+        if slips:
+            _ = self._before
 
         def seen(slip):
             one = self.look(slip)
@@ -283,10 +312,10 @@ class Judge:
         return size, Model(bench, forward, found)
 
 
-def _numbers(record: Record) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Values and errors of every run of a table, in SI."""
-    found = [list(map(observable, run.observables)) for run in record.block.runs]
-    return [(np.array([o.value for o in own]), np.array([error(o) for o in own])) for own in found]
+def _numbers(run: RunBlock) -> tuple[np.ndarray, np.ndarray]:
+    """(n,) values and errors of a run of a table, in SI."""
+    found = [observable(o) for o in run.observables]
+    return np.array([o.value for o in found]), np.array([error(o) for o in found])
 
 
 def _farther(before: tuple[float, float] | None, size: float, step: float) -> float:
