@@ -1,5 +1,6 @@
 """Slips in tables of values without traces."""
 
+from collections import Counter
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -9,7 +10,7 @@ from made_records import BEADS
 from made_tables import ball, chain, changed
 
 from sonicvacuum.discover import session
-from sonicvacuum.discover.faults import changes, judged, tables
+from sonicvacuum.discover.faults import changes, judged, policy, tables
 from sonicvacuum.discover.faults.found import Bench
 from sonicvacuum.discover.faults.ranking import Ranking
 from sonicvacuum.discover.fit.refit import fit
@@ -77,6 +78,21 @@ def test_rows_of_two_gauges_in_each_others_place():
     assert said.startswith("Amplitude of gauges g4 and wall look exchanged in run v1: check the rows")
 
 
+def test_runs_exchanged_as_a_whole_are_looked_up_in_their_rows():
+    record = chain()
+    first, second = (record.block.runs[k].observables for k in (0, 2))
+    for place in range(5):
+        for run, other in ((0, second), (2, first)):
+            value = other[place].value
+            record = changed(record, run, place, value=lambda _, v=value: v)
+    found = discovered(record)
+    assert found.named == []
+    (one,) = found.faults
+    assert (one.fault, one.run, one.quantity) == ("runs-swapped", "v0 and v2", tables.ALL)
+    (said,) = bench.slips(found)
+    assert said.startswith("All values of runs v0 and v2 look exchanged: check the rows of both runs")
+
+
 def test_errors_that_are_too_small_are_told_and_nothing_is_named():
     record = ball(speeds=tuple(0.1 * 1.3**k for k in range(12)), seed=3)
     for run in range(12):
@@ -115,6 +131,37 @@ def test_what_is_left_counts_as_noise_only_where_it_looks_like_it():
 def test_a_table_of_few_values_is_not_asked():
     assert tables.asked(ball())
     assert not tables.asked(ball(speeds=(0.2, 0.5, 1.0)))
+
+
+@pytest.mark.parametrize("count", [6, 18])
+def test_no_more_slips_are_looked_at_for_more_runs(count):
+    """As many values and exchanges as there are rows and pairs of rows, of which a few explain anything."""
+    record = ball(speeds=[0.1 * 20.0 ** (k / count) for k in range(count)])
+    first, second = (record.block.runs[k].observables[1] for k in (2, 4))
+    record = changed(record, 2, 1, value=lambda _: second.value)
+    record = changed(record, 4, 1, value=lambda _: first.value)
+    ranking = ranked_of(record)
+    model = ranking.nominal()
+    slips = tables.hypotheses(record, model)
+    kinds = Counter((s.fault, s.quantity == tables.ALL) for s in slips)
+    assert max(kinds.values()) <= policy.LOOKED_AT
+    # All that there are count in the prior.
+    pairs = count * (count - 1) // 2
+    exchanges = {s.alternatives for s in slips if s.fault == "runs-swapped"}
+    assert exchanges == {pairs, 2 * pairs}
+    best = ranking.ranked(model)[0].slip
+    # Rebounds of an elastic ball tell no speed, so that all rows may be exchanged as well.
+    assert (best.fault, best.run) == ("runs-swapped", "v2 and v4")
+
+
+def test_simulations_are_counted_alike_on_more_threads():
+    record = changes.strikers(ball(), "speed_m_s", -np.log(2.0), ("v3",))
+    counts = []
+    for threads in (1, 2):
+        ranking = ranked_of(record, threads)
+        ranking.ranked(ranking.nominal())
+        counts.append(ranking.simulations)
+    assert counts[0] == counts[1]
 
 
 def test_errors_far_too_large_make_a_table_suspicious():

@@ -38,8 +38,11 @@ CHANCE = 12.0
 SPEED_POWER = 1.5
 # The speed of a run that a table asks for is off by no more, in its logarithm.
 FARTHEST_SPEED = math.log(4.0)
-# Relative error of a speed that is stated as exact, by which slopes tell where its run's values would lead it.
+# Relative error of a speed that is stated as exact, so that slopes tell where its run's values lead it.
 OPEN_SPEED = 0.01
+# Slips of one kind in a table, values by themselves or exchanges of them, that are looked at: those that gain
+# most with the model held.
+LOOKED_AT = 12
 # No more slips than this are put right in one record: a record with more should be made anew.
 MOST = 3
 # Probabilities below this are not worth a line.

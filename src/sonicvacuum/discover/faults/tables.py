@@ -17,6 +17,7 @@ import msgspec
 import numpy as np
 
 from sonicvacuum.discover.faults import policy
+from sonicvacuum.discover.faults.foremost import foremost, held
 from sonicvacuum.discover.faults.judged import Judged, Model, scale_gain
 from sonicvacuum.discover.faults.slips import Slip, chain_slips, swaps
 from sonicvacuum.discover.faults.starts import NEAR
@@ -27,6 +28,8 @@ from sonicvacuum.records.record import label_of, observable
 
 # A value that no other supports may be anything of its size, give or take this factor.
 ANYTHING = 3.0
+# The quantity of a slip that concerns all rows of some runs.
+ALL = "all values"
 # Stated errors are off by e to this in the usual case, and by ten at most: what leaves more is no noise.
 ERRORS, MOST = 2.0, math.log(10.0)
 # What is left of noise stands by itself: neighbouring runs have no more in common than this many standard
@@ -50,7 +53,13 @@ def hypotheses(record: Record, model: Model) -> list[Slip]:
         (off if one.fault == "run-off" else whole).append(one)
     off = _started(off, forward, start)
     gauges = swaps([g.id for g in record.gauges])
-    rows = [*_values(runs, start, model), *_gauges(runs), *_exchanged(runs), *_noise(runs, model)]
+    seen = held([(k, j) for k, (_, rows) in enumerate(runs) for j, _ in rows], model, start)
+    rows = [
+        *_values(runs, start, model, seen),
+        *_gauges(runs, seen),
+        *_exchanged(runs, seen),
+        *_noise(runs, model),
+    ]
     return [*whole, *off, *gauges, *rows]
 
 
@@ -90,44 +99,54 @@ def _at_stated(forward: Forward, one: Fit) -> list[np.ndarray]:
 
 
 def _started(slips, forward, start):
-    """Speeds of single runs, from where their values lead in one step, beside what all runs show."""
-    sizes = np.array([_led(s, forward, start) for s in slips])
+    """Speeds of single runs, from where their values lead in one step, beside what all runs show; of many
+    those that gain most by it.
+    """
+    led = [_led(s, forward, start) for s in slips]
+    sizes, known = (np.array([one[part] for one in led]) for part in (0, 1))
     sizes -= np.median(sizes) if len(sizes) > 2 else 0.0
+    chosen = foremost(range(len(slips)), np.tile(np.square(sizes) * known, (2, 1)))
+    slips, sizes = [slips[n] for n in chosen], sizes[chosen]
     sizes = np.clip(sizes, -policy.FARTHEST_SPEED, policy.FARTHEST_SPEED)
     far = [abs(size) > NEAR[s.fault] * s.width for s, size in zip(slips, sizes, strict=True)]
     return [replace(s, start=float(x)) if own else s for s, x, own in zip(slips, sizes, far, strict=True)]
 
 
-def _led(slip, forward, start) -> float:
-    """The logarithm of a run's speed over the stated one to which its values lead in one step."""
+def _led(slip, forward, start) -> tuple[float, float]:
+    """The logarithm of a run's speed over the stated one to which its values lead in one step, and how well
+    they know it: the inverse of its variance.
+    """
     run = [r.id for r in forward.experiment.runs].index(slip.run)
     local, at = forward.local(run), forward.layout.speed(run)
     columns = start[run][0]
     # Columns stand in the order: predictions, parameters of effects, nuisances of the run.
     own = columns[len(columns) - len(local) + list(local).index(at)]
     slope, left = own / forward.nuisance_sigma[at], forward.data(run) - columns[0]
-    return float(slope @ left) / (float(slope @ slope) + slip.width**-2.0)
+    known = float(slope @ slope) + slip.width**-2.0
+    return float(slope @ left) / known, known
 
 
-def _values(runs, start, model):
-    """Each value by itself."""
-    count, out = sum(len(rows) for _, rows in runs), _standing_out(runs, start, model)
-    for k, (run, rows) in enumerate(runs):
-        for j, one in rows:
-            expected = abs(float(start[k][0, 0, j]) * model.forward.experiment.runs[k].scalars[j].sigma)
-            anything = ANYTHING * max(abs(one.value), expected)
-            yield Slip(
-                "spikes",
-                partial(_unsupported, k, j, anything / (one.sigma or 1.0)),
-                run,
-                _gauges_of(one),
-                count,
-                quantity=label(one),
-                of_values=True,
-                value=_nothing,
-                seen=partial(_times, k, j),
-                plain=(k, j) in out,
-            )
+def _values(runs, start, model, seen):
+    """Values by themselves."""
+    places, out = list(seen.place), _standing_out(runs, start, model)
+    chosen = foremost(places, seen.alone(places))
+    for k, j in sorted({*chosen, *out}):
+        run, rows = runs[k]
+        one = dict(rows)[j]
+        expected = abs(float(start[k][0, 0, j]) * model.forward.experiment.runs[k].scalars[j].sigma)
+        anything = ANYTHING * max(abs(one.value), expected)
+        yield Slip(
+            "spikes",
+            partial(_unsupported, k, j, anything / one.sigma),
+            run,
+            _gauges_of(one),
+            len(places),
+            quantity=label(one),
+            of_values=True,
+            value=_nothing,
+            seen=partial(_times, k, j),
+            plain=(k, j) in out,
+        )
 
 
 def _standing_out(runs, start, model) -> set[tuple[int, int]]:
@@ -200,7 +219,7 @@ def _edited(record, edits):
 
 def _unsupported(k, j, factor, record, _):
     own = record.block.runs[k].observables[j]
-    return _edited(record, {(k, j): {"sigma": (own.sigma or 1.0) * factor}})
+    return _edited(record, {(k, j): {"sigma": own.sigma * factor}})
 
 
 def _exchange(pairs, record, _):
@@ -213,7 +232,7 @@ def _exchange(pairs, record, _):
     return _edited(record, edits)
 
 
-def _gauges(runs):
+def _gauges(runs, seen):
     """Rows of two gauges in one run."""
     pairs = [
         (k, run, a, b)
@@ -221,7 +240,8 @@ def _gauges(runs):
         for a, b in itertools.combinations(rows, 2)
         if a[1].quantity == b[1].quantity and "sensor" in a[1].options and _level(a[1]) == _level(b[1])
     ]
-    for k, run, (i, one), (j, other) in pairs:
+    gains = seen.exchanged([((k, i), (k, j)) for k, _, (i, _), (j, _) in pairs])
+    for k, run, (i, one), (j, other) in foremost(pairs, gains):
         yield Slip(
             "gauges-swapped",
             partial(_exchange, [((k, i), (k, j))]),
@@ -238,19 +258,23 @@ def _level(one):
     return {key: value for key, value in one.options.items() if key != "sensor"}
 
 
-def _exchanged(runs):
+def _exchanged(runs, seen):
     """Rows of one quantity in two runs, and all rows of two runs."""
     places = [{label(one): (k, j) for j, one in rows} for k, (_, rows) in enumerate(runs)]
     pairs = list(itertools.combinations(range(len(runs)), 2))
     single = [(a, b, name) for a, b in pairs for name in places[a] if name in places[b]]
-    for a, b, name in single:
+    gains = seen.exchanged([(places[a][name], places[b][name]) for a, b, name in single])
+    for a, b, name in foremost(single, gains):
         yield _swapped_runs(runs, a, b, [(places[a][name], places[b][name])], len(single), name)
-    for a, b in pairs:
-        if places[a] and places[a].keys() == places[b].keys():
-            yield _swapped_runs(runs, a, b, [(places[a][n], places[b][n]) for n in places[a]], len(pairs))
+    together: dict[tuple[int, int], np.ndarray] = defaultdict(lambda: np.zeros(2))
+    for (a, b, _), gain in zip(single, gains.T, strict=True):
+        together[a, b] = together[a, b] + gain
+    whole = [(a, b) for a, b in pairs if places[a] and places[a].keys() == places[b].keys()]
+    for a, b in foremost(whole, np.array([together[pair] for pair in whole]).reshape(-1, 2).T):
+        yield _swapped_runs(runs, a, b, [(places[a][n], places[b][n]) for n in places[a]], len(whole))
 
 
-def _swapped_runs(runs, a, b, rows, alternatives, name=None):
+def _swapped_runs(runs, a, b, rows, alternatives, name=ALL):
     return Slip(
         "runs-swapped",
         partial(_exchange, rows),
@@ -341,7 +365,7 @@ def worth(looked: list[Judged]) -> list[Judged]:
     """The best of each kind, of those that gain enough, and what shows by itself."""
     best = {}
     for judged in looked:
-        kind = (judged.slip.fault, bool(judged.slip.quantity))
+        kind = (judged.slip.fault, judged.slip.quantity in (None, ALL))
         if judged.gain > policy.LEAST_GAIN and (kind not in best or judged.log_odds > best[kind].log_odds):
             best[kind] = judged
     chosen = [*best.values(), *(j for j in looked if j.slip.plain and j not in best.values())]
