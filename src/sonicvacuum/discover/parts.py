@@ -114,7 +114,7 @@ Sources = dict[str, Source] | UnsetType
 
 class Fault(Part, kw_only=True):
     """One slip of the laboratory; `sensor` one id or several, null where it concerns none; `quantity` where
-    it concerns one of a table without traces.
+    it concerns one of a table without traces, `all values` where it concerns all rows of some runs.
     """
 
     fault: FaultId

@@ -50,7 +50,7 @@ def corrected(verdict: Verdict) -> str:
 
 
 def _tabled(one) -> bool:
-    """Whether a slip concerns values of a table: one quantity, or errors of no gauge."""
+    """Whether a slip concerns values of a table: one quantity or all, or errors of no gauge."""
     return bool(FAULTS[one.fault].of_table and (one.quantity or (one.sensor is None and not one.run)))
 
 

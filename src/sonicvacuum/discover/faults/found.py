@@ -20,7 +20,7 @@ class Finding:
         value: in the fault's unit, None where there is none.
         probability: that the slip was made.
         corrected: whether the rest of the verdict is of the record without it.
-        quantity: of a table, where it concerns one.
+        quantity: of a table, where it concerns one, or all rows of some runs (`tables.ALL`).
     """
 
     fault: str
