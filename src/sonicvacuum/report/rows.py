@@ -63,16 +63,18 @@ def quantities(table: list[dict], records: Sequence[Record] = ()) -> list[dict]:
         for run in record.runs
         for one in run.observables
     }
-    return [
-        {
-            "run": r["run"],
-            "quantity": in_full(r["quantity"]),
-            "measured": _measured(r, common := shared.get((r["run"], r["quantity"]), {})),
-            "common": sorted(common),
-            **{name: number(r[name], 4) for name in ("nominal", "extended", "held_out")},
-        }
-        for r in table
-    ]
+    return [_quantity(r, shared.get((r["run"], r["quantity"]), {})) for r in table]
+
+
+def _quantity(row, common):
+    """One row of `quantities`; `common` is what its value has in common with others → relative error."""
+    return {
+        "run": row["run"],
+        "quantity": in_full(row["quantity"]),
+        "measured": _measured(row, common),
+        "common": sorted(common),
+        **{name: number(row[name], 4) for name in ("nominal", "extended", "held_out")},
+    }
 
 
 def _measured(row, common):

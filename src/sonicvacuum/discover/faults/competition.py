@@ -82,7 +82,8 @@ def discover(records: Sequence[Record], catalogue: Catalogue = CATALOGUE, thread
     """Slips and effects of one record, or of records taken together.
 
     Of several records only what traces show by themselves is looked for: they share a chain and its gauges,
-    and each has its own slips.
+    and each has its own slips. Of a record without traces slips are asked for from `policy.FEWEST_VALUES`
+    values on (`tables.asked`), eight; fewer are searched for effects only.
     """
     seen = [predicted(together((r,), catalogue), threads) if r.signals else {} for r in records]
     looked = [examine(*one) for one in zip(records, seen, strict=True)]

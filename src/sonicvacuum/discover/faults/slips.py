@@ -109,7 +109,7 @@ def _discrete(record):
             partial(_ignoring, changes.gauge_moved, g.id, by),
             sensor=g.id,
             alternatives=len(moves),
-            value=partial(_constant, float(g.bead + by)),
+            value=partial(constant, float(g.bead + by)),
         )
     yield from _counts(record, embedded)
     yield from _exchanged(record)
@@ -120,7 +120,7 @@ def swaps(ids):
     pairs = list(itertools.combinations(ids, 2))
     for one, two in pairs:
         change = partial(_ignoring, changes.gauges_swapped, one, two)
-        yield Slip("gauges-swapped", change, None, (one, two), len(pairs), value=partial(_constant, None))
+        yield Slip("gauges-swapped", change, None, (one, two), len(pairs), value=partial(constant, None))
 
 
 def _counts(record, embedded):
@@ -131,7 +131,7 @@ def _counts(record, embedded):
         places = [g.bead + (by if from_wall else 0) for g in embedded]
         if all(1 <= p <= record.beads + by for p in places):
             change = partial(_ignoring, changes.bead_count, by, from_wall)
-            value = partial(_constant, float(record.beads + by))
+            value = partial(constant, float(record.beads + by))
             yield Slip("bead-count", change, alternatives=2 * len(ends), value=value)
 
 
@@ -143,7 +143,7 @@ def _exchanged(record):
     ]
     for a, b in pairs:
         change = partial(_ignoring, changes.runs_swapped, a.id, b.id)
-        value = partial(_constant, None)
+        value = partial(constant, None)
         yield Slip("runs-swapped", change, f"{a.id} and {b.id}", None, len(pairs), value=value)
 
 
@@ -196,5 +196,6 @@ def _lost_late(id, lost, record, size):
     return changes.lost_by_delay(lost, record, id, size)
 
 
-def _constant(value, _):
+def constant(value: float | None, _: float) -> float | None:
+    """The value that is said of a slip whatever its size; None where none is."""
     return value

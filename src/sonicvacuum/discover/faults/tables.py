@@ -17,14 +17,14 @@ import msgspec
 import numpy as np
 
 from sonicvacuum.discover.faults import policy
-from sonicvacuum.discover.faults.foremost import foremost, held
+from sonicvacuum.discover.faults.foremost import Place, foremost, held
 from sonicvacuum.discover.faults.judged import Judged, Model, scale_gain
-from sonicvacuum.discover.faults.slips import Slip, chain_slips, swaps
+from sonicvacuum.discover.faults.slips import Slip, chain_slips, constant, swaps
 from sonicvacuum.discover.faults.starts import NEAR
 from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.records import Record
-from sonicvacuum.records.record import label_of, observable
+from sonicvacuum.records.record import Observable, label_of, observable
 
 # A value that no other supports may be anything of its size, give or take this factor.
 ANYTHING = 3.0
@@ -39,13 +39,22 @@ ALIKE, FARTHEST, HALF = 1.7, 4.0, 0.4
 
 
 def asked(record: Record) -> bool:
-    """Whether a record is a table of enough values for some to be held against the others."""
+    """Whether a record is a table of enough values for some to be held against the others: it has no traces,
+    and `policy.FEWEST_VALUES` values or more, bounds and counts of pulses left out.
+    """
     values = sum(_is_value(o) for run in record.block.runs for o in run.observables)
     return not record.signals and values >= policy.FEWEST_VALUES
 
 
 def hypotheses(record: Record, model: Model) -> list[Slip]:
-    """All slips of a table, beside a model of it."""
+    """The slips of a table worth a look beside a model of it, in the order: chain, speeds, gauges, values,
+    exchanged rows and runs, errors.
+
+    Args:
+        record: a table, as far as it was put right.
+        model: of that record, fitted; its predictions tell where speeds start, which values and exchanges
+            gain most (`foremost`), and what is left as noise.
+    """
     runs, forward = _runs(record), _with_open_speeds(model.forward)
     start = _at_stated(forward, model.fit)
     whole, off = [], []
@@ -75,8 +84,8 @@ def _is_value(block):
     return block.bound is None and block.__struct_config__.tag != "pulse_count"
 
 
-def label(one) -> str:
-    """The name of a quantity as it is told."""
+def label(one: Observable) -> str:
+    """The name of a quantity as it is told, gauges and levels included: `speed g4-g7`."""
     return label_of(one.quantity.replace("_", " "), one.options)
 
 
@@ -143,7 +152,7 @@ def _values(runs, start, model, seen):
             len(places),
             quantity=label(one),
             of_values=True,
-            value=_nothing,
+            value=partial(constant, None),
             seen=partial(_times, k, j),
             plain=(k, j) in out,
         )
@@ -173,8 +182,14 @@ def _standing_out(runs, start, model) -> set[tuple[int, int]]:
     return {at} if gain > policy.PLAIN_GAIN and gain > policy.PLAIN_RATIO * (1.0 + left) else set()
 
 
-def _course(places, rows):
-    """χ² of one quantity along a line, and by how much it is less without one value, with its place."""
+def _course(places, rows) -> tuple[float, tuple[float, Place]]:
+    """χ² of one quantity along a line, and the most by which it is less without one value, with its place.
+
+    Args:
+        places: (run, place in it) of each of its m values.
+        rows: m times (logarithm of measured over expected, 1, logarithm of the speed in m/s), each over the
+            standard error of the first.
+    """
     table = np.array(rows)
 
     def squares(without=None):
@@ -196,10 +211,6 @@ def _times(k, j, model):
     found = model.forward.sampled(model.fit.hypothesis, model.fit.u[None], model.fit.nu[None])[k][0, j]
     one = model.forward.experiment.runs[k].scalars[j]
     return one.value / (float(found) * one.sigma) if found else None
-
-
-def _nothing(_):
-    return None
 
 
 def _edited(record, edits):
@@ -250,7 +261,7 @@ def _gauges(runs, seen):
             len(pairs),
             quantity=one.quantity.replace("_", " "),
             of_values=True,
-            value=_nothing,
+            value=partial(constant, None),
         )
 
 
@@ -283,7 +294,7 @@ def _swapped_runs(runs, a, b, rows, alternatives, name=ALL):
         alternatives,
         quantity=name,
         of_values=True,
-        value=_nothing,
+        value=partial(constant, None),
     )
 
 
@@ -312,13 +323,9 @@ def _noise(runs, model):
             alternatives=2 * len(quantities) if name else 2,
             quantity=name and name.replace("_", " "),
             of_values=True,
-            value=partial(_constant, factor),
+            value=partial(constant, factor),
             occam=price,
         )
-
-
-def _constant(value, _):
-    return value
 
 
 def _rescaled(places, factor, record, _):
@@ -330,6 +337,10 @@ def _rescaled(places, factor, record, _):
 def _random(z, factor) -> bool:
     """Whether what is left of some values is noise: neighbouring runs have nothing in common, none is far,
     nor do a few make up all of it.
+
+    Args:
+        z: (run, place in it, quantity) → what the model leaves of the value, in stated standard errors.
+        factor: root of the mean square of these.
     """
     sizes = np.abs(list(z.values())) / factor
     half = float(np.median(sizes))
@@ -347,6 +358,9 @@ def _random(z, factor) -> bool:
 def earned(kept: list[Judged]) -> list[Judged]:
     """Slips without errors of another size where another slip explains more than such errors leave to chance:
     these are asked for again once that is put right.
+
+    Args:
+        kept: slips as they were fitted beside one model, the likeliest first, as are those returned.
     """
     return [
         j
@@ -356,13 +370,22 @@ def earned(kept: list[Judged]) -> list[Judged]:
 
 
 def beyond_chance(judged: Judged, gain: float) -> bool:
-    """Whether something gains more than noise of the size that a slip of errors says would let it."""
+    """Whether something gains more than noise of the size that a slip of errors says would let it.
+
+    Args:
+        judged: any slip; False of those that concern no errors.
+        gain: Δ(−2 log L) of something else against the same model, errors as they are stated.
+    """
     factor = judged.slip.value(judged.size) if judged.slip.fault == "noise-misstated" else None
     return factor is not None and gain > policy.CHANCE * factor**2
 
 
 def worth(looked: list[Judged]) -> list[Judged]:
-    """The best of each kind, of those that gain enough, and what shows by itself."""
+    """The best of each kind, of those that gain enough, and what shows by itself; the likeliest first.
+
+    Exchanges and errors of one quantity are another kind than those of all; `looked` at are slips beside one
+    model, in any order.
+    """
     best = {}
     for judged in looked:
         kind = (judged.slip.fault, judged.slip.quantity in (None, ALL))
