@@ -128,6 +128,12 @@ def test_what_is_left_counts_as_noise_only_where_it_looks_like_it():
     assert not tables._random(one, float(np.sqrt(np.mean(np.square(list(one.values()))))))
 
 
+def test_quantities_that_stand_once_have_no_neighbours_to_be_alike():
+    noise = [-0.4, 1.1, 0.6, -1.6, 0.9, -0.7, 1.2, 0.3]
+    values = {(0, j, f"q{j}"): 5.0 * z for j, z in enumerate(noise)}
+    assert tables._random(values, 5.0 * float(np.sqrt(np.mean(np.square(noise)))))
+
+
 def test_a_table_of_few_values_is_not_asked():
     assert tables.asked(ball())
     assert not tables.asked(ball(speeds=(0.2, 0.5, 1.0)))

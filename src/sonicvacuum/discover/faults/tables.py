@@ -336,7 +336,7 @@ def _rescaled(places, factor, record, _):
 
 def _random(z, factor) -> bool:
     """Whether what is left of some values is noise: neighbouring runs have nothing in common, none is far,
-    nor do a few make up all of it.
+    nor do a few make up all of it. Quantities that stand once have no neighbours, and are believed.
 
     Args:
         z: (run, place in it, quantity) → what the model leaves of the value, in stated standard errors.
@@ -352,7 +352,7 @@ def _random(z, factor) -> bool:
         series[name].append(np.clip(value / factor, -3.0 * half, 3.0 * half))
     pairs = [a * b for own in series.values() for a, b in itertools.pairwise(own)]
     mean = np.mean(np.square([v for own in series.values() for v in own]))
-    return sum(pairs) < ALIKE * math.sqrt(len(pairs)) * mean
+    return not pairs or sum(pairs) < ALIKE * math.sqrt(len(pairs)) * mean
 
 
 def earned(kept: list[Judged]) -> list[Judged]:
