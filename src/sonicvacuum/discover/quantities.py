@@ -12,7 +12,7 @@ import numpy as np
 
 from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.model.forward import Forward
-from sonicvacuum.records.record import label_of
+from sonicvacuum.records.record import in_words
 
 FILE = "quantities.csv"
 HEADER = ("run", "quantity", "bound", "unit", "measured", "sigma", "nominal", "extended", "held_out")
@@ -38,7 +38,7 @@ def rows(null: tuple[Forward, Fit], extended: tuple[Forward, Fit]) -> list[tuple
             # Without it the prediction moves by share/(1 − share) of what the fit leaves.
             moved = (one.value - fitted) * share / (1.0 - share) if share < ALONE else math.nan
             numbers = (one.value, one.sigma, before[k][j], fitted, fitted - moved)
-            label = label_of(one.quantity.replace("_", " "), one.options)
+            label = in_words(one.quantity, one.options)
             found.append((run.id, label, one.bound or "", unit, *(n * scale for n in numbers)))
     return found
 

@@ -68,6 +68,11 @@ class Observable:
         """`speed g9-g5`, `pulse_count wall at 0.08`, for tables and messages."""
         return label_of(self.quantity, self.options)
 
+    @property
+    def in_words(self) -> str:
+        """The same without underscores: `pulse count wall at 0.08`."""
+        return in_words(self.quantity, self.options)
+
 
 def label_of(name: str, options: Mapping[str, object]) -> str:
     """The name of a quantity, with the gauges and the force or the level that it is read at."""
@@ -75,6 +80,11 @@ def label_of(name: str, options: Mapping[str, object]) -> str:
     force = f"{options['amplitude']:g} N" if "amplitude" in options else ""
     level = next((f"at {options[k]:g}" for k in ("level", "threshold") if k in options), "")
     return " ".join(p for p in (name, where, str(options.get("sensor", "")), force, level) if p)
+
+
+def in_words(quantity: str, options: Mapping[str, object]) -> str:
+    """The same of a quantity's key, without underscores."""
+    return label_of(quantity.replace("_", " "), options)
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 from sonicvacuum.discover import policy
 from sonicvacuum.records import Record
-from sonicvacuum.records.record import label_of
 from sonicvacuum.report.misfit import SIDES
 from sonicvacuum.report.tables import number, unit_of
 from sonicvacuum.report.words import plain, share
@@ -58,7 +57,7 @@ def quantities(table: list[dict], records: Sequence[Record] = ()) -> list[dict]:
     parts of it; `common` names where that comes from. Only the `records` know of it.
     """
     shared = {
-        (run.id, label_of(one.quantity.replace("_", " "), one.options)): one.shared
+        (run.id, one.in_words): one.shared
         for record in records
         for run in record.runs
         for one in run.observables

@@ -13,18 +13,18 @@ from collections import defaultdict
 from dataclasses import replace
 from functools import partial
 
-import msgspec
 import numpy as np
 
-from sonicvacuum.discover.faults import policy
-from sonicvacuum.discover.faults.foremost import Place, foremost, held
+from sonicvacuum.discover.faults import policy, values
+from sonicvacuum.discover.faults.course import standing_out
+from sonicvacuum.discover.faults.foremost import foremost, held
 from sonicvacuum.discover.faults.judged import Judged, Model, scale_gain
 from sonicvacuum.discover.faults.slips import Slip, chain_slips, constant, swaps
 from sonicvacuum.discover.faults.starts import NEAR
 from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.records import Record
-from sonicvacuum.records.record import Observable, label_of, observable
+from sonicvacuum.records.record import observable
 
 # A value that no other supports may be anything of its size, give or take this factor.
 ANYTHING = 3.0
@@ -42,8 +42,8 @@ def asked(record: Record) -> bool:
     """Whether a record is a table of enough values for some to be held against the others: it has no traces,
     and `policy.FEWEST_VALUES` values or more, bounds and counts of pulses left out.
     """
-    values = sum(_is_value(o) for run in record.block.runs for o in run.observables)
-    return not record.signals and values >= policy.FEWEST_VALUES
+    count = sum(_is_value(o) for run in record.block.runs for o in run.observables)
+    return not record.signals and count >= policy.FEWEST_VALUES
 
 
 def hypotheses(record: Record, model: Model) -> list[Slip]:
@@ -82,11 +82,6 @@ def _runs(record):
 
 def _is_value(block):
     return block.bound is None and block.__struct_config__.tag != "pulse_count"
-
-
-def label(one: Observable) -> str:
-    """The name of a quantity as it is told, gauges and levels included: `speed g4-g7`."""
-    return label_of(one.quantity.replace("_", " "), one.options)
 
 
 def _with_open_speeds(forward: Forward) -> Forward:
@@ -137,7 +132,7 @@ def _led(slip, forward, start) -> tuple[float, float]:
 
 def _values(runs, start, model, seen):
     """Values by themselves."""
-    places, out = list(seen.place), _standing_out(runs, start, model)
+    places, out = list(seen.place), standing_out(runs, start, model)
     chosen = foremost(places, seen.alone(places))
     for k, j in sorted({*chosen, *out}):
         run, rows = runs[k]
@@ -146,59 +141,16 @@ def _values(runs, start, model, seen):
         anything = ANYTHING * max(abs(one.value), expected)
         yield Slip(
             "spikes",
-            partial(_unsupported, k, j, anything / one.sigma),
+            partial(values.unsupported, k, j, anything / one.sigma),
             run,
             _gauges_of(one),
             len(places),
-            quantity=label(one),
+            quantity=one.in_words,
             of_values=True,
             value=partial(constant, None),
             seen=partial(_times, k, j),
             plain=(k, j) in out,
         )
-
-
-def _standing_out(runs, start, model) -> set[tuple[int, int]]:
-    """The value that by itself leaves the course of its own quantity over the runs' speeds, if there is one.
-
-    Whatever effect acts, logarithms of measured over expected values lie along a line, roughly: without that
-    value they do, in all quantities.
-    """
-    experiment, series = model.forward.experiment, defaultdict(list)
-    for k, (_, rows) in enumerate(runs):
-        speed, error = (
-            math.log(experiment.record.runs[k].striker.speed_m_s),
-            experiment.runs[k].speed_rel_sigma,
-        )
-        for j, one in rows:
-            expected = float(start[k][0, 0, j]) * experiment.runs[k].scalars[j].sigma
-            if expected > 0.0 and one.value > 0.0:
-                own = math.hypot(one.sigma / max(one.value, expected), policy.SPEED_POWER * error)
-                row = math.log(one.value / expected) / own, 1.0 / own, speed / own
-                series[label(one)].append(((k, j), row))
-    courses = [_course(*zip(*own, strict=True)) for own in series.values() if len(own) > 3]
-    gain, at = max((best for _, best in courses), default=(0.0, (0, 0)))
-    left = sum(square for square, _ in courses) - gain
-    return {at} if gain > policy.PLAIN_GAIN and gain > policy.PLAIN_RATIO * (1.0 + left) else set()
-
-
-def _course(places, rows) -> tuple[float, tuple[float, Place]]:
-    """χ² of one quantity along a line, and the most by which it is less without one value, with its place.
-
-    Args:
-        places: (run, place in it) of each of its m values.
-        rows: m times (logarithm of measured over expected, 1, logarithm of the speed in m/s), each over the
-            standard error of the first.
-    """
-    table = np.array(rows)
-
-    def squares(without=None):
-        own = np.delete(table, without, axis=0) if without is not None else table
-        best = np.linalg.lstsq(own[:, 1:], own[:, 0], rcond=None)[0]
-        return float(np.square(own[:, 0] - own[:, 1:] @ best).sum())
-
-    whole = squares()
-    return whole, max((whole - squares(n), place) for n, place in enumerate(places))
 
 
 def _gauges_of(one):
@@ -213,36 +165,6 @@ def _times(k, j, model):
     return one.value / (float(found) * one.sigma) if found else None
 
 
-def _edited(record, edits):
-    """The record with some numbers of its values changed: (run, place) → field → number."""
-    runs = list(record.block.runs)
-    by_run = defaultdict(dict)
-    for (k, j), given in edits.items():
-        by_run[k][j] = given
-    for k, changed in by_run.items():
-        own = [
-            msgspec.structs.replace(o, **changed[j]) if j in changed else o
-            for j, o in enumerate(runs[k].observables)
-        ]
-        runs[k] = msgspec.structs.replace(runs[k], observables=own)
-    return replace(record, block=msgspec.structs.replace(record.block, runs=runs))
-
-
-def _unsupported(k, j, factor, record, _):
-    own = record.block.runs[k].observables[j]
-    return _edited(record, {(k, j): {"sigma": own.sigma * factor}})
-
-
-def _exchange(pairs, record, _):
-    """Values and errors of pairs of rows, each in the other's place."""
-    edits = {}
-    for a, b in pairs:
-        for here, there in ((a, b), (b, a)):
-            other = record.block.runs[there[0]].observables[there[1]]
-            edits[here] = {"value": other.value, "sigma": other.sigma}
-    return _edited(record, edits)
-
-
 def _gauges(runs, seen):
     """Rows of two gauges in one run."""
     pairs = [
@@ -255,7 +177,7 @@ def _gauges(runs, seen):
     for k, run, (i, one), (j, other) in foremost(pairs, gains):
         yield Slip(
             "gauges-swapped",
-            partial(_exchange, [((k, i), (k, j))]),
+            partial(values.exchange, [((k, i), (k, j))]),
             run,
             (str(one.options["sensor"]), str(other.options["sensor"])),
             len(pairs),
@@ -271,7 +193,7 @@ def _level(one):
 
 def _exchanged(runs, seen):
     """Rows of one quantity in two runs, and all rows of two runs."""
-    places = [{label(one): (k, j) for j, one in rows} for k, (_, rows) in enumerate(runs)]
+    places = [{one.in_words: (k, j) for j, one in rows} for k, (_, rows) in enumerate(runs)]
     pairs = list(itertools.combinations(range(len(runs)), 2))
     single = [(a, b, name) for a, b in pairs for name in places[a] if name in places[b]]
     gains = seen.exchanged([(places[a][name], places[b][name]) for a, b, name in single])
@@ -288,7 +210,7 @@ def _exchanged(runs, seen):
 def _swapped_runs(runs, a, b, rows, alternatives, name=ALL):
     return Slip(
         "runs-swapped",
-        partial(_exchange, rows),
+        partial(values.exchange, rows),
         f"{runs[a][0]} and {runs[b][0]}",
         None,
         alternatives,
@@ -306,7 +228,7 @@ def _noise(runs, model):
     quantities = sorted({o.quantity for _, rows in runs for _, o in rows})
     for name in (None, *(quantities if len(quantities) > 1 else ())):
         rows = [(k, j, o) for k, (_, own) in enumerate(runs) for j, o in own if name in (None, o.quantity)]
-        z = {(k, j, label(o)): float(left[k][j]) for k, j, o in rows}
+        z = {(k, j, o.in_words): float(left[k][j]) for k, j, o in rows}
         # What is fitted follows the noise: of all values the strain of the nuisances makes up for that.
         strain = 0.0 if name else float(one.nu @ one.nu)
         square = (sum(v**2 for v in z.values()) + strain) / len(z)
@@ -318,7 +240,7 @@ def _noise(runs, model):
         price = math.log(math.sqrt(2.0 * math.pi / (2.0 * len(z))) / (2.0 * ERRORS))
         yield Slip(
             "noise-misstated",
-            partial(_rescaled, [at[:2] for at in z], factor),
+            partial(values.rescaled, [at[:2] for at in z], factor),
             # Whoever misjudges errors mostly misjudges all of them.
             alternatives=2 * len(quantities) if name else 2,
             quantity=name and name.replace("_", " "),
@@ -326,12 +248,6 @@ def _noise(runs, model):
             value=partial(constant, factor),
             occam=price,
         )
-
-
-def _rescaled(places, factor, record, _):
-    own = record.block.runs
-    edits = {(k, j): {"sigma": own[k].observables[j].sigma * factor} for k, j in places}
-    return _edited(record, edits)
 
 
 def _random(z, factor) -> bool:
