@@ -12,7 +12,8 @@ from sonicvacuum.discover.faults.found import Bench, Finding
 from sonicvacuum.discover.faults.pulses import pulses
 from sonicvacuum.discover.faults.table import FAULTS
 from sonicvacuum.discover.model.masks import cut, spikes
-from sonicvacuum.discover.model.noise import STEPPED, audible, loudness, rounding
+from sonicvacuum.discover.model.noise import STEPPED, audible, even, loudness, rounding
+from sonicvacuum.discover.model.weak import wanders
 from sonicvacuum.records import Record, Signals
 
 
@@ -158,20 +159,35 @@ class _Look:
         trace = self.readings[run.id][gauge.id]
         steps = rounding(trace)
         noise = max(gauge.sigma, steps)
-        stretch = traces.quiet(trace, loudness(trace, noise))
+        loud = loudness(trace, noise)
+        stretch = traces.quiet(trace, loud)
+        hides = self._may_hide(run.id, gauge.id, trace, stretch, loud)
         drifting = traces.drift(stretch, noise)
+        if drifting is not None and hides and not traces.straight(stretch, loud):
+            drifting = None
         if drifting is not None and ("drift", gauge.id) not in self.spared:
             slope, error = drifting
             self.seen["drift", gauge.id][run.id] = slope * len(trace)
             self._unsure(gauge.id, "drift", error * len(trace))
             trace = trace - traces.line(stretch, np.arange(len(trace)))
             stretch = trace[: len(stretch)]
-        self.stretches[gauge.id][run.id] = stretch
+        self.stretches[gauge.id][run.id] = even(stretch) if hides else stretch
         # All readings on one step of the recorder are off by as much.
         common = steps if steps > STEPPED * audible(trace, noise) else 0.0
-        self.rests[gauge.id][run.id] = traces.rest(stretch, noise, common)
-        self.levels[gauge.id][run.id] = len(stretch), traces.level(stretch, noise, common)
+        level = None
+        if not (hides and wanders(stretch)):
+            self.rests[gauge.id][run.id] = traces.rest(stretch, noise, common)
+            level = traces.level(stretch, noise, common)
+        self.levels[gauge.id][run.id] = len(stretch), level
         self.readings[run.id][gauge.id] = trace
+
+    def _may_hide(self, run, gauge, trace, stretch, loud):
+        """Whether a stretch before what looks like the pulse may hold the pulse: that of the nominal model
+        comes before its end, or none stands well out of the noise.
+        """
+        model = self.predicted.get(run, {}).get(gauge)
+        passed = model is not None and model.any() and int(np.abs(model).argmax()) < len(stretch)
+        return passed or traces.faint(trace, loud)
 
     def _unsure(self, gauge, what, error):
         self.unsure[gauge][what] = max(self.unsure[gauge].get(what, 0.0), error)

@@ -13,6 +13,8 @@ SILENT, SHARE = 7.0, 0.05
 # A pulse far smaller than the model's is one where at least these samples precede it, and the model's shape
 # is this share of the trace's power: of pure noise, or of a slope, less.
 FEWEST, ALIKE = 12, 0.5
+# Of so many parts of a record the first is rest, if the model's pulse comes later.
+BEGINNING = 50
 # Of a gauge without a pulse nothing can be said where the model's own pulse, as late as the pulses of the
 # other gauges are, would end after this share of the record.
 WITHIN = 0.95
@@ -40,10 +42,22 @@ def verdict(trace: np.ndarray, model: np.ndarray, sigma: float) -> str:
 
 def way(trace: np.ndarray, model: np.ndarray, sigma: float) -> str:
     """ "upright", "inverted" or "", where a pulse is too weak to tell, of (T,) readings as in `verdict`."""
-    power = float(model @ model)
-    if not power > 0.0:
+    if not float(model @ model) > 0.0:
         return ""
-    found = _slid(trace, model) / power
+    told = _way_off(trace - np.median(trace), model, sigma)
+    # A pulse far broader than the model's, of a chain that loses much, may be most of the record: beside its
+    # median, rest looks like a pulse the other way.
+    first = trace[: max(FEWEST, len(trace) // BEGINNING)]
+    if told and len(first) <= len(_before(trace, model)):
+        other = _way_off(trace - np.median(first), model, sigma)
+        return told if other in (told, "") else ""
+    return told
+
+
+def _way_off(trace, model, sigma):
+    """The way up of a pulse in a trace whose level is taken off."""
+    power = float(model @ model)
+    found = correlated(trace, model) / power
     up, down = float(found.max()), float(-found.min())
     # A motion gauge's reading swings both ways by itself: what the model's own would show.
     own = correlated(model, model) / power
@@ -58,13 +72,18 @@ def _small(trace, model):
     """Whether a trace that holds hardly anything of the model's pulse holds one of its own: it stands out of
     the noise before it, which may be far below the stated one, and the trace reads little else.
     """
-    rises = int((np.abs(model) > QUIET_PEAK * np.abs(model).max()).argmax())
-    rest, off = trace[: int(QUIET_SHARE * rises)], trace - np.median(trace)
+    rest, off = _before(trace, model), trace - np.median(trace)
     if len(rest) < FEWEST:
         return False
     noise = max(float(rest.std()), flicker(trace), rounding(trace))
     alike = float(np.abs(_slid(trace, model)).max()) ** 2 > ALIKE * float(model @ model) * float(off @ off)
     return alike and float(np.abs(off).max()) > SILENT * noise
+
+
+def _before(trace, model):
+    """What a trace reads before the model's pulse."""
+    rises = int((np.abs(model) > QUIET_PEAK * np.abs(model).max()).argmax())
+    return trace[: int(QUIET_SHARE * rises)]
 
 
 def quiet(trace: np.ndarray, sigma: float) -> bool:

@@ -7,8 +7,9 @@ import math
 
 import numpy as np
 
-from sonicvacuum.discover.faults import coloured
+from sonicvacuum.discover.model import coloured
 from sonicvacuum.discover.model.noise import QUIET_PEAK, QUIET_SIGMAS, before, flicker
+from sonicvacuum.discover.model.weak import wanders, weak
 
 # Samples of a quiet stretch that can be judged.
 FEWEST = 40
@@ -27,6 +28,8 @@ _SWING, _PULSE = 1.5, 0.35
 _SEEN, _FEWEST_PERIODS = 4, 1.5
 # Where in a stretch a pulse may begin, as shares of its length.
 _ONSETS = np.linspace(0.0, 0.9, 19)
+# Standard errors by which a line starts off rest.
+_OFF = 3.0
 # Frequencies tried for one that several stretches share.
 TRIED = 401
 
@@ -42,6 +45,11 @@ def quiet(trace: np.ndarray, sigma: float, swinging: bool = False) -> np.ndarray
         swing = float(np.abs(trace[: max(8, len(trace) // 10)] - rest).max())
         level = max(level, _SWING * swing) if swing < _PULSE * peak else level
     return trace[: before(trace - rest, level)]
+
+
+def faint(trace: np.ndarray, sigma: float) -> bool:
+    """Whether a pulse, counted as in `quiet`, is a weak one."""
+    return weak(trace - np.median(trace[: max(8, len(trace) // 20)]), QUIET_SIGMAS * sigma)
 
 
 def quiet_beside(trace: np.ndarray, cycles: float, sigma: float) -> np.ndarray:
@@ -160,6 +168,13 @@ def _foot(stretch):
     place = np.arange(len(stretch)) / len(stretch)
     feet = np.maximum(place - _ONSETS[:, None], 0.0) ** 2
     return float(stretch @ stretch - ((feet @ stretch) ** 2 / (feet**2).sum(axis=1)).max())
+
+
+def straight(stretch: np.ndarray, sigma: float) -> bool:
+    """Whether a stretch that may hold a weak pulse is a line all the same: it starts off rest."""
+    bare = stretch - line(stretch)
+    error = 2.0 * sigma / math.sqrt(len(stretch)) * coloured.wider(bare)
+    return abs(float(line(stretch)[0])) > _OFF * error and not wanders(bare)
 
 
 def rest(stretch: np.ndarray, sigma: float, common: float = 0.0) -> tuple[float, float]:

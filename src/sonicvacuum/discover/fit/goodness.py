@@ -89,7 +89,7 @@ def _tested(forward, fit):
     size = sum(forward.experiment.size(k) for k in range(len(forward.experiment.runs)))
     tests = {name: min(1.0, len(ps) * min(ps)) for name, ps in found.items() if ps}
     tests["total"] = _chi2_of(float(total), size - fit.normal.free)
-    tests |= _shared(forward, left)
+    tests |= _shared(forward, fit, left)
     worst = min(tests, key=tests.get)
     return Goodness(tuple(cells), tests, min(1.0, len(tests) * tests[worst]), worst)
 
@@ -234,16 +234,16 @@ def _products(window):
     return cosine, sine, both, np.where(good, 1.0 / np.where(good, determinant, 1.0), 0.0)
 
 
-def _shared(forward, left):
+def _shared(forward, fit, left):
     """p of oscillations that all runs of a gauge share, setting in with the pulse: gauge by gauge."""
-    result = []
+    result, found = [], forward.sampled(fit.hypothesis, fit.u[None], fit.nu[None])
     for s in range(len(forward.experiment.gauges)):
         own = [
-            (forward.experiment.runs[run], r)
+            (forward.experiment.runs[run], r, found[run][0, s * len(r) : (s + 1) * len(r)])
             for run, g, r in left
             if g == s and not _stepped(forward, run, s)
         ]
-        lengths = {(len(r), round(data.interval, 12)) for data, r in own}
+        lengths = {(len(r), round(data.interval, 12)) for data, r, _ in own}
         if len(own) > 1 and len(lengths) == 1:
             result.append(_together(own, s))
     return {"oscillation of a gauge": min(1.0, len(result) * min(result))} if result else {}
@@ -251,11 +251,12 @@ def _shared(forward, left):
 
 def _together(own, s):
     """p of the best oscillation of one gauge's runs, their χ² added."""
-    traces = [_size(data, s) for data, _ in own]
-    wide = int(np.median([width(t) for t in traces]))
+    wide = int(np.median([width(_size(data, s)) for data, *_ in own]))
     total = 0.0
-    for (_, r), trace in zip(own, traces, strict=True):
-        starts = tuple(max(0, int(trace.argmax() + after * wide)) for after in TOGETHER)
+    for _, r, predicted in own:
+        # By the model's own peak: that of a weak pulse as measured is where the noise is largest.
+        peak = int(np.abs(predicted).argmax())
+        starts = tuple(max(0, int(peak + after * wide)) for after in TOGETHER)
         windows, products = _common_windows(len(r), starts, wide)
         total = total + _squares(r * windows, products)
     # Neighbouring members of the bank are alike; counting each errs on the safe side.

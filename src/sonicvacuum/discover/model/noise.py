@@ -14,6 +14,7 @@ import numpy as np
 
 from sonicvacuum.discover.model.experiment import lag_one
 from sonicvacuum.discover.model.masks import cut, spikes
+from sonicvacuum.discover.model.weak import wanders, weak
 from sonicvacuum.records.record import Record
 
 # Smooth error of the simulation and of the interpolation, relative to the largest reading of a gauge.
@@ -22,9 +23,9 @@ MODEL_FLOOR = 1e-4
 # the peak.
 QUIET_SIGMAS, QUIET_PEAK, QUIET_SHARE = 6.0, 0.03, 0.7
 _FEWEST, _LEAST = 40, 12
-# A pulse not twice as high as that shows by its crest or not at all: means over this part of a record, which
-# last about as long as a pulse, stand out by so many of their own standard errors where it begins.
-_WEAK, _PART = 2.0, 20
+# A weak pulse shows in means over this part of a record, which last about as long as a pulse: they stand out
+# by so many of their own standard errors where it begins.
+_PART = 20
 # Samples count as that much noisier than stated only from this factor on: flicker itself errs by a tenth.
 _NOISIER = 1.3
 # Rounding errors of neighbours, σ of the noise beside them, are alike by exp(−4π²σ²/step²) at most: by a
@@ -292,14 +293,22 @@ def _quiet(trace, sigma):
     """The samples before the pulse arrives, or none."""
     peak = float(np.abs(trace).max())
     level = max(QUIET_SIGMAS * loudness(trace, sigma), QUIET_PEAK * peak)
-    return trace[: before(trace, level)]
+    found = trace[: before(trace, level)]
+    return even(found) if weak(trace, level) else found
+
+
+def even(stretch: np.ndarray) -> np.ndarray:
+    """A stretch that may hold a weak pulse, or its first half, quarter and so on: what nothing slow is in."""
+    while wanders(stretch):
+        stretch = stretch[: len(stretch) // 2]
+    return stretch
 
 
 def before(trace: np.ndarray, level: float) -> int:
     """Samples that surely precede the first one above a level, and a pulse that hardly gets above it."""
     size = np.abs(trace)
     first = int((size > level).argmax()) if size.max() > level else len(trace)
-    return int(QUIET_SHARE * (first if size.max() > _WEAK * level else min(first, _risen(trace))))
+    return int(QUIET_SHARE * (min(first, _risen(trace)) if weak(trace, level) else first))
 
 
 def _risen(trace):
