@@ -56,6 +56,19 @@ def test_a_level_is_told_in_a_lossy_chain_too():
     assert [(f.fault, f.run, f.sensor) for f in found] == [("baseline", "v3", "wall")]
 
 
+@pytest.mark.parametrize(
+    ("damping", "speeds"), [(30.0, SPEEDS), (60.0, (0.1, 0.3)), (100.0, (0.02, 0.2)), (200.0, SPEEDS)]
+)
+def test_rest_ends_before_the_pulse_of_the_faster_shot(damping, speeds):
+    """What slow shots read where faster ones have their pulses was taken for noise of up to 1.8 times the
+    stated size, or correlated by 0.6.
+    """
+    record = made([("linear-dashpot", {"damping_kg_s": damping})], seed=5, speeds=speeds)[0]
+    sigma, correlation = noise([record])
+    assert sigma == pytest.approx([SIGMA, SIGMA, 2.0 * SIGMA], rel=0.01)  # a floor of the model is added
+    np.testing.assert_array_equal(correlation, 0.0)
+
+
 def test_correlated_noise_does_not_wander_and_a_bump_does():
     white = np.random.default_rng(SEED).normal(size=(400, 300))
     bump = np.sin(np.pi * np.clip((np.arange(300) - 100.0) / 150.0, 0.0, 1.0)) ** 2

@@ -7,7 +7,7 @@ from dataclasses import replace
 import msgspec
 import numpy as np
 
-from sonicvacuum.discover.faults import changes, policy, traces
+from sonicvacuum.discover.faults import changes, expected, policy, traces
 from sonicvacuum.discover.faults.found import Bench, Finding
 from sonicvacuum.discover.faults.pulses import pulses
 from sonicvacuum.discover.faults.table import FAULTS
@@ -107,7 +107,8 @@ class _Look:
             if gauge.id not in signals.readings or (run, gauge.id) in self.silent:
                 continue
             trace, interval = self.readings[run][gauge.id], signals.interval_s
-            calm, swinging = (traces.quiet(trace, gauge.sigma, swings) for swings in (False, True))
+            model = self._model(run, gauge.id)
+            calm, swinging = (_quiet(trace, model, gauge.sigma, swings) for swings in (False, True))
             for stretch in (calm, swinging):
                 found = traces.pickup(stretch, gauge.sigma)
                 if found and run not in shown:
@@ -160,8 +161,8 @@ class _Look:
         steps = rounding(trace)
         noise = max(gauge.sigma, steps)
         loud = loudness(trace, noise)
-        stretch = traces.quiet(trace, loud)
-        hides = self._may_hide(run.id, gauge.id, trace, stretch, loud)
+        stretch = _quiet(trace, self._model(run.id, gauge.id), loud)
+        hides = traces.faint(trace, loud)
         drifting = traces.drift(stretch, noise)
         if drifting is not None and hides and not traces.straight(stretch, loud):
             drifting = None
@@ -181,13 +182,10 @@ class _Look:
         self.levels[gauge.id][run.id] = len(stretch), level
         self.readings[run.id][gauge.id] = trace
 
-    def _may_hide(self, run, gauge, trace, stretch, loud):
-        """Whether a stretch before what looks like the pulse may hold the pulse: that of the nominal model
-        comes before its end, or none stands well out of the noise.
-        """
+    def _model(self, run, gauge):
+        """(T,) reading of the nominal model, None where there is none."""
         model = self.predicted.get(run, {}).get(gauge)
-        passed = model is not None and model.any() and int(np.abs(model).argmax()) < len(stretch)
-        return passed or traces.faint(trace, loud)
+        return model if model is not None and model.any() else None
 
     def _unsure(self, gauge, what, error):
         self.unsure[gauge][what] = max(self.unsure[gauge].get(what, 0.0), error)
@@ -275,6 +273,15 @@ class _Look:
             for run, value in [(None, _shared(fault, runs))] if everywhere else runs.items():
                 result.append(Finding(fault, run, id, value, policy.PLAIN, FAULTS[fault].corrected))
         return result
+
+
+def _quiet(trace, model, sigma, swinging=False):
+    """Samples before the pulse; where this hardly stands out of the noise, before the model's at the latest."""
+    found = traces.quiet(trace, sigma, swinging)
+    if model is None or not traces.faint(trace, sigma):
+        return found
+    half = int((np.abs(model) > 0.5 * np.abs(model).max()).argmax())
+    return found if len(found) <= half else expected.preceding(trace, model)
 
 
 def _shared(fault, runs):

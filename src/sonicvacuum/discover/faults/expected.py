@@ -48,7 +48,7 @@ def way(trace: np.ndarray, model: np.ndarray, sigma: float) -> str:
     # A pulse far broader than the model's, of a chain that loses much, may be most of the record: beside its
     # median, rest looks like a pulse the other way.
     first = trace[: max(FEWEST, len(trace) // BEGINNING)]
-    if told and len(first) <= len(_before(trace, model)):
+    if told and len(first) <= len(preceding(trace, model)):
         other = _way_off(trace - np.median(first), model, sigma)
         return told if other in (told, "") else ""
     return told
@@ -72,7 +72,7 @@ def _small(trace, model):
     """Whether a trace that holds hardly anything of the model's pulse holds one of its own: it stands out of
     the noise before it, which may be far below the stated one, and the trace reads little else.
     """
-    rest, off = _before(trace, model), trace - np.median(trace)
+    rest, off = preceding(trace, model), trace - np.median(trace)
     if len(rest) < FEWEST:
         return False
     noise = max(float(rest.std()), flicker(trace), rounding(trace))
@@ -80,8 +80,8 @@ def _small(trace, model):
     return alike and float(np.abs(off).max()) > SILENT * noise
 
 
-def _before(trace, model):
-    """What a trace reads before the model's pulse."""
+def preceding(trace: np.ndarray, model: np.ndarray) -> np.ndarray:
+    """(n,) what a trace reads before the model's pulse, of (T,) readings as in `verdict`."""
     rises = int((np.abs(model) > QUIET_PEAK * np.abs(model).max()).argmax())
     return trace[: int(QUIET_SHARE * rises)]
 

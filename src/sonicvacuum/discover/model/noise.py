@@ -135,9 +135,16 @@ def _traces(records, gauge):
 
 
 def _quiet_of(traces, gauge):
-    """The quiet stretches of a gauge that are long enough."""
+    """The quiet stretches of a gauge that are long enough.
+
+    The weaker a pulse, the later it comes: where it hardly stands out of the noise, no more is believed to be
+    rest than before one that does.
+    """
     sigma = gauge.sigma or max(map(flicker, traces), default=0.0)
-    quiet = [q for t in traces if len(q := _quiet(t, sigma)) >= _LEAST]
+    found = [_quiet(t, sigma) for t in traces]
+    clear = max((len(q) for q, faint in found if not faint), default=None)
+    quiet = [even(q[:clear]) if faint else q for q, faint in found]
+    quiet = [q for q in quiet if len(q) >= _LEAST]
     if gauge.baseline_sigma or gauge.drift_sigma:
         # Where level and slope are open, noise is what is left of both.
         quiet = [_off_its_line(q) for q in quiet]
@@ -290,11 +297,10 @@ def _correlation(stretches):
 
 
 def _quiet(trace, sigma):
-    """The samples before the pulse arrives, or none."""
+    """The samples before the pulse arrives, or none, and whether that is a weak one."""
     peak = float(np.abs(trace).max())
     level = max(QUIET_SIGMAS * loudness(trace, sigma), QUIET_PEAK * peak)
-    found = trace[: before(trace, level)]
-    return even(found) if weak(trace, level) else found
+    return trace[: before(trace, level)], weak(trace, level)
 
 
 def even(stretch: np.ndarray) -> np.ndarray:
