@@ -276,7 +276,7 @@ class _Look:
 
 
 def _quiet(trace, model, sigma, swinging=False):
-    """Samples before the pulse; where this hardly stands out of the noise, before the model's at the latest."""
+    """Samples before the pulse; where this hardly stands out of the noise, before the model's at most."""
     found = traces.quiet(trace, sigma, swinging)
     if model is None or not traces.faint(trace, sigma):
         return found
