@@ -91,6 +91,19 @@ def renewed(folder, last: str, stale: Iterable[str] = ()) -> Iterator[Path]:
         raise
 
 
+def cut_off(folder) -> str:
+    """Where the files of a folder are whose exchange was killed, in words; nothing where none was."""
+    hidden = [path.name for path in Path(folder).iterdir() if path.is_dir() and path.name.startswith(".")]
+    names = {ending: sorted(n for n in hidden if n.endswith(ending)) for ending in (_EARLIER, _PARTIAL)}
+    if not names[_EARLIER]:
+        return ""
+    new = f", new ones in {' and '.join(names[_PARTIAL])}" if names[_PARTIAL] else ""
+    return (
+        f"files were changing places here when their writer was killed: earlier ones are in "
+        f"{' and '.join(names[_EARLIER])}{new}; move one set into the folder"
+    )
+
+
 def _exchange(fresh, folder, last, stale):
     """Move the files of `fresh` into `folder`; an exception puts back what stood there."""
     names = {path.name for path in fresh.iterdir()}

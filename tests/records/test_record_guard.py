@@ -2,6 +2,7 @@
 
 import itertools
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -13,6 +14,7 @@ from record_cases import BALL
 from sonicvacuum import cli, outputs
 from sonicvacuum.discover import session
 from sonicvacuum.files import InputError
+from sonicvacuum.records import reader
 from sonicvacuum.records.guard import check_out
 
 
@@ -233,6 +235,11 @@ def test_a_kill_while_files_change_places_loses_nothing_and_mixes_nothing(tmp_pa
     shown = {path.name: path.read_text() for path in tmp_path.iterdir() if path.is_file()}
     if "verdict.json" in shown:
         assert shown == (dict.fromkeys(OLD, "old") if at == 0 else dict.fromkeys(NEW, "new"))
+    else:
+        # Who reads such a folder is told where its files are.
+        (earlier,) = [path.name for path in tmp_path.iterdir() if path.name.endswith(".earlier")]
+        with pytest.raises(InputError, match=re.escape(earlier)):
+            reader.read(tmp_path)
     kept = sorted((path.name, path.read_text()) for path in tmp_path.rglob("*") if path.is_file())
     assert at == 8 or kept == sorted([*((n, "old") for n in OLD), *((n, "new") for n in NEW)])
 

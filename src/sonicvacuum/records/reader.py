@@ -9,6 +9,7 @@ from sonicvacuum.files import InputError, check_values, convert, in_one_line, re
 from sonicvacuum.gauges import KINDS
 from sonicvacuum.laboratory.checks import TIME
 from sonicvacuum.laboratory.ranges import FORCE, LONGEST_INTERVAL, SHORTEST_RECORD, LaboratoryError
+from sonicvacuum.outputs import cut_off
 from sonicvacuum.physics.scales import impact_scales
 from sonicvacuum.records import signals
 from sonicvacuum.records.assemble import assemble
@@ -51,7 +52,8 @@ def read(path) -> Record:
         raise InputError(f"{path}: the folder's name holds control characters; rename it")
     file = folder / FILE
     if not file.is_file():
-        raise InputError(f"{folder}: has no {FILE}; sonicvacuum record new {folder} writes one to fill in")
+        cure = cut_off(folder) or f"sonicvacuum record new {folder} writes one to fill in"
+        raise InputError(f"{folder}: has no {FILE}; {cure}")
     block = parse(read_yaml(file), file)
     ids = [s.id for s in block.sensors]
     traces = {r.id: signals.read(folder / r.signals, ids) for r in block.runs if r.signals}
