@@ -29,6 +29,8 @@ STARTED = 4
 LINEAR, BESIDE, EXCHANGED, ROUNDS = 3, 3, 4, 2
 # Pairs that are started again, and what that has to gain in log evidence before others follow it.
 LEADING, WORTH = 4, 0.5
+# Beside a pair that leaves so many times the noise, so many others are tried.
+FAR_OFF, GROSS = 1.5, 20
 # Trials of an effect that its start is made of.
 TRIALS = 3
 # Sets this far behind the best one are not followed along the chain, nor are the last steps of their fits
@@ -86,11 +88,17 @@ class Pairs:
                 self._note(one)
             best = self.ranked[0].fit
             others = (s for k in range(2) for s in instead(self.forward, self.null, best, k, self.setup))
-            self._refit(_best(others, self.found, BESIDE))
+            self._refit(_best(others, self.found, GROSS if self._gross() else BESIDE))
             if self.ranked[0].log_bayes < leading[0].log_bayes + WORTH:
                 break
             self._exchange()
         return self.ranked
+
+    def _gross(self) -> bool:
+        """Whether the best pair leaves far more than noise: what slopes promise beside it is worth little."""
+        e = self.forward.experiment
+        size = sum(e.size(run) for run in range(len(e.runs)))
+        return self.ranked[0].fit.objective > FAR_OFF * size
 
     def _exchange(self):
         """Pairs that share one effect with the best one, as they started and as the best one has it."""
