@@ -61,6 +61,8 @@ def with_noise_of(findings: list[Finding], record: Record, gauges: Sequence[str]
 FEIGNED, SILENCE = ("drift", "baseline", "gauge-inverted"), ("gauge-dead", "run-without-impact")
 # Slips of which a level is part.
 UNLEVEL = ("drift", "pickup", "gauge-dead")
+# Periods of a line from which on a weak pulse is not taken for it.
+MANY = 8.0
 # Share of a level that differs from run to run by which it may change within a run.
 MOVING = 0.3
 
@@ -108,15 +110,17 @@ class _Look:
                 continue
             trace, interval = self.readings[run][gauge.id], signals.interval_s
             model = self._model(run, gauge.id)
-            calm, swinging = (_quiet(trace, model, gauge.sigma, swings) for swings in (False, True))
-            for stretch in (calm, swinging):
-                found = traces.pickup(stretch, gauge.sigma)
-                if found and run not in shown:
-                    shown[run] = stretch, interval, found[0] / interval
-            hidden[run] = swinging, interval
+            for swings in (False, True):
+                before = _quiet(trace, model, gauge.sigma, swings)
+                # Many periods are no weak pulse, wherever the model has its own.
+                for stretch, least in ((traces.quiet(trace, gauge.sigma, swings), MANY), (before, 0.0)):
+                    found = traces.pickup(stretch, gauge.sigma)
+                    if found and found[0] * len(stretch) > least and run not in shown:
+                        shown[run] = stretch, interval, found[0] / interval
+                hidden[run] = before, interval
         if not shown:
             return
-        frequency = traces.shared_line(list(shown.values()))
+        frequency, unseen = traces.shared_line(list(shown.values())), []
         for run, (stretch, interval) in hidden.items():
             cycles, trace = frequency * interval, self.readings[run][gauge.id]
             if run in shown:
@@ -124,11 +128,15 @@ class _Look:
             else:
                 stretch = max(stretch, traces.quiet_beside(trace, cycles, gauge.sigma), key=len)
                 if not traces.is_line(stretch, cycles, gauge.sigma):
+                    unseen.append(run)
                     continue
             wave, _ = traces.wave(stretch, cycles)
             self.readings[run][gauge.id] = traces.without_wave(trace, wave, cycles)
             self.seen["pickup", gauge.id][run] = 1e-3 * frequency
             self.lines[run, gauge.id] = float(np.hypot(*wave)), frequency
+        # Where a run's own rest does not show it, it may be there all the same, with any phase.
+        most = max(self.lines[run, gauge.id][0] for run in shown)
+        self.lines |= {(run, gauge.id): (most, frequency) for run in unseen}
 
     def _sample_slips(self, run, gauge):
         """Spikes and clipping: samples that are masked."""

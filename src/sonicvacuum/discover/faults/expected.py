@@ -5,8 +5,11 @@ import numpy as np
 from sonicvacuum.discover.correlation import correlated
 from sonicvacuum.discover.model.noise import QUIET_PEAK, QUIET_SHARE, flicker, rounding
 
-# A pulse is expected where the model's reading is this many standard deviations of the noise high ...
-EXPECTED = 20.0
+# A pulse is expected where the model's reading is this many standard deviations of the noise high, or where
+# a matched filter would find it with so many standard deviations of its own ...
+EXPECTED, MATCHED = 20.0, 60.0
+# ... or with so many where it may be upside down, which shows at once ...
+TURNED = 20.0
 # ... and missing where the matched filter finds less than this, in standard deviations of its noise (the
 # largest of a thousand shifts of pure noise is about 4) and in shares of what the model has.
 SILENT, SHARE = 7.0, 0.05
@@ -20,6 +23,8 @@ BEGINNING = 50
 WITHIN = 0.95
 # Losses that take a pulse away before it arrives leave less than this of it at the gauge before.
 FADED = 0.6
+# ... unless a gauge further on shows so many times what is found.
+CLEARLY = 3.0
 # Upside down: the matched filter finds more below than above, by this factor.
 INVERTED = 1.5
 
@@ -29,15 +34,16 @@ def verdict(trace: np.ndarray, model: np.ndarray, sigma: float) -> str:
 
     The matched filter is the model's reading slid over the trace: a pulse is found wherever it is in time.
     """
-    peak = float(np.abs(model).max())
-    if not peak > EXPECTED * sigma or not peak > 0.0:
+    peak, power = float(np.abs(model).max()), float(model @ model)
+    if not peak > 0.0:
         return ""
-    power = float(model @ model)
+    loud = peak > EXPECTED * sigma or np.sqrt(power) > MATCHED * sigma
     found = float(np.abs(_slid(trace, model)).max()) / power
-    silent = found < max(SHARE, SILENT * sigma / np.sqrt(power)) and quiet(trace, sigma)
-    if silent and not _small(trace, model):
+    silent = found < _least(power, sigma) and quiet(trace, sigma)
+    if loud and silent and not _small(trace, model):
         return "silent"
-    return "inverted" if way(trace, model, sigma) == "inverted" else ""
+    clear = loud or np.sqrt(power) > TURNED * sigma
+    return "inverted" if clear and way(trace, model, sigma) == "inverted" else ""
 
 
 def way(trace: np.ndarray, model: np.ndarray, sigma: float) -> str:
@@ -63,9 +69,14 @@ def _way_off(trace, model, sigma):
     own = correlated(model, model) / power
     swing = max(1.0, INVERTED * max(float(-own.min()), 0.0))
     larger, other = max(up, down), max(min(up, down), 0.0)
-    if larger * swing < max(SHARE, SILENT * sigma / np.sqrt(power)) or larger < INVERTED * other:
+    if larger * swing < _least(power, sigma) or larger < INVERTED * other:
         return ""
     return "upright" if up > down else "inverted"
+
+
+def _least(power, sigma):
+    """Share of the model's pulse, of so much power, from which on it is found."""
+    return max(SHARE, SILENT * sigma / np.sqrt(power))
 
 
 def _small(trace, model):
@@ -103,6 +114,12 @@ def share(trace: np.ndarray, model: np.ndarray) -> float:
     return float(found.max()) / power if power > 0.0 else 0.0
 
 
+def found(trace: np.ndarray, model: np.ndarray, sigma: float) -> bool:
+    """Whether (T,) measured readings clearly hold a pulse like the model's, wherever in time."""
+    power = float(model @ model)
+    return power > 0.0 and share(trace, model) > CLEARLY * _least(power, sigma)
+
+
 def fades(place: float, model: np.ndarray, sigma: float, ahead: list[tuple[float, float]]) -> bool:
     """Whether a pulse may have died out on its way to a gauge.
 
@@ -110,14 +127,17 @@ def fades(place: float, model: np.ndarray, sigma: float, ahead: list[tuple[float
         place: way from the impact to the gauge.
         model: (T,) its predicted readings.
         sigma: noise of one sample.
-        ahead: (way, `share`) of gauges that the pulse passes first. The whole pulse is there at the impact;
-            what is left of it falls with the way as it does up to the last of them.
+        ahead: (way, `share`) of gauges that have a pulse. The whole pulse is there at the impact; what is
+            left of it falls with the way as it does up to the last of them that it passes first.
     """
     line = sorted([(0.0, 1.0), *((way, s) for way, s in ahead if 0.0 < way < place)])
     if len(line) < 2 or not line[-1][1] < FADED:
         return False
     (way, last), (before, first) = line[-1], line[-2]
     left = last - (first - last) / (way - before) * (place - way)
+    # What comes by further on has come by here.
+    if max([0.0, *(s for way, s in ahead if way > place)]) > CLEARLY * _least(float(model @ model), sigma):
+        return False
     return left * float(np.abs(model).max()) < SILENT * sigma
 
 

@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 
 from sonicvacuum.discover.faults import changes, traces
-from sonicvacuum.discover.faults.slips import Slip
+from sonicvacuum.discover.faults.slips import Slip, constant
 from sonicvacuum.records import Record
 
 # Nothing is read where the model has less than such a share of its peak, half a pulse and more away from
@@ -24,8 +24,9 @@ TOLD = 4.0
 
 @dataclass(frozen=True)
 class _Line:
-    """A straight line in one trace: level at the first sample, slope per sample and their standard errors in
-    the gauge's unit, the middle of the samples that tell it, and its gain in χ².
+    """A straight line in one trace: level at the first sample, slope per sample; standard errors of slope and
+    level, and of the level in the middle of the samples that tell it, in the gauge's unit; that middle; its
+    gain in χ².
     """
 
     level: float
@@ -34,13 +35,18 @@ class _Line:
     middle: float
     gain: float
 
+    @property
+    def middle_level(self) -> float:
+        """Level in the middle of those samples."""
+        return self.level + self.middle * self.slope
+
 
 def drifts(record: Record, predicted) -> list[Slip]:
-    """Gauges whose readings lie along straight lines where the model reads nothing.
+    """Gauges whose readings lie along straight lines, or off zero, where the model reads nothing.
 
     Args:
         record: with signals.
-        predicted: run id → gauge id → (T,) reading of the nominal model.
+        predicted: run id → gauge id → (T,) reading of the model.
     """
     found = {g.id: _lines(record, predicted, g) for g in record.gauges}
     return [_slip(record, id, lines) for id, lines in found.items() if lines]
@@ -59,16 +65,34 @@ def _slip(record, id, lines):
         for other in [common / samples[run]]
     }
     known = [error for error, own in zip(sigma, told, strict=True) if own] or [float(sigma.min())]
-    errors = {
-        "baseline": UNSURE * max(line.errors[1] for line in lines.values()),
-        "drift": UNSURE * max(known),
-    }
+    level = UNSURE * max(line.errors[1] for line in lines.values())
+    if not told.any():
+        return _off_zero(record, id, lines, level)
+    # Runs that differ more than their errors have it tell that what the model reads is not yet what there is.
+    apart = {"baseline": [line.level for line in lines.values()], "drift": drift}
+    errors = {"baseline": level, "drift": UNSURE * max(known)}
+    errors = {what: max(error, float(np.std(apart[what]))) for what, error in errors.items()}
     return Slip(
         "drift",
         partial(_straightened, id, slopes, errors),
         sensor=id,
         alternatives=len(record.gauges),
         value=lambda _: common,
+        occam=-PRICE * len(lines),
+    )
+
+
+def _off_zero(record, id, lines, error):
+    """Levels without slopes: of the one run that has one, or of the gauge."""
+    levels = {run: line.middle_level for run, line in lines.items()}
+    off = [run for run, line in lines.items() if abs(levels[run]) > TOLD * line.errors[2]]
+    return Slip(
+        "baseline",
+        partial(_straightened, id, {run: (levels[run], 0.0) for run in lines}, {"baseline": error}),
+        run=off[0] if len(off) == 1 else None,
+        sensor=id,
+        alternatives=len(record.gauges) * (1 + len(lines)),
+        value=partial(constant, float(np.median([levels[run] for run in off or lines]))),
         occam=-PRICE * len(lines),
     )
 
@@ -87,6 +111,7 @@ def _lines(record, predicted, gauge) -> dict[str, _Line]:
         places = (np.flatnonzero(_nothing(model, share)) for share in NOTHING)
         left = signals.readings[gauge.id] - model
         line = next((one for at in places if (one := _line(at, left[at], gauge.sigma))), None)
+        line = line or _line_beside(model, left, gauge.sigma)
         if line is None:
             return {}
         found[run] = line
@@ -103,7 +128,21 @@ def _line(at, left, sigma):
     if rest.std(ddof=2) > traces.NOISE_FACTOR * sigma:
         return None
     gain = float(left @ left - rest @ rest) / sigma**2
-    return _Line(float(level), float(slope), np.sqrt(np.diag(covariance)), float(at.mean()), gain)
+    errors = np.array([*np.sqrt(np.diag(covariance)), float(rest.std(ddof=2)) / np.sqrt(len(at))])
+    return _Line(float(level), float(slope), errors, float(at.mean()), gain)
+
+
+def _line_beside(model, left, sigma):
+    """The line through all readings, beside a pulse a little higher and later than the model's."""
+    at = np.arange(len(model))
+    pulse = np.column_stack([model, np.gradient(model)])
+    return _line(at, left - pulse @ _beside(pulse, at, left), sigma)
+
+
+def _beside(pulse, at, left):
+    """What is best of a pulse and its slope beside a line."""
+    table = np.column_stack([pulse, np.ones_like(at), at / len(at)])
+    return np.linalg.lstsq(table, left, rcond=None)[0][: pulse.shape[1]]
 
 
 def _nothing(model, share):

@@ -77,6 +77,14 @@ def _judged(record, run, own, readings, model):
         late = judged[id] == "silent" and expected.still_to_come(model[id], time, delays)
         if late or (judged[id] == "silent" and expected.fades(ways[id], model[id], gauge.sigma, ahead)):
             judged[id] = ""
+        # Where no gauge has a clear pulse, one that would hardly stand out says nothing by its absence.
+        faint = float(np.abs(model[id]).max()) <= expected.EXPECTED * gauge.sigma
+        if (
+            judged[id] == "silent"
+            and faint
+            and not any(expected.found(readings[g.id], model[g.id], g.sigma) for g in own)
+        ):
+            judged[id] = ""
     return judged
 
 

@@ -31,6 +31,7 @@ from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.nominal import predicted
 from sonicvacuum.discover.model.problem import together
 from sonicvacuum.discover.rounds import Investigation
+from sonicvacuum.discover.search.unknown import raw
 from sonicvacuum.effects import Catalogue
 
 # Slopes foresee this share of what a small slip gains, or more: of beads a tenth too heavy, which gained 31
@@ -50,6 +51,18 @@ def _possible(slips: list[Slip], model: Model) -> list[Slip]:
     """
     placed = any(c.effect.places in ("bead", "contact") for c in model.fit.hypothesis.components)
     return [s for s in slips if not (placed and of_the_chain(s))]
+
+
+def _read(model: Model):
+    """Run id → gauge id → (T,) reading beside effects; None where there are none."""
+    if not model.fit.hypothesis.components:
+        return None
+    experiment, read = model.forward.experiment, raw(model.forward, model.fit)
+    return {
+        run.id: {g.id: own for g, own in zip(experiment.gauges, readings, strict=True)}
+        for run, readings in zip(experiment.runs, read, strict=True)
+        if run.has_signals
+    }
 
 
 class Ranking:
@@ -96,7 +109,7 @@ class Ranking:
         slips = [*with_starts(hypotheses(record), record, seen, model), *late_runs(record, model, seen)]
         slips = [s for s in slips if (s.fault, s.run, s.sensor) not in done]
         slips = _possible(slips, model)
-        shown = [*time_zero(record, seen), *drifts(record, seen)]
+        shown = [*time_zero(record, seen), *drifts(record, _read(model) or seen)]
         stages.begin("slips of the laboratory")
         far = excess(model) > policy.SURE_GAIN
         looked = judge.look_at(slips)
