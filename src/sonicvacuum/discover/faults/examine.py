@@ -111,9 +111,10 @@ class _Look:
             trace, interval = self.readings[run][gauge.id], signals.interval_s
             model = self._model(run, gauge.id)
             for swings in (False, True):
-                before = _quiet(trace, model, gauge.sigma, swings)
+                whole = traces.quiet(trace, gauge.sigma, swings)
+                before = _cut(whole, trace, model, gauge.sigma)
                 # Many periods are no weak pulse, wherever the model has its own.
-                for stretch, least in ((traces.quiet(trace, gauge.sigma, swings), MANY), (before, 0.0)):
+                for stretch, least in ((whole, MANY), (before, 0.0)):
                     found = traces.pickup(stretch, gauge.sigma)
                     if found and found[0] * len(stretch) > least and run not in shown:
                         shown[run] = stretch, interval, found[0] / interval
@@ -169,7 +170,7 @@ class _Look:
         steps = rounding(trace)
         noise = max(gauge.sigma, steps)
         loud = loudness(trace, noise)
-        stretch = _quiet(trace, self._model(run.id, gauge.id), loud)
+        stretch = _cut(traces.quiet(trace, loud), trace, self._model(run.id, gauge.id), loud)
         hides = traces.faint(trace, loud)
         drifting = traces.drift(stretch, noise)
         if drifting is not None and hides and not traces.straight(stretch, loud):
@@ -283,9 +284,8 @@ class _Look:
         return result
 
 
-def _quiet(trace, model, sigma, swinging=False):
-    """Samples before the pulse; where this hardly stands out of the noise, before the model's at most."""
-    found = traces.quiet(trace, sigma, swinging)
+def _cut(found, trace, model, sigma):
+    """The quiet stretch of a trace; where the pulse hardly stands out, what precedes the model's at most."""
     if model is None or not traces.faint(trace, sigma):
         return found
     half = int((np.abs(model) > 0.5 * np.abs(model).max()).argmax())

@@ -72,18 +72,15 @@ def _judged(record, run, own, readings, model):
     ahead = [(ways[id], expected.share(readings[id], model[id])) for id in heard]
     time = record.signals[run].time_us
     delays = [expected.delay(readings[id], model[id], time) for id in heard if np.abs(model[id]).max() > 0.0]
+    clear = any(expected.found(readings[g.id], model[g.id], g.sigma) for g in own)
     for gauge in own:
         id = gauge.id
-        late = judged[id] == "silent" and expected.still_to_come(model[id], time, delays)
-        if late or (judged[id] == "silent" and expected.fades(ways[id], model[id], gauge.sigma, ahead)):
-            judged[id] = ""
+        if judged[id] != "silent":
+            continue
+        late = expected.still_to_come(model[id], time, delays)
         # Where no gauge has a clear pulse, one that would hardly stand out says nothing by its absence.
-        faint = float(np.abs(model[id]).max()) <= expected.EXPECTED * gauge.sigma
-        if (
-            judged[id] == "silent"
-            and faint
-            and not any(expected.found(readings[g.id], model[g.id], g.sigma) for g in own)
-        ):
+        faint = float(np.abs(model[id]).max()) <= expected.EXPECTED * gauge.sigma and not clear
+        if late or faint or expected.fades(ways[id], model[id], gauge.sigma, ahead):
             judged[id] = ""
     return judged
 

@@ -38,7 +38,7 @@ def quiet(trace: np.ndarray, sigma: float, swinging: bool = False) -> np.ndarray
     """(n,) samples before the pulse arrives, counted generously off a baseline; with `swinging` also where
     the trace swings from its beginning on.
     """
-    rest = float(np.median(trace[: max(8, len(trace) // 20)]))
+    rest = _beginning(trace)
     peak = float(np.abs(trace - rest).max())
     level = max(QUIET_SIGMAS * sigma, QUIET_PEAK * peak)
     if swinging:
@@ -49,7 +49,12 @@ def quiet(trace: np.ndarray, sigma: float, swinging: bool = False) -> np.ndarray
 
 def faint(trace: np.ndarray, sigma: float) -> bool:
     """Whether a pulse, counted as in `quiet`, is a weak one."""
-    return weak(trace - np.median(trace[: max(8, len(trace) // 20)]), QUIET_SIGMAS * sigma)
+    return weak(trace - _beginning(trace), QUIET_SIGMAS * sigma)
+
+
+def _beginning(trace):
+    """Where a trace rests, by its first samples."""
+    return float(np.median(trace[: max(8, len(trace) // 20)]))
 
 
 def quiet_beside(trace: np.ndarray, cycles: float, sigma: float) -> np.ndarray:

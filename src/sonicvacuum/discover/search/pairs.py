@@ -12,7 +12,7 @@ from functools import partial
 
 import numpy as np
 
-from sonicvacuum.discover.fit import bounds, places
+from sonicvacuum.discover.fit import bounds, enough, places
 from sonicvacuum.discover.fit.evidence import Candidate, Combination, log_bayes
 from sonicvacuum.discover.fit.refit import Fit, finished, fit, polish
 from sonicvacuum.discover.model import abreast
@@ -96,9 +96,7 @@ class Pairs:
 
     def _gross(self) -> bool:
         """Whether the best pair leaves far more than noise: what slopes promise beside it is worth little."""
-        e = self.forward.experiment
-        size = sum(e.size(run) for run in range(len(e.runs)))
-        return self.ranked[0].fit.objective > FAR_OFF * size
+        return self.ranked[0].fit.objective > FAR_OFF * enough.data(self.forward)
 
     def _exchange(self):
         """Pairs that share one effect with the best one, as they started and as the best one has it."""
