@@ -71,10 +71,10 @@ def test_fig3_marks_only_what_the_paper_prints(drawn):
     for panel, diameter, modulus in (("a", 4.86e-3, "layer-loss"), ("b", 4.76e-3, "nominal")):
         mark = arrival.loc[panel]
         travel = mark.time_us - start.loc[(panel, modulus)].time_us
-        assert travel == pytest.approx(4e6 * diameter / mark.speed_m_s, rel=1e-7)  # printed with nine digits
-        assert mark.time_error_us == pytest.approx(0.1 * travel, rel=1e-7)
+        assert travel == pytest.approx(4e6 * diameter / mark.speed_m_s, rel=1e-5)  # seven digits are printed
+        assert mark.time_error_us == pytest.approx(0.1 * travel, rel=1e-5)
     duration = marks[marks.series == "paper-duration"].time_us
-    assert np.ptp(duration) == pytest.approx(130.0, rel=1e-7)
+    assert np.ptp(duration) == pytest.approx(130.0, rel=1e-5)
     assert len(marks) == 4
 
 
@@ -148,7 +148,7 @@ def test_fig4_takes_the_printed_point_as_the_reading_that_it_is(drawn):
     point, as_read = low.loc[("a", "paper")], low.loc[("a", "paper-as-read")]
     assert point.gauge_N == as_read.gauge_N == as_read.force_N == PRINTED.amplitude_low
     assert 0.25 < point.force_N < 0.27 / SolitaryWave.compute().gauge_ratio  # a discharge of 5 %
-    assert np.allclose(paper.speed_error_m_s, 0.1 * paper.speed_m_s, rtol=1e-9)
+    assert np.allclose(paper.speed_error_m_s, 0.1 * paper.speed_m_s, rtol=1e-6)
     assert set(paper.speed_m_s) == {130.0, 197.0, 578.0}
 
 

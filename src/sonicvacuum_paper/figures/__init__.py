@@ -29,6 +29,10 @@ CARDS = {
     ),
 }
 
+# Significant digits of their numbers: finer than what simulations err by, about 1e-6, and coarser than what
+# processors round differently, so that `make` writes the same tables on another machine but for a rare digit.
+DIGITS = 7
+
 # Columns of their tables that hold words; the others hold numbers.
 WORDS = ["panel", "series", "model", "orientation", "sensor"]
 
@@ -95,7 +99,7 @@ def make(name: str, simulations: Mapping, out_dir, points=()) -> tuple[Path, Pat
     paths = tuple(stem.with_suffix(suffix) for suffix in (".csv", ".svg", ".png"))
     with replacing(paths[0]) as stream:
         table = with_points(name, module.table(wanted), points)
-        table.to_csv(stream, index=False, float_format="%.9g", lineterminator="\n")
+        table.to_csv(stream, index=False, float_format=f"%.{DIGITS}g", lineterminator="\n")
     figure = draw(name, paths[0])
     style.save(figure, *paths[1:])
     return paths
