@@ -20,6 +20,7 @@ from sonicvacuum.discover.faults.judged import (
     Judged,
     Model,
     excess,
+    exchanged,
     most_of,
     obvious,
     suspicious,
@@ -139,7 +140,7 @@ class Search(Ranking):
             if ranked and obvious(ranked[0], model) and (lower := without_slip(ranked[0], model)):
                 model = self._nominal = lower
                 ranked = self.ranked(model)
-            if not ranked or not obvious(ranked[0], model) or self._matched(ranked[0], model):
+            if not ranked or not self._sure(ranked[0], model):
                 break
             self._accept(ranked, ranked[0])
         else:
@@ -167,6 +168,12 @@ class Search(Ranking):
         one = self._nominal
         null = one.fit if one is not None and one.bench is self.bench else None
         return investigate(self.make(self.bench), self.threads, null)
+
+    def _sure(self, judged: Judged, model: Model) -> bool:
+        """Whether a slip is put right before effects are asked for."""
+        if exchanged(judged, model):
+            return True
+        return obvious(judged, model) and not self._matched(judged, model)
 
     def _matched(self, judged: Judged, model: Model) -> bool:
         """Whether an effect alone explains about as much as a slip, or more: one that moves all pulses as an
@@ -228,6 +235,9 @@ class Search(Ranking):
     def _beside(self, found: Investigation) -> list[Judged]:
         """Slips beside the effects that were found, as if beside the nominal model: their gain included."""
         own = found.null.objective - found.final.objective
+        if own <= 0.0:
+            # Led by a smooth misfit that explains nearly anything: nothing is the better beside it.
+            return []
         judged = self._included(found, found.final, weight_of(found) - math.log(evidence.PRIOR_NONE))
         least = most_of(found.final.objective, float(found.sizes.sum())) if unexplained(found) else 0.0
         return [j for j in judged if j.gain - own > least]

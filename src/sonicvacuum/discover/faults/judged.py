@@ -4,6 +4,7 @@ Records that differ in a slip differ in their data and in their noise, so that n
 compared: χ², the penalty of the nuisances, and the logarithm of the noise of every sample that counts.
 """
 
+import itertools
 import math
 from dataclasses import dataclass, replace
 
@@ -84,6 +85,25 @@ def obvious(judged: Judged, model: Model) -> bool:
         and judged.gain > policy.SHARE * excess(model)
         and not FAULTS[judged.slip.fault].alias
     )
+
+
+def exchanged(judged: Judged, model: Model) -> bool:
+    """Whether two runs that look exchanged are struck, in the nominal fit, each at about the speed stated for
+    the other: whatever leads it so far from what is stated, for both, is no effect.
+    """
+    if judged.slip.fault != "runs-swapped" or judged.slip.of_values:
+        return False
+    stated = {run.id: math.log(run.striker.speed_m_s) for run in model.bench.record.block.runs}
+    pairs = itertools.combinations(stated, 2)
+    one, two = next((a, b) for a, b in pairs if f"{a} and {b}" == judged.slip.run)
+    places = [run.id for run in model.forward.experiment.runs]
+    for own, other in ((one, two), (two, one)):
+        way, place = stated[other] - stated[own], places.index(own)
+        sigma = model.forward.nuisance_sigma[place]
+        missed = abs(model.fit.nu[place] * sigma - way)
+        if abs(way) < policy.FAR_APART * sigma or missed > policy.EXCHANGED * abs(way):
+            return False
+    return True
 
 
 def without_slip(judged: Judged, model: Model) -> Model | None:

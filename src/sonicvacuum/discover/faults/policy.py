@@ -12,6 +12,9 @@ LEAST_GAIN = 18.0
 SHARE = 0.9
 # ... and gains so much that no prior matters.
 SURE_GAIN = 200.0
+# Two runs are exchanged whatever else acts in them where their speeds differ by so many stated errors, and a
+# fit strikes each within this share of the difference (of logarithms) from the speed of the other.
+FAR_APART, EXCHANGED = 10.0, 0.25
 # One that leaves more than this share of it is held against every effect alone first.
 REST = 0.01
 # A slip that leaves more than this share of the misfit, whatever else is added, is no explanation.
