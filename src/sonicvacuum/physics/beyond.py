@@ -42,4 +42,7 @@ class Action:
     def table(self, chain, stiffness, mass):
         """(bodies, n, lanes) coefficients."""
         columns = self.coefficients(chain, stiffness, mass, **self.parameters)
-        return np.stack([np.broadcast_to(c, stiffness.shape) for c in columns], axis=1)
+        made = np.empty((len(stiffness), len(columns), chain.lanes))
+        for k, column in enumerate(columns):
+            made[:, k] = column
+        return made

@@ -226,14 +226,12 @@ class Chain:
 
     def with_defect(self, what: str, index: int, value) -> "Chain":
         """This chain with one more defect; `value` broadcasts to (lanes,)."""
-        value = np.broadcast_to(np.asarray(value, dtype=float), (self.lanes,))
+        value = _broadcast(value, (self.lanes,))
         return self._with(defects=(*self.defects, Defect(what, index, value)))
 
     def with_action(self, term: Term, coefficients: Callable, **parameters) -> "Chain":
         """This chain with one more term; each parameter broadcasts to (lanes,)."""
-        arrays = {
-            k: np.broadcast_to(np.asarray(p, dtype=float), (self.lanes,)) for k, p in parameters.items()
-        }
+        arrays = {k: _broadcast(p, (self.lanes,)) for k, p in parameters.items()}
         return self._with(actions=(*self.actions, Action(term, coefficients, arrays)))
 
     def masses(self, bodies: int) -> np.ndarray:

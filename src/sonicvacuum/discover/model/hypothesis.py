@@ -163,15 +163,32 @@ def with_common_laws(setup: Setup, present: tuple[str, ...]) -> Setup:
 
     The flexible law is among them.
     """
+    kept = setup.catalogue.kept
+    # The same for all chains of a kind, and asked for with every call.
+    kind = (present, setup.chain.beads, tuple(a.term.name for a in setup.chain.actions))
+    if kind not in kept:
+        kept[kind] = _laws_beside(setup, present)
+    for effect in kept[kind]:
+        setup = _switched_off(effect, setup)
+    return flexible.add(setup) if FLEXIBLE not in present else setup
+
+
+def _laws_beside(setup, present):
+    """Effects that add to the force law, not `present` and not slow: slow ones join only where needed."""
+    found = []
     for effect in setup.catalogue.candidates(setup, present):
-        # Slow laws join only where they are needed.
         if effect.places or effect.slow:
             continue
-        off = {p.name: p.at(0.0, setup) for p in effect.parameters}
-        changed = effect.change(setup, **off)
+        changed = _switched_off(effect, setup)
         if len(changed.chain.actions) > len(setup.chain.actions):
+            found.append(effect)
             setup = changed
-    return flexible.add(setup) if FLEXIBLE not in present else setup
+    return tuple(found)
+
+
+def _switched_off(effect, setup):
+    """The setup with an effect in it that does nothing."""
+    return effect.change(setup, **{p.name: p.at(0.0, setup) for p in effect.parameters})
 
 
 def variants(effect: Effect, setup: Setup) -> tuple[tuple[Coordinate, ...], ...]:
