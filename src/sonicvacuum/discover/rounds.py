@@ -78,8 +78,15 @@ class Investigation:
         return [c for c in self.combinations if len(c.effects) == 2]
 
 
-def investigate(experiment: Experiment, threads: int = 1, null: Fit | None = None) -> Investigation:
-    """Find what is missing from the nominal model of a data set; `null` is its fit, where at hand."""
+def investigate(
+    experiment: Experiment,
+    threads: int = 1,
+    null: Fit | None = None,
+    alone: list[Candidate] | None = None,
+) -> Investigation:
+    """Find what is missing from the nominal model of a data set; `null` is its fit and `alone` the single
+    effects beside that, where at hand.
+    """
     given, known = experiment, discrepancy.Shapes(experiment)
     if experiment.model_floor_rel:
         experiment = smooth.with_size(experiment, experiment.model_floor_rel, known)
@@ -92,7 +99,8 @@ def investigate(experiment: Experiment, threads: int = 1, null: Fit | None = Non
     families = directions.catalogue(setup, experiment.excluded)
     scores = screen.screen(forward, null, families)
     threshold = scores.threshold(policy.FALSE_ALARM)
-    found = _polished(forward, null, singles.fit_all(forward, null, scores), threshold)
+    fitted = singles.fit_all(forward, null, scores) if alone is None else alone
+    found = _polished(forward, null, fitted, threshold)
     prior = experiment.prior_odds
     lower = _lower(forward, null, found, threshold)
     if lower is not None:

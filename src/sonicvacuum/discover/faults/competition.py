@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sonicvacuum.discover.faults import policy, tables
+from sonicvacuum.discover.faults.alone import Kept, beside_one_effect, wholes
 from sonicvacuum.discover.faults.examine import examine, with_noise_of
 from sonicvacuum.discover.faults.found import Bench, Finding
 from sonicvacuum.discover.faults.judged import (
@@ -50,7 +51,6 @@ from sonicvacuum.discover.model.nominal import predicted
 from sonicvacuum.discover.model.problem import together
 from sonicvacuum.discover.policy import SAME_MINIMUM
 from sonicvacuum.discover.rounds import Investigation, investigate
-from sonicvacuum.discover.search import directions, screen, singles
 from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.records import Record
 
@@ -128,6 +128,7 @@ class Search(Ranking):
     def __init__(self, bench: Bench, catalogue: Catalogue, threads: int, plain: list[Finding]):
         super().__init__(bench, catalogue, threads, plain)
         self._nominal: Model | None = None
+        self._alone = Kept()
         # Effects that alone explain as much as the likeliest slip, which moves all pulses as they may.
         self._matching: set[str] = set()
 
@@ -140,9 +141,12 @@ class Search(Ranking):
             if ranked and obvious(ranked[0], model) and (lower := without_slip(ranked[0], model)):
                 model = self._nominal = lower
                 ranked = self.ranked(model)
-            if not ranked or not self._sure(ranked[0], model):
+            if ranked and self._sure(ranked[0], model):
+                self._accept(ranked, ranked[0])
+            elif (one := self._beside_one_effect(ranked, model)) is not None:
+                self._accept([one], one)
+            else:
                 break
-            self._accept(ranked, ranked[0])
         else:
             ranked, looked = [], True
         found = self._investigate()
@@ -162,12 +166,14 @@ class Search(Ranking):
                 break
             found, ranked = better, []
         order = sorted(self.findings, key=lambda f: -f.probability)
-        return Outcome(found, tuple(order), self.bench.record, self.simulations)
+        simulations = self.simulations + self._alone.simulations
+        return Outcome(found, tuple(order), self.bench.record, simulations)
 
     def _investigate(self) -> Investigation:
         one = self._nominal
-        null = one.fit if one is not None and one.bench is self.bench else None
-        return investigate(self.make(self.bench), self.threads, null)
+        if one is None or one.bench is not self.bench:
+            return investigate(self.make(self.bench), self.threads)
+        return investigate(self.make(self.bench), self.threads, one.fit, self._alone.at_hand(one))
 
     def _sure(self, judged: Judged, model: Model) -> bool:
         """Whether a slip is put right before effects are asked for."""
@@ -185,14 +191,22 @@ class Search(Ranking):
         leaves = rest > max(policy.SURE_GAIN, policy.REST * excess(model))
         if not (FAULTS[judged.slip.fault].stretches or judged.slip.of_values or leaves):
             return False
-        forward, before = model.forward, model.forward.chains
-        known = directions.catalogue(singles.setup_of(forward), forward.experiment.excluded)
-        found = singles.fit_all(forward, model.fit, screen.screen(forward, model.fit, known))
-        self.simulations += forward.chains - before
+        found = self._alone.beside(model)
         self._matching = {c.effect for c in found if c.gain > judged.gain - ALIKE}
         if any(tables.beyond_chance(judged, c.gain) for c in found):
             return True
         return bool(self._matching)
+
+    def _beside_one_effect(self, ranked: list[Judged], model: Model) -> Judged | None:
+        """A slip beside which one effect explains the record, see `alone`."""
+        if excess(model) < policy.SURE_GAIN or not wholes(ranked):
+            return None
+        found = self._alone.beside(model)
+        models = [j.model for j in wholes(ranked)]
+        before = sum(m.forward.chains for m in models)
+        chosen = beside_one_effect(ranked, model, found)
+        self.simulations += sum(m.forward.chains for m in models) - before
+        return chosen
 
     def _like_slips(self, found: Investigation, name: str) -> bool:
         """Whether an effect named moves data as some slip does."""

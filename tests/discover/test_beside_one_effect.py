@@ -1,0 +1,85 @@
+"""A slip without a size beside one strong effect is put right before sets of effects are asked for."""
+
+from types import SimpleNamespace
+
+import pytest
+from made_records import made
+
+from sonicvacuum.discover import session
+from sonicvacuum.discover.faults import alone, changes, competition
+from sonicvacuum.discover.faults.judged import Judged
+from sonicvacuum.discover.faults.slips import Slip
+
+SIZE = 1000
+NOISE = SIZE + 50.0  # a standard deviation of χ² is 45
+GROSS = 5.0 * SIZE
+
+
+def model(leaves):
+    """A model of as many data, beside which the best effect leaves that."""
+    experiment = SimpleNamespace(runs=[None], size=lambda run: SIZE)
+    return SimpleNamespace(forward=SimpleNamespace(experiment=experiment, chains=0), leaves=leaves)
+
+
+def slip(fault, leaves, width=0.0, of_values=False):
+    one = Slip(fault, None, width=width, of_values=of_values)
+    return Judged(one, 0.0, 100.0, 50.0, model(leaves))
+
+
+@pytest.mark.parametrize(
+    ("as_is", "slips", "chosen"),
+    [
+        (GROSS, [("gauges-swapped", GROSS), ("gauge-misplaced", NOISE)], "gauge-misplaced"),
+        # An effect is enough without any.
+        (NOISE, [("gauge-misplaced", NOISE)], None),
+        # Two that both do it have to be weighed.
+        (GROSS, [("bead-count", NOISE), ("gauge-misplaced", NOISE)], None),
+        (GROSS, [("gauge-misplaced", GROSS)], None),
+        (GROSS, [], None),
+    ],
+)
+def test_the_only_one_that_leaves_noise_is_chosen(monkeypatch, as_is, slips, chosen):
+    monkeypatch.setattr(alone, "alone", lambda m: best(m.leaves))
+    found = alone.beside_one_effect([slip(*one) for one in slips], model(as_is), best(as_is))
+    assert (found and found.slip.fault) == chosen
+
+
+def best(leaves):
+    """Two effects; the better one leaves that."""
+    return [SimpleNamespace(fit=SimpleNamespace(objective=leaves + more)) for more in (9000.0, 0.0)]
+
+
+def test_what_has_a_size_or_is_a_value_is_weighed_against_effects():
+    given = [slip("clock", NOISE, width=0.01), slip("runs-swapped", NOISE, of_values=True)]
+    assert alone.wholes([*given, slip("bead-count", NOISE)])[0].slip.fault == "bead-count"
+    assert alone.wholes(given) == []
+
+
+def test_single_effects_are_fitted_once_for_a_model(monkeypatch):
+    asked = []
+    monkeypatch.setattr(alone, "alone", lambda m: asked.append(m) or [m])
+    kept, one, other = alone.Kept(), model(NOISE), model(GROSS)
+    assert kept.at_hand(one) is None
+    assert kept.beside(one) == kept.beside(one) == kept.at_hand(one) == [one]
+    assert kept.beside(other) == [other] and kept.at_hand(one) is None
+    assert asked == [one, other]
+
+
+@pytest.mark.long
+def test_sets_of_effects_are_not_asked_for_where_a_gauge_sits_a_bead_off(monkeypatch):
+    gauges = [
+        {"id": "g4", "kind": "embedded", "bead": 4, "sigma_N": 0.1, "gain_rel_sigma": 0.02},
+        {"id": "g7", "kind": "embedded", "bead": 7, "sigma_N": 0.1, "gain_rel_sigma": 0.02},
+        {"id": "wall", "kind": "wall", "sigma_N": 0.2, "gain_rel_sigma": 0.02},
+    ]
+    record, _ = made(
+        [("plastic-contact", {"residual_fraction": 0.3})], seed=5, speeds=(0.3, 0.45, 0.6), sensors=gauges
+    )
+    investigated, investigate = [], competition.investigate
+    monkeypatch.setattr(
+        competition, "investigate", lambda e, *given: investigated.append(e) or investigate(e, *given)
+    )
+    found = session.discover(changes.gauge_moved(record, "g4", 1)).verdict
+    assert found.named == ["plastic-contact"]
+    assert [(f.fault, f.sensor, f.value) for f in found.faults] == [("gauge-misplaced", "g4", 4.0)]
+    assert len(investigated) == 1
