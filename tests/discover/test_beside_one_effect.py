@@ -39,14 +39,17 @@ def slip(fault, leaves, width=0.0, of_values=False):
     ],
 )
 def test_the_only_one_that_leaves_noise_is_chosen(monkeypatch, as_is, slips, chosen):
-    monkeypatch.setattr(alone, "alone", lambda m: best(m.leaves))
-    found = alone.beside_one_effect([slip(*one) for one in slips], model(as_is), best(as_is))
+    monkeypatch.setattr(alone, "alone", lambda m, only=(): (best(m.leaves), 100))
+    kept = alone.Kept()
+    found = kept.explained([slip(*one) for one in slips], model(as_is))
     assert (found and found.slip.fault) == chosen
+    assert kept.simulations == 100 * (1 + len(slips) * (as_is == GROSS))
 
 
 def best(leaves):
     """Two effects; the better one leaves that."""
-    return [SimpleNamespace(fit=SimpleNamespace(objective=leaves + more)) for more in (9000.0, 0.0)]
+    ends = {"one": leaves, "another": leaves + 9000.0}
+    return [SimpleNamespace(effect=k, fit=SimpleNamespace(objective=v)) for k, v in ends.items()]
 
 
 def test_what_has_a_size_or_is_a_value_is_weighed_against_effects():
@@ -57,7 +60,7 @@ def test_what_has_a_size_or_is_a_value_is_weighed_against_effects():
 
 def test_single_effects_are_fitted_once_for_a_model(monkeypatch):
     asked = []
-    monkeypatch.setattr(alone, "alone", lambda m: asked.append(m) or [m])
+    monkeypatch.setattr(alone, "alone", lambda m: (asked.append(m) or [m], 0))
     kept, one, other = alone.Kept(), model(NOISE), model(GROSS)
     assert kept.at_hand(one) is None
     assert kept.beside(one) == kept.beside(one) == kept.at_hand(one) == [one]

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sonicvacuum.discover.faults import policy, tables
-from sonicvacuum.discover.faults.alone import Kept, beside_one_effect, wholes
+from sonicvacuum.discover.faults.alone import Kept, wholes
 from sonicvacuum.discover.faults.examine import examine, with_noise_of
 from sonicvacuum.discover.faults.found import Bench, Finding
 from sonicvacuum.discover.faults.judged import (
@@ -201,12 +201,7 @@ class Search(Ranking):
         """A slip beside which one effect explains the record, see `alone`."""
         if excess(model) < policy.SURE_GAIN or not wholes(ranked):
             return None
-        found = self._alone.beside(model)
-        models = [j.model for j in wholes(ranked)]
-        before = sum(m.forward.chains for m in models)
-        chosen = beside_one_effect(ranked, model, found)
-        self.simulations += sum(m.forward.chains for m in models) - before
-        return chosen
+        return self._alone.explained(ranked, model)
 
     def _like_slips(self, found: Investigation, name: str) -> bool:
         """Whether an effect named moves data as some slip does."""
