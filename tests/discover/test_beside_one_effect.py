@@ -52,6 +52,14 @@ def best(leaves):
     return [SimpleNamespace(effect=k, fit=SimpleNamespace(objective=v)) for k, v in ends.items()]
 
 
+def test_few_values_need_more_than_their_own_number(monkeypatch):
+    """Of a table of twenty what is left may be twice its noise and a chance."""
+    monkeypatch.setattr(alone, "data", lambda forward: 20)
+    monkeypatch.setattr(alone, "alone", lambda m, only=(): (best(m.leaves), 0))
+    near, far = (alone.Kept().explained([slip("bead-count", 25.0)], model(x)) for x in (100.0, 300.0))
+    assert near is None and far is not None
+
+
 def test_what_has_a_size_or_is_a_value_is_weighed_against_effects():
     given = [slip("clock", NOISE, width=0.01), slip("runs-swapped", NOISE, of_values=True)]
     assert alone.wholes([*given, slip("bead-count", NOISE)])[0].slip.fault == "bead-count"

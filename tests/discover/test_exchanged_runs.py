@@ -2,6 +2,7 @@
 
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 from made_records import made
 
@@ -66,6 +67,18 @@ def test_speeds_that_their_errors_could_exchange_do_not_tell():
     record = changes.runs_swapped(record, "v0", "v2")
     _, model = model_of(record)
     assert not any(exchanged(judged, model) for judged in pairs_of(record).values())
+
+
+def test_runs_of_one_speed_do_not_tell(swapped, told):
+    """Whatever else their strikers differ in, and however well the speed is known."""
+    record = changes.strikers(swapped, "mass_g", 0.2, ("v0",))
+    alike = {run.id: 0.3 / run.striker.speed_m_s for run in record.block.runs}
+    for run, ratio in alike.items():
+        record = changes.strikers(record, "speed_m_s", np.log(ratio), (run,))
+    _, model = told
+    exact = SimpleNamespace(experiment=model.forward.experiment, nuisance_sigma=np.zeros(9))
+    known = SimpleNamespace(bench=Bench(record), forward=exact, fit=model.fit)
+    assert not any(exchanged(judged, known) for judged in pairs_of(swapped).values())
 
 
 def test_nothing_is_asked_for_beside_what_explains_less_than_nothing(told):

@@ -59,7 +59,7 @@ class Kept:
         the record is, every effect leaves far more.
         """
         found, size = self.beside(model), data(model.forward)
-        if _left(found, size) < policy.GROSS * size:
+        if _left(found, size) < max(policy.GROSS * size, policy.SURE_GAIN):
             return None
         leading = {c.effect for c in found[:LEADING]}
         noise = policy.SUSPICIOUS * math.sqrt(2.0 * size)

@@ -101,7 +101,7 @@ def exchanged(judged: Judged, model: Model) -> bool:
         way, place = stated[other] - stated[own], places.index(own)
         sigma = model.forward.nuisance_sigma[place]
         missed = abs(model.fit.nu[place] * sigma - way)
-        if abs(way) < policy.FAR_APART * sigma or missed > policy.EXCHANGED * abs(way):
+        if abs(way) <= policy.FAR_APART * sigma or missed > policy.EXCHANGED * abs(way):
             return False
     return True
 

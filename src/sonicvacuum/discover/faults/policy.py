@@ -17,8 +17,8 @@ SURE_GAIN = 200.0
 FAR_APART, EXCHANGED = 10.0, 0.25
 # One that leaves more than this share of it is held against every effect alone first.
 REST = 0.01
-# Where the best effect leaves more than so many times the χ² of noise, a slip beside which an effect leaves
-# noise alone needs not be held against sets of effects.
+# Where the best effect leaves more than so many times the χ² of noise, and no less than `SURE_GAIN`, a slip
+# beside which an effect leaves noise alone needs not be held against sets of effects.
 GROSS = 1.0
 # A slip that leaves more than this share of the misfit, whatever else is added, is no explanation.
 LEFT = 0.3
