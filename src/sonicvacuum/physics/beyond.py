@@ -42,7 +42,8 @@ class Action:
     def table(self, chain, stiffness, mass):
         """(bodies, n, lanes) coefficients."""
         columns = self.coefficients(chain, stiffness, mass, **self.parameters)
-        made = np.empty((len(stiffness), len(columns), chain.lanes))
+        bodies, *lanes = stiffness.shape
+        made = np.empty((bodies, len(columns), *lanes))
         for k, column in enumerate(columns):
             made[:, k] = column
         return made
