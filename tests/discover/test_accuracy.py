@@ -82,3 +82,10 @@ def test_others_keep_the_steps_that_noise_asks_for(predictor):
     forward = predictor()
     assert forward._refine == accuracy.refinement(forward.norm)
     assert _error(forward) < accuracy.TOLERATED
+
+
+def test_other_data_of_the_same_chains_are_not_held_against_shorter_steps_again():
+    forward = _after_many_reflections(2500.0)
+    other = forward.of(forward.experiment)
+    assert other._refine == forward._refine
+    assert other.simulations == 0 < forward.simulations

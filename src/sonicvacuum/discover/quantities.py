@@ -55,7 +55,7 @@ def _unbounded(forward):
     """A predictor of the same data that follows observables beyond their bounds."""
     e = forward.experiment
     runs = (replace(r, scalars=tuple(replace(one, bound=None) for one in r.scalars)) for r in e.runs)
-    return Forward(replace(e, runs=tuple(runs)), forward.threads)
+    return forward.of(replace(e, runs=tuple(runs)))
 
 
 def _shown(forward, fit):

@@ -12,7 +12,6 @@ from sonicvacuum.discover.faults import policy
 from sonicvacuum.discover.faults.judged import Judged, Model
 from sonicvacuum.discover.fit.enough import data
 from sonicvacuum.discover.fit.evidence import Candidate
-from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.search import directions, screen, singles
 
 # Effects that explain most of the record as it is: which of them leaves noise beside a slip is asked.
@@ -28,7 +27,7 @@ def alone(model: Model, only: Set[str] = frozenset()) -> tuple[list[Candidate], 
         experiment = forward.experiment
         others = [id for id in experiment.catalogue.ids if id not in only]
         asked = replace(experiment, excluded=(*experiment.excluded, *others))
-        forward = Forward(asked, forward.threads)
+        forward = forward.of(asked)
     before = forward.chains
     known = directions.catalogue(singles.setup_of(forward), forward.experiment.excluded)
     found = singles.fit_all(forward, model.fit, screen.screen(forward, model.fit, known))

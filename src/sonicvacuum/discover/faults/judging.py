@@ -51,7 +51,7 @@ class Judge:
         return replace(self.model.bench, record=record)
 
     def _forward(self, record):
-        return Forward(self.make(self._bench(record)), self.threads)
+        return Forward(self.make(self._bench(record)), self.threads, self.model.forward.cut)
 
     def _nuisances(self, slip: Slip) -> np.ndarray:
         """(q,) nuisances of the model without what has stood in for a slip that is far off."""
@@ -290,7 +290,7 @@ class Judge:
         """The record changed by a size, and its predictor."""
         record, lost = self.model.bench.record, self.model.bench.lost
         bench = replace(self._bench(slip.change(record, size)), lost=slip.lost(lost, record, size))
-        return bench, Forward(self.make(bench), self.threads)
+        return bench, Forward(self.make(bench), self.threads, self.model.forward.cut)
 
     def _fitted(self, slip, size, start: Fit | None = None, afresh: bool = False):
         """The record changed by a size and its model, fitted from a start, or from the model as it is and

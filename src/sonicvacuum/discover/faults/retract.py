@@ -71,7 +71,7 @@ class _Asked:
         experiment = self.make(bench)
         if len(experiment.sigma) == len(self.noise["sigma"]):
             experiment = replace(experiment, **self.noise)
-        forward, one = Forward(experiment, self.found.forward.threads), self.found.final
+        forward, one = self.found.forward.of(experiment), self.found.final
         return forward, fit(forward, one.hypothesis, one.u[None], np.zeros((1, forward.layout.size)))
 
     def better(self, slips: set[Slipped]) -> set[Slipped]:

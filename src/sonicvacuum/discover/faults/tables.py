@@ -92,7 +92,7 @@ def _with_open_speeds(forward: Forward) -> Forward:
     if all(r.speed_rel_sigma for r in e.runs):
         return forward
     runs = tuple(replace(r, speed_rel_sigma=r.speed_rel_sigma or policy.OPEN_SPEED) for r in e.runs)
-    return Forward(replace(e, runs=runs), forward.threads)
+    return forward.of(replace(e, runs=runs))
 
 
 def _at_stated(forward: Forward, one: Fit) -> list[np.ndarray]:

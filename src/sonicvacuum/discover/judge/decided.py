@@ -50,6 +50,6 @@ def viewed(
 ) -> View:
     """The nominal model and a final one with a smooth discrepancy of one size counted as noise."""
     noisy = smooth.with_size(forward.experiment, one.size, known, one.excess, one.kernel)
-    counted = Forward(noisy, forward.threads)
+    counted = forward.of(noisy)
     moved = restart.moved(counted, null)
     return View(counted, moved, moved if final is null else restart.moved(counted, final))

@@ -53,7 +53,7 @@ def widened(forward: Forward, null: Fit, fit: Fit) -> tuple[Forward, Fit, Fit]:
     """
     e = forward.experiment
     wider = _wider(fit, pieces(forward, fit))
-    view = Forward(replace(e, sigma=wider**0.5 * e.sigma), forward.threads)
+    view = forward.of(replace(e, sigma=wider**0.5 * e.sigma))
     there = Fit(fit.hypothesis, linearise(view, fit.hypothesis, fit.u[None], fit.nu[None]))
     return view, Fit(null.hypothesis, linearise(view, null.hypothesis, null.u[None], null.nu[None])), there
 

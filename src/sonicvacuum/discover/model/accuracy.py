@@ -46,22 +46,20 @@ def refinement(norm: float, leading: bool = False) -> float:
     return float(np.clip((ERROR * norm / aim) ** 0.25, 1.0 / LONGEST, 1.0))
 
 
-def chosen(forward) -> float:
-    """By what the stepper's full accuracy is refined for a `Forward`: what its norm asks for, doubled until
-    the error of its nominal chains is tolerated; what only leads elsewhere is not held to that.
+def cut(forward) -> float:
+    """By how much the steps of a `Forward` are cut beyond what its norm asks for: halved until the error of
+    its nominal chains is tolerated.
     """
-    experiment = forward.experiment
-    refine = refinement(forward.norm, leading=experiment.integrated)
-    long = any(lasting(batch.chain, _recorded(experiment, batch)) for batch in experiment.batches)
-    if experiment.integrated or not long:
-        return refine
-    seen = _nominal(forward, refine)
+    experiment, least = forward.experiment, refinement(forward.norm)
+    if not any(lasting(batch.chain, _recorded(experiment, batch)) for batch in experiment.batches):
+        return 1.0
+    refine, seen = least, _nominal(forward, least)
     while refine < SHORTEST:
         finer = _nominal(forward, 2.0 * refine)
         if _apart(seen, finer) <= TOLERATED:
             break
         refine, seen = 2.0 * refine, finer
-    return refine
+    return refine / least
 
 
 def lasting(chain: Chain, time_s: float) -> bool:

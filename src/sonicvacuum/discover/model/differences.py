@@ -34,3 +34,24 @@ def displaced(hypothesis: Hypothesis, u, nu, steps, orders, nuisances, h: float)
             for place, sigma in group:
                 many_nu[first + p + k :: sets, place] += order * h / sigma if sigma else 0.0
     return many_u, many_nu, sets
+
+
+def sizes(u, displaced_u, orders, each: int, h: float) -> np.ndarray:
+    """(L, sets) by how much each lane departs from its point, to divide its change by; see `displaced`.
+
+    Args:
+        u: (L, p) coordinates of the points.
+        displaced_u: (L sets, p) of all lanes.
+        orders: as there.
+        each: parameters and groups of nuisances.
+        h: as there.
+    """
+    lanes, p = u.shape
+    own = np.arange(p)
+    many_u = displaced_u.reshape(lanes, 1 + len(orders) * each, p)
+    size = np.full(many_u.shape[:2], h)
+    for o, order in enumerate(orders):
+        first = 1 + o * each
+        size[:, first + p : first + each] *= order
+        size[:, first + own] = (many_u[:, first + own] - u[:, None])[:, own, own]
+    return size

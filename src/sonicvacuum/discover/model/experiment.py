@@ -277,6 +277,13 @@ class Experiment:
         data = self.runs[run]
         return len(self.gauges) * len(data.time) + len(data.scalars)
 
+    def counts(self, run: int) -> np.ndarray:
+        """Places of the data of a run that are whole numbers."""
+        scalars = self.runs[run].scalars
+        first = self.length(run) - len(scalars)
+        own = [first + k for k, one in enumerate(scalars) if one.quantity == "pulse_count"]
+        return np.array(own, dtype=int)
+
     def size(self, run: int) -> int:
         """Number of data of a run: samples that count, and scalars."""
         data = self.runs[run]

@@ -42,7 +42,7 @@ class Forward:
         calls, seconds: predictions asked for at once, and the time that they took.
     """
 
-    def __init__(self, experiment: Experiment, threads: int = 1):
+    def __init__(self, experiment: Experiment, threads: int = 1, cut: float | None = None):
         self.experiment, self.threads, self.simulations = experiment, threads, 0
         self.layout = Layout(len(experiment.runs), len(experiment.gauges), experiment.shared)
         self.strengths: dict[tuple, np.ndarray] = {}
@@ -51,6 +51,13 @@ class Forward:
         self._tiled: dict[tuple, Chain] = {}
         self._alike: dict[tuple, list[list[int]]] = {}
         self.calls, self.seconds = 0, 0.0
+        self._cut = cut
+
+    def of(self, experiment: Experiment) -> "Forward":
+        """A predictor of other data of much the same chains, whose steps need not be held against shorter
+        ones again.
+        """
+        return Forward(experiment, self.threads, self.cut)
 
     def branch(self, beside: int = 1) -> "Forward":
         """The same predictor for one of several hypotheses, with a memory of its own that begins as it is;
@@ -94,7 +101,7 @@ class Forward:
     def coarse(self) -> "Forward":
         """The same predictor of running integrals of the traces."""
         if self._coarse is None:
-            self._coarse = Forward(replace(self.experiment, integrated=True), self.threads)
+            self._coarse = Forward(replace(self.experiment, integrated=True), self.threads, 1.0)
         return self._coarse
 
     @property
@@ -114,7 +121,14 @@ class Forward:
     @cached_property
     def _refine(self) -> float:
         """What divides the steps of simulations."""
-        return accuracy.chosen(self)
+        return accuracy.refinement(self.norm, self.experiment.integrated) * self.cut
+
+    @property
+    def cut(self) -> float:
+        """By how much steps are shorter than noise asks for, as these chains err."""
+        if self._cut is None:
+            self._cut = accuracy.cut(self)
+        return self._cut
 
     @cached_property
     def _whitened(self):
@@ -132,12 +146,7 @@ class Forward:
     @cached_property
     def _counts(self) -> list[np.ndarray]:
         """The same of all runs."""
-        found = []
-        for run, data in enumerate(self.experiment.runs):
-            first = self.experiment.length(run) - len(data.scalars)
-            own = [first + k for k, one in enumerate(data.scalars) if one.quantity == "pulse_count"]
-            found.append(np.array(own, dtype=int))
-        return found
+        return [self.experiment.counts(run) for run in range(len(self.experiment.runs))]
 
     @cached_property
     def nuisance_sigma(self) -> np.ndarray:
@@ -203,14 +212,7 @@ class Forward:
         many_places = None if places is None else np.repeat(places, sets, axis=0)
         found = self._sampled(hypothesis, many_u, many_nu, many_places, sets)
         each = (sets - 1) // len(orders)
-        # What each lane departs by, to divide its change by.
-        size = np.full((lanes, sets), h)
-        for o, order in enumerate(orders):
-            own = 1 + o * each + np.arange(p)
-            size[:, 1 + o * each + p : 1 + (o + 1) * each] *= order
-            size[:, own] = (many_u.reshape(lanes, sets, p)[:, own] - u[:, None])[
-                :, np.arange(p), np.arange(p)
-            ]
+        size = differences.sizes(u, many_u, orders, each, h)
         result = []
         for run, (value, timing) in enumerate(found):
             value = value.reshape(lanes, sets, -1)
@@ -266,17 +268,8 @@ class Forward:
         seen, gain = self.simulate(batch, setup, self._lasting(batch, nu)), self._gain(nu)
         traces = {}
         for places in self._recorded_alike(batch):
-            traces |= gauges.traces(
-                e,
-                self.layout,
-                self.nuisance_sigma,
-                batch,
-                places,
-                seen.readings,
-                gain,
-                nu,
-                rate_of or len(nu),
-            )
+            read = (self.layout, self.nuisance_sigma, batch, places, seen.readings, gain, nu)
+            traces |= gauges.traces(e, *read, rate_of or len(nu))
 
         def again(lanes, duration):
             return self.simulate(batch, setup.take(lanes), duration)

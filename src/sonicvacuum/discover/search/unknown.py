@@ -106,7 +106,7 @@ def _distorted(forward, null, seen: screen.Screen, k) -> float:
         added = np.zeros_like(predicted)
         added[d.place] = (seen.strength[k] * _DISTORTIONS[d.strength](predicted / largest) * largest)[d.place]
         runs.append(replace(run, readings=run.readings - added) if run.has_signals else run)
-    changed = Forward(replace(e, runs=tuple(runs)), forward.threads)
+    changed = forward.of(replace(e, runs=tuple(runs)))
     start = linearise(changed, null.hypothesis, null.u[None], seen.moved(k)[1][None])
     found = polish(changed, Fit(null.hypothesis, start))
     forward.simulations += changed.simulations
@@ -293,7 +293,7 @@ def raw(forward: Forward, fit: Fit) -> list[np.ndarray]:
     e = forward.experiment
     whole = tuple(replace(run, present=None) for run in e.runs)
     plain = replace(e, runs=whole, correlation=np.zeros(len(e.gauges)), smooth=None)
-    white = Forward(plain, forward.threads)
+    white = forward.of(plain)
     found = white.sampled(fit.hypothesis, fit.u[None], fit.nu[None])
     forward.simulations += white.simulations
     return [
