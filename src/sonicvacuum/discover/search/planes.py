@@ -40,6 +40,29 @@ def promised(scores: screen.Screen) -> float:
     return float(gain[np.triu_indices(len(gain), 1)].max(initial=-np.inf))
 
 
+def foreseen(scores: screen.Screen, count: int) -> float:
+    """The Δχ² of so many effects if all acted in proportion, each chosen for what it gains beside those
+    before it.
+    """
+    score, gram = scores.projected
+    able, raw = scores.length > 0.0, np.diag(gram)
+    effects = np.array([d.effect for d in scores.directions])
+    two_sided = np.array([d.two_sided for d in scores.directions])
+    chosen: list[int] = []
+    total = 0.0
+    for _ in range(count):
+        beside = gram[:, chosen] @ np.linalg.pinv(gram[np.ix_(chosen, chosen)], rcond=1e-9, hermitian=True)
+        left = raw - np.einsum("kc,kc->k", beside, gram[:, chosen])
+        able &= left > _PARALLEL * raw
+        z = (score - beside @ score[chosen]) / np.sqrt(np.where(able, left, np.inf))
+        z = np.where(two_sided, np.abs(z), np.maximum(z, 0.0))
+        best = int(np.argmax(z))
+        total += float(z[best]) ** 2
+        chosen.append(best)
+        able &= effects != effects[best]
+    return total
+
+
 def linear(scores: screen.Screen, setup: Setup, most: int = 12) -> list[Start]:
     """Pairs by what they should gain beside what is in the screen's model if all effects acted in proportion,
     best first.

@@ -10,7 +10,7 @@ systematic error names nothing.
 
 import itertools
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -21,7 +21,9 @@ from sonicvacuum.discover.fit.evidence import Combination
 from sonicvacuum.discover.fit.refit import Fit, finished
 from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.forward import Forward
-from sonicvacuum.discover.search import around, pairs, planes, restart, secants
+from sonicvacuum.discover.search import around, pairs, planes, prospects, restart, secants
+from sonicvacuum.discover.search.grown import Grown
+from sonicvacuum.discover.search.once import Once
 from sonicvacuum.effects import Setup
 
 # Starts that are fitted jointly at each turn, by what they should gain; those of the first effect beside a
@@ -37,30 +39,9 @@ NEAR = 0.8
 # Once a set is found, all that slopes promise this share of what an effect gains there are fitted in its
 # place, so many of each.
 STANDS, STANDING = 0.7, 6
-# One more effect is hoped to gain so many times the log evidence of the one before it.
-HOPED = 2.0
 # One run may be predicted worse by so much of what all runs gain.
 WORSE = 0.1
 TURNS = policy.MOST_EFFECTS + 2
-
-
-@dataclass(frozen=True)
-class Grown:
-    """Where adding and taking away came to an end.
-
-    Attributes:
-        forward: the predictor with the smooth discrepancy in its noise.
-        null: the nominal model there.
-        best: effects and fit there; no effects where none is left.
-        size: the discrepancy.
-        tried: other combinations there, the best one and none included.
-    """
-
-    forward: Forward
-    null: Fit
-    best: Combination
-    size: smooth.Size
-    tried: dict[frozenset, Combination] = field(default_factory=dict)
 
 
 class Turns:
@@ -74,7 +55,7 @@ class Turns:
         self.plain, self.known, self.needed, self.setup, self.infer = forward, known, needed, setup, infer
         self.rival = rival
         self.forward, self.null, self.tried = forward, None, {}
-        self.size = smooth.Size(0.0, 0.0)
+        self.size, self._once = smooth.Size(0.0, 0.0), Once()
 
     def grow(self, null: Fit, start: Fit) -> Grown:
         """From a start to where nothing more is added, taken away, exchanged or found from elsewhere."""
@@ -83,6 +64,8 @@ class Turns:
         for _ in range(TURNS):
             fit = self._counted(plain_null, fit)
             fit = self._pruned(fit)
+            if self._hopeless(fit):
+                return self._grown(fit)
             more = self._added(fit)
             if more is not None and self._hopeless(fit, more):
                 return self._grown(more)
@@ -114,28 +97,36 @@ class Turns:
     def _grown(self, fit) -> Grown:
         return Grown(self.forward, self.null, self._noted(fit), self.size, self.tried)
 
-    def _hopeless(self, fit, more) -> bool:
-        """Whether a set would stay behind its rival with all the effects that may still be added, from what
-        the last one gained.
+    def _hopeless(self, fit, more=None) -> bool:
+        """Whether a set would stay behind its rival with all the effects that may still be added, by slopes
+        beside it or, once there is one more, by what that gained.
         """
-        own, room = self._evidence(more), policy.MOST_EFFECTS - len(more.hypothesis.components)
-        return own + HOPED * max(1, room) * (own - self._evidence(fit)) < self.rival
+        own = self._evidence(fit)
+        if more is not None:
+            return prospects.by_last(own, self._evidence(more), self._room(more)) < self.rival
+        if not -np.inf < own < self.rival:
+            return False
+        scores = pairs.screened(self.forward, fit, self.setup)
+        return prospects.by_slopes(own, scores, self._room(fit)) < self.rival
+
+    def _room(self, fit) -> int:
+        """How many effects may still be added."""
+        return policy.MOST_EFFECTS - len(fit.hypothesis.components)
 
     def _counted(self, plain_null, fit):
         """The fit with the discrepancy at it counted as noise; what was tried under another is forgotten."""
         size = smooth.infer(self.plain, fit, self.known) if self.infer else smooth.Size(0.0, 0.0)
         size = size if size.found else smooth.Size(0.0, size.drop)
-        if self.null is None or not size.same(self.size):
-            self.forward = self.plain
+        anew = self.null is None or not size.same(self.size)
+        if anew:
+            self.forward, self._once = self.plain, Once()
             if size.size:
-                counted = smooth.with_size(
-                    self.plain.experiment, size.size, self.known, size.excess, size.kernel
-                )
-                self.forward = Forward(counted, self.plain.threads)
+                e, how = self.plain.experiment, (size.excess, size.kernel)
+                self.forward = self.plain.of(smooth.with_size(e, size.size, self.known, *how))
             self.null = restart.moved(self.forward, plain_null) if size.size else plain_null
             self.tried = {}
         self.size = size
-        fit = restart.moved(self.forward, fit)
+        fit = restart.moved(self.forward, fit) if anew else fit
         self._noted(fit)
         return fit
 
@@ -150,12 +141,16 @@ class Turns:
     def _pruned(self, fit):
         """Without effects that do not earn their evidence beside the others."""
         while fit.hypothesis.components:
-            less = self._settled(fit, self._each_less(fit, range(len(fit.hypothesis.components))))
-            weakest = min(less, key=lambda one: one.objective)
+            weakest = self._once.of(fit, "weakest", partial(self._weakest, fit))
             if self._earned(weakest, fit):
                 return fit
             fit = weakest
         return fit
+
+    def _weakest(self, fit):
+        """The best fit without one effect, whichever."""
+        less = self._settled(fit, self._each_less(fit, range(len(fit.hypothesis.components))))
+        return min(less, key=lambda one: one.objective)
 
     def _each_less(self, fit, which) -> list[Fit]:
         """The best fits without one effect, each of `which` in turn."""
@@ -163,11 +158,15 @@ class Turns:
         def without(branch, k):
             return restart.fewer(branch, self.null, fit, k, self.setup, pairs.ITERATIONS)
 
-        found = abreast.each(self.forward, without, which)
+        found = self._once.of_each(fit, which, lambda new: abreast.each(self.forward, without, new))
         for one in found:
             if one.hypothesis.components:
                 self._noted(one)
         return found
+
+    def _promised(self, fit) -> list[planes.Start]:
+        """Every effect beside those of a fit."""
+        return self._once.of(fit, "beside", partial(pairs.beside, self.forward, self.null, fit, self.setup))
 
     def _settled(self, fit, less: list[Fit]) -> list[Fit]:
         """Fits without one effect, the others at the places that are best for them alone."""
@@ -231,12 +230,12 @@ class Turns:
 
     def _beside(self, fit) -> Iterator[Fit]:
         """Fits with one effect more, the likeliest first."""
-        if len(fit.hypothesis.components) >= policy.MOST_EFFECTS:
+        if self._room(fit) < 1:
             return
-        starts = pairs.beside(self.forward, self.null, fit, self.setup)
+        starts = self._promised(fit)
         if self._thorough(1 + len(fit.hypothesis.components)):
             # Slopes promise little of some that strengths all over the range do.
-            starts += pairs.everywhere(self.forward, self.null, fit, self.setup, sizes=secants.finely)
+            starts = starts + pairs.everywhere(self.forward, self.null, fit, self.setup, sizes=secants.finely)
         yield from self._ranked(starts, self.null.objective - fit.objective + PROMISE * self._asked(fit))
 
     def _two(self, fit) -> Fit | None:
@@ -297,7 +296,7 @@ class Turns:
         for k in range(count if count > 1 or self.size.size else 0):
             less = self._less(fit, k)
             enough = PROMISE * (self.null.objective - fit.objective)
-            best = self._likeliest(pairs.beside(self.forward, self.null, less, self.setup), enough)
+            best = self._likeliest(self._promised(less), enough)
             if best is not None and self._evidence(best) > own + pairs.WORTH:
                 return best
         return None
@@ -312,8 +311,7 @@ class Turns:
         found = []
         for j, k in itertools.combinations(range(count), 2) if count > 2 else ():
             less = self._less(self._less(fit, k), j)
-            starts = pairs.beside(self.forward, self.null, less, self.setup)
-            found.append(self._likeliest(starts, PROMISE * gained))
+            found.append(self._likeliest(self._promised(less), PROMISE * gained))
         best = max((one for one in found if one is not None), key=self._evidence, default=None)
         better = best is not None and self._evidence(best) > self._evidence(fit) + pairs.WORTH
         return best if better else None
@@ -327,10 +325,10 @@ class Turns:
         gained, starts, ends = self.null.objective - fit.objective, {}, bounds.near(fit)
         for k, less in enumerate(self._each_less(fit, range(len(fit.hypothesis.components)))):
             left = self.null.objective - less.objective
-            promised = pairs.beside(self.forward, self.null, less, self.setup)
+            promised = self._promised(less)
             if any(ends[fit.hypothesis.columns[k]]):
                 # There it may tend to another law, of which slopes at the fit without it promise too little.
-                promised += pairs.instead(self.forward, self.null, fit, k, self.setup)
+                promised = promised + pairs.instead(self.forward, self.null, fit, k, self.setup)
             standing = [s for s in promised if s.gain > left + STANDS * (gained - left)]
             for s in sorted(standing, key=lambda s: -s.gain)[:STANDING]:
                 if s.effects not in self.tried:
