@@ -13,7 +13,7 @@ from sonicvacuum.discover.fit.refit import fit
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, variants
 from sonicvacuum.discover.model.problem import experiment
-from sonicvacuum.discover.search import around, pairs, planes
+from sonicvacuum.discover.search import around, pairs
 from sonicvacuum.discover.search.starts import setup_of
 from sonicvacuum.effects import effect
 
@@ -63,7 +63,7 @@ def one_contact_on():
         Component(effect(name), variants(effect(name), setup)[0], place=place)
         for name, place in (("sensor-gain", 1), ("contact-gap", 6))
     )
-    both = planes.joined(Hypothesis((gain,)), gap, setup)
+    both = Hypothesis((gain,)).with_component(gap)
     u = np.array([[c.inverse(value) for c, value in zip(both.coordinates, (1.2, 0.3), strict=True)]])
     return forward, null, fit(forward, both, u, null.nu[None])
 

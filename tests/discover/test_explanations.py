@@ -171,7 +171,7 @@ def test_no_bead_is_named_beside_a_shape_that_no_smooth_error_has(monkeypatch, p
     def fit(ids):
         return SimpleNamespace(hypothesis=SimpleNamespace(ids=ids, components=ids))
 
-    def fewer(_forward, _null, one, k, _setup):
+    def fewer(_forward, _null, one, k):
         return fit([name for place, name in enumerate(one.hypothesis.ids) if place != k])
 
     monkeypatch.setattr(beside.restart, "fewer", fewer)

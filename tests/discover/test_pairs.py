@@ -194,7 +194,7 @@ def test_a_pair_far_behind_is_spared_its_last_steps(monkeypatch):
     nu = np.zeros((1, forward.layout.size))
     starts = []
     for second, place in ((gain, 1), (other, 0)):
-        both = planes.joined(Hypothesis((drag,)), second, setup)
+        both = Hypothesis((drag,)).with_component(second)
         u = np.array([[c.inverse(v) for c, v in zip(both.coordinates, (300.0, 1.2), strict=True)]])
         starts.append(planes.Start(0.0, both, u, nu, np.array([[0, place]])))
     near, far = pairs.followed(forward, starts)

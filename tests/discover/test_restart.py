@@ -14,7 +14,7 @@ from sonicvacuum.discover.judge import decision
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, variants
 from sonicvacuum.discover.model.problem import experiment
-from sonicvacuum.discover.search import directions, pairs, planes, restart, screen, secants, singles
+from sonicvacuum.discover.search import directions, pairs, restart, screen, secants, singles
 from sonicvacuum.effects import effect
 
 GAP, MASS = ("contact-gap", {"gap_um": 0.15, "contact": 5}), ("mass-defect", {"mass_ratio": 0.95, "bead": 8})
@@ -31,7 +31,7 @@ def stuck():
         Component(effect(name), variants(effect(name), setup)[0], place=place)
         for name, place in (("contact-gap", 5), ("mass-defect", 6))
     )
-    hypothesis = planes.joined(Hypothesis((first,)), second, setup)
+    hypothesis = Hypothesis((first,)).with_component(second)
     start = [c.inverse(value) for c, value in zip(hypothesis.coordinates, (0.15, 1.02), strict=True)]
     return forward, fit(forward, hypothesis, np.array([start]), null.nu[None])
 
@@ -118,10 +118,10 @@ def test_a_single_effect_that_a_pair_leads_lower_is_followed_beyond_its_range():
         Hypothesis((alone,)), linearise(forward, Hypothesis((alone,)), np.zeros((1, 1)), null.nu[None])
     )
     own = Candidate("sensor-gain", start, null.objective - start.objective, 0.0, ((1, 1.0),), ())
-    both = planes.joined(Hypothesis((alone,)), drag, setup)
+    both = Hypothesis((alone,)).with_component(drag)
     at = np.array([[c.inverse(0.3) if c.parameter.name == "gain_ratio" else c.low for c in both.coordinates]])
     pair = pairs.combination(null, fit(forward, both, at, np.zeros((1, forward.layout.size))), setup)
-    (found,) = restart.lower(forward, null, [pair], [own], setup)
+    (found,) = restart.lower(forward, null, [pair], [own])
     assert found.flags == ("beyond",)
     assert np.exp(found.fit.u[0]) == pytest.approx(0.08, rel=0.1)  # each gauge's own gain is known to 2 %
 
@@ -135,15 +135,15 @@ def test_an_effect_of_which_slopes_promised_nothing_is_fitted_alone_where_a_pair
         Component(effect(name), variants(effect(name), setup)[0], place=place)
         for name, place in (("sensor-gain", 1), ("viscous-drag", None))
     )
-    both = planes.joined(Hypothesis((gain,)), drag, setup)
+    both = Hypothesis((gain,)).with_component(drag)
     at = np.array([[c.inverse(1.3) if c.parameter.name == "gain_ratio" else c.low for c in both.coordinates]])
     pair = pairs.combination(null, fit(forward, both, at, null.nu[None]), setup)
     alone = Hypothesis((gain,))
     rival = Fit(alone, linearise(forward, alone, np.log([[1.1]]), null.nu[None]))
     if not ahead:
-        rival = polish(forward, restart.less(forward, pair.fit, 1, setup))
+        rival = polish(forward, restart.less(forward, pair.fit, 1))
     other = Candidate("viscous-drag", rival, null.objective - rival.objective, 0.0)
-    found = restart.lower(forward, null, [pair], [other], setup)
+    found = restart.lower(forward, null, [pair], [other])
     if not ahead:
         assert found is None
         return

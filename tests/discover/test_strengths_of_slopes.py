@@ -16,7 +16,7 @@ def seen(empty):
     forward = Forward(experiment(empty))
     null = wide.nominal(forward)
     families = ways.catalogue(singles.setup_of(forward), forward.experiment.excluded)
-    return forward, null, [*families, *unknown.families(forward, null)]
+    return forward, null, [*families, *unknown.families(forward)]
 
 
 def sloped(seen, family, rough=False):

@@ -104,7 +104,7 @@ class _Weighed:
         """The same fit less each of its effects, where there are several."""
         count = len(fit.hypothesis.components)
         forward, null = self.found.forward, self.found.null
-        return [restart.fewer(forward, null, fit, k, self.setup) for k in range(count) if count > 1]
+        return [restart.fewer(forward, null, fit, k) for k in range(count) if count > 1]
 
     def _searched(self, base: Fit) -> _Account | None:
         """Some effects with the law beside them, where it earns its place."""

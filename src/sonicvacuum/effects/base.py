@@ -167,7 +167,6 @@ class Effect:
         of_material: whether it belongs to the contact material, so that beads of another size have it too.
         depends_on_orientation: whether its off value is the chain's recorded orientation, so that records
             that hang differently cannot be asked about it together.
-        slow: whether its law costs several times as much as others, and is compiled only where it is needed.
         source: where it is from, None for the effects of the project.
     """
 
@@ -189,7 +188,6 @@ class Effect:
     stated: Callable | None = field(default=None, repr=False)
     of_material: bool = False
     depends_on_orientation: bool = False
-    slow: bool = False
     source: Source | None = None
 
     def parameter(self, name: str) -> Parameter:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 from sonicvacuum.effects.sized import ratios_of, sized
@@ -38,11 +37,6 @@ class Catalogue:
 
     def __contains__(self, id: str) -> bool:
         return any(e.id == id for e in (*self.effects, *self.besides))
-
-    @cached_property
-    def kept(self) -> dict:
-        """What has been worked out of these effects once, for whoever asks again; no part of the value."""
-        return {}
 
     @property
     def ids(self) -> tuple[str, ...]:

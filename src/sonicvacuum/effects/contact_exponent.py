@@ -49,5 +49,4 @@ EFFECT = Effect(
     dissipative=False,
     change=change,
     of_material=True,
-    slow=True,
 )

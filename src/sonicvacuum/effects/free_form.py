@@ -109,5 +109,4 @@ EFFECT = Effect(
     dissipative=True,
     change=change,
     of_material=True,
-    slow=True,
 )

@@ -42,5 +42,4 @@ EFFECT = Effect(
     dissipative=True,
     change=change,
     of_material=True,
-    slow=True,
 )

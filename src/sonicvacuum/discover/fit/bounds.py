@@ -88,7 +88,7 @@ def _further(forward: Forward, fit: Fit, soon: float) -> Fit:
     at = stuck(fit, soon)
     wider = iter([_wider(c, soon) if s else c for c, s in zip(fit.hypothesis.coordinates, at, strict=True)])
     parts = tuple(replace(c, free=tuple(next(wider) for _ in c.free)) for c in fit.hypothesis.components)
-    return polish(forward, Fit(Hypothesis(parts, fit.hypothesis.common), fit.normal, others=fit.others))
+    return polish(forward, Fit(Hypothesis(parts), fit.normal, others=fit.others))
 
 
 def _off_below(c: Coordinate) -> bool:

@@ -83,7 +83,7 @@ class Beside:
             if nearest or (k not in kept and not self._ahead(fit_, k)):
                 name = fit_.hypothesis.ids[k]
                 reasons.append(f"{name} may be no more than the nearest to what is left in {seen.group}")
-                fit_ = restart.fewer(grown.forward, grown.null, fit_, k, self.setup)
+                fit_ = restart.fewer(grown.forward, grown.null, fit_, k)
         return fit_
 
     def _inside(self, one: Fit, k: int) -> bool:
@@ -101,7 +101,7 @@ class Beside:
         with_it = restart.moved(self.forward, whole)
         if self.null.objective - with_it.objective < singles.NONLINEAR:
             return False
-        less = restart.fewer(self.forward, self.null, with_it, k, self.setup)
+        less = restart.fewer(self.forward, self.null, with_it, k)
         gain = less.objective - with_it.objective
         instead = smooth.infer(self.forward, less, self.known).log_odds
         beside = smooth.infer(self.forward, with_it, self.known).log_odds

@@ -55,7 +55,7 @@ class Case:
         """Name the best single, a pair, more, or unknown."""
         best, forward = self.found[0], self.forward
         beside = directions.catalogue(self.setup, (best.effect, *forward.experiment.excluded))
-        scores = screen.screen(forward, best.fit, beside, also=unknown.families(forward, best.fit))
+        scores = screen.screen(forward, best.fit, beside, also=unknown.families(forward))
         needed = scores.threshold(policy.FALSE_ALARM)
         shape, most = unknown.simplest(self.forward, self.null)
         seen = left(self.forward, best.fit, self.known, scores, short(best.gain, most))
@@ -103,14 +103,14 @@ class Case:
         """Name the first pair that leaves nothing and gains enough over the best single; else go on."""
         of_two = pairs.Pairs(self.forward, self.null, self.scores, self.found)
         tried = of_two.search()
-        lower = restart.lower(self.forward, self.null, tried[:ASKED], self.found, self.setup)
+        lower = restart.lower(self.forward, self.null, tried[:ASKED], self.found)
         if lower is not None:
             return self._anew(lower)
         passed, start, lowest = self._passing(tried, needed, most, alarms, seen)
         if passed is None and not gross.gross(self.forward, start, self.known):
             asked, tried = tried[:ASKED], of_two.again()
             if [id(pair) for pair in tried[:ASKED]] != [id(pair) for pair in asked]:
-                lower = restart.lower(self.forward, self.null, tried[:ASKED], self.found, self.setup)
+                lower = restart.lower(self.forward, self.null, tried[:ASKED], self.found)
                 if lower is not None:
                     return self._anew(lower)
                 passed, start, lowest = self._passing(tried, needed, most, alarms, seen)

@@ -23,7 +23,7 @@ from sonicvacuum.discover.judge import explanations, rivals, weighing
 from sonicvacuum.discover.judge.rivals import Rival
 from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.forward import Forward
-from sonicvacuum.discover.search import pairs, planes, profiles, restart, screen, singles, unknown
+from sonicvacuum.discover.search import pairs, profiles, restart, screen, singles, unknown
 from sonicvacuum.effects import Setup
 
 # Third effects, and further ones, that are fitted beside what stands out.
@@ -91,7 +91,7 @@ def standing_out(
         probable = rivals.of_weights(weights, found)
         if set(ranked[0].effects) & _PROFILES:
             return first or Standing(None, odds, loss, {}, rivals=probable)
-        fit = _told_apart(forward, null, ranked, odds, loss, setup)
+        fit = _told_apart(forward, null, ranked, odds, loss)
         if fit is None:
             return first or Standing(None, odds, loss, weights, rivals=probable)
         merged, said = weighing.merged(weights, fit.hypothesis.ids), _instead(forward, ranked, weights)
@@ -162,7 +162,7 @@ def _crossed(forward, null, found: list[Combination], setup: Setup) -> list[Comb
 
     def crossed(branch, other):
         best = alone[0].fit
-        hypothesis = planes.joined(best.hypothesis, other.fit.hypothesis.components[0], setup)
+        hypothesis = best.hypothesis.with_component(other.fit.hypothesis.components[0])
         u = np.concatenate([best.u, other.fit.u])
         nu = np.array([best.nu, other.fit.nu])
         one = fit(branch, hypothesis, np.array([u, u]), nu, iterations=pairs.ITERATIONS)
@@ -200,7 +200,7 @@ def _more(forward, null, fit: Fit, setup: Setup, found) -> list[Combination]:
     return [pairs.combination(null, one, setup) for one in fits if np.isfinite(one.objective)]
 
 
-def _told_apart(forward, null, ranked, odds, loss, setup) -> Fit | None:
+def _told_apart(forward, null, ranked, odds, loss) -> Fit | None:
     """The best explanation without the effects that do not stand out, are hardly seen, or gain no more than
     one shape outside the catalogue would in their place, unless to do without strains what is stated.
     """
@@ -208,7 +208,7 @@ def _told_apart(forward, null, ranked, odds, loss, setup) -> Fit | None:
     prior = weighing.prior_beside(forward, fit)
     seen = [z > policy.SEEN for z in fit.hypothesis.strengths(fit.u, prior.sigma(fit))]
     for k in reversed(range(len(ranked[0].effects))):
-        less = _less(forward, null, fit, k, ranked, setup)
+        less = _less(forward, null, fit, k, ranked)
         likely = _surely_there(fit.hypothesis, k, odds, loss)
         if not (seen[k] and likely) or not (prior.strains(less, fit) or _ahead(forward, less, fit)):
             fit = less
@@ -225,9 +225,9 @@ def _surely_there(hypothesis, k: int, odds: Mapping[str, float], loss: float) ->
     return max(odds[own], loss if one_of else 0.0) > policy.STANDS_OUT
 
 
-def _less(forward, null, fit: Fit, k: int, ranked, setup) -> Fit:
+def _less(forward, null, fit: Fit, k: int, ranked) -> Fit:
     """The best fit known without effect k."""
-    here = restart.fewer(forward, null, fit, k, setup)
+    here = restart.fewer(forward, null, fit, k)
     same = [c.fit for c in ranked if set(c.effects) == set(here.hypothesis.ids)]
     return min([here, *same], key=lambda f: f.objective)
 

@@ -7,11 +7,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from sonicvacuum.discover.model import flexible
 from sonicvacuum.discover.model.parameters import Coordinate, coordinate
 from sonicvacuum.effects import Effect, Setup
-
-FLEXIBLE = "flexible"
 
 
 @dataclass(frozen=True)
@@ -41,14 +38,9 @@ class Component:
 
 @dataclass(frozen=True)
 class Hypothesis:
-    """Effects in force together.
-
-    `common` composes the force law of all fast laws of the catalogue that can act, those not in force being
-    off, so that any combination runs in one compiled stepper.
-    """
+    """Effects in force together."""
 
     components: tuple[Component, ...] = ()
-    common: bool = False
 
     @property
     def coordinates(self) -> tuple[Coordinate, ...]:
@@ -58,11 +50,10 @@ class Hypothesis:
     @property
     def key(self) -> tuple:
         """What tells this hypothesis from others of the same catalogue."""
-        parts = [
+        return tuple(
             (c.effect.id, c.place, tuple(x.parameter.name for x in c.free), tuple(sorted(c.fixed.items())))
             for c in self.components
-        ]
-        return (self.common, *parts)
+        )
 
     @property
     def columns(self) -> tuple[slice, ...]:
@@ -119,7 +110,7 @@ class Hypothesis:
                 at = None if places is None else places[index, k]
                 given = component.parameters(u[index, columns[k]], at)
                 setup = component.effect.apply(setup, **given)
-            return with_common_laws(setup, self.ids) if self.common else setup
+            return setup
 
         return changed
 
@@ -148,47 +139,10 @@ def of_one_strength(free: tuple[Coordinate, ...]) -> bool:
     return sum(c.parameter.switches for c in free) == 1
 
 
-def without(hypothesis: Hypothesis, u: np.ndarray, k: int, setup: Setup) -> tuple[Hypothesis, np.ndarray]:
+def without(hypothesis: Hypothesis, u: np.ndarray, k: int) -> tuple[Hypothesis, np.ndarray]:
     """A hypothesis and its coordinates with effect k taken away."""
     left = tuple(c for j, c in enumerate(hypothesis.components) if j != k)
-    laws = sum(is_law(c.effect, setup) for c in left)
-    return replace(hypothesis, components=left, common=hypothesis.common and laws > 1), np.delete(
-        u, np.arange(*hypothesis.columns[k].indices(len(u)))
-    )
-
-
-def with_common_laws(setup: Setup, present: tuple[str, ...]) -> Setup:
-    """The setup with all fast laws of its catalogue in its force law, those not `present` at their off
-    values.
-
-    The flexible law is among them.
-    """
-    kept = setup.catalogue.kept
-    # The same for all chains of a kind, and asked for with every call.
-    kind = (present, setup.chain.beads, tuple(a.term.name for a in setup.chain.actions))
-    if kind not in kept:
-        kept[kind] = _laws_beside(setup, present)
-    for effect in kept[kind]:
-        setup = _switched_off(effect, setup)
-    return flexible.add(setup) if FLEXIBLE not in present else setup
-
-
-def _laws_beside(setup, present):
-    """Effects that add to the force law, not `present` and not slow: slow ones join only where needed."""
-    found = []
-    for effect in setup.catalogue.candidates(setup, present):
-        if effect.places or effect.slow:
-            continue
-        changed = _switched_off(effect, setup)
-        if len(changed.chain.actions) > len(setup.chain.actions):
-            found.append(effect)
-            setup = changed
-    return tuple(found)
-
-
-def _switched_off(effect, setup):
-    """The setup with an effect in it that does nothing."""
-    return effect.change(setup, **{p.name: p.at(0.0, setup) for p in effect.parameters})
+    return Hypothesis(left), np.delete(u, np.arange(*hypothesis.columns[k].indices(len(u))))
 
 
 def variants(effect: Effect, setup: Setup) -> tuple[tuple[Coordinate, ...], ...]:

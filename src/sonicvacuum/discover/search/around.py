@@ -82,7 +82,7 @@ def _trials(forward, one, k, setup):
     signs = (1.0, -1.0) if strength.two_sided else (1.0,)
     sizes = np.concatenate([places.stronger(strength, own, sign * FACTORS) for sign in signs])
     # At its own minimum the model without the effect makes up for it, and the true place may look the worse.
-    bare = restart.less(forward, one, k, setup)
+    bare = restart.less(forward, one, k)
     if not np.isfinite(bare.objective):
         return []
     tried = secants.tried(forward, bare, component, setup, TRIALS, np.unique(sizes), near)

@@ -6,12 +6,12 @@ readings to answer in proportion, and large enough to stand clear of numerical e
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from sonicvacuum.discover.model.forward import Forward
-from sonicvacuum.discover.model.hypothesis import Hypothesis, is_law, with_common_laws
+from sonicvacuum.discover.model.hypothesis import Hypothesis
 from sonicvacuum.discover.model.parameters import coordinate, shape_grid
 from sonicvacuum.discover.model.slopes import among
 from sonicvacuum.effects import Effect, Setup
@@ -54,7 +54,6 @@ class Family:
         change: (setup, lane index, (lanes,) strengths) → setup, lane k departing in direction k.
         trial: strength that about changes the data by as much as they are, for the first trial.
         least: smallest strength at which the change is what it is called (a gap opens at once).
-        common: whether the change composes the common law set itself.
         acts_like: the nuisance that the strength moves exactly as, see `effects.Parameter`; None for none.
     """
 
@@ -62,13 +61,10 @@ class Family:
     change: Callable[[Setup, np.ndarray, np.ndarray], Setup]
     trial: float = TRIAL
     least: float = WEAKEST
-    common: bool = False
     acts_like: str | None = None
 
 
-def of_effect(
-    effect: Effect, setup: Setup, common: bool = False, present: tuple[str, ...] = ()
-) -> list[Family]:
+def of_effect(effect: Effect, setup: Setup) -> list[Family]:
     """The families of one effect: one for each of its strengths."""
     places = effect.candidates(setup) if effect.places else (None,)
     families = []
@@ -81,12 +77,12 @@ def of_effect(
         )
         if directions:
             least = max(strength.least_strength, WEAKEST)
-            change = _change(effect, strength, grid, common, present)
-            families.append(Family(directions, change, TRIAL, least, common, strength.acts_like))
+            change = _change(effect, strength, grid)
+            families.append(Family(directions, change, TRIAL, least, strength.acts_like))
     return families
 
 
-def _change(effect, strength, grid, common, present):
+def _change(effect, strength, grid):
     places = np.array([g[0] for g in grid])
     shapes = {name: np.array([g[1][name] for g in grid]) for name in grid[0][1]}
 
@@ -95,8 +91,7 @@ def _change(effect, strength, grid, common, present):
         given[strength.name] = _at(strength, strengths, setup)
         if effect.places:
             given[effect.places] = places[index].astype(int)
-        changed = effect.apply(setup, **given)
-        return with_common_laws(changed, (*present, effect.id)) if common else changed
+        return effect.apply(setup, **given)
 
     return change
 
@@ -113,15 +108,8 @@ def _at(parameter, strength, setup):
 
 
 def catalogue(setup: Setup, present: tuple[str, ...] = ()) -> list[Family]:
-    """Families of all effects of the setup's catalogue that can act in it, but those in force; a law joins
-    the common law set where another is in force.
-    """
-    families = []
-    laws = any(is_law(e, setup) for e in setup.catalogue if e.id in present)
-    for effect in setup.catalogue.candidates(setup, present):
-        common = laws and is_law(effect, setup)
-        families += of_effect(effect, setup, common, present)
-    return families
+    """Families of all effects of the setup's catalogue that can act in it, but those in force."""
+    return [family for e in setup.catalogue.candidates(setup, present) for family in of_effect(e, setup)]
 
 
 def like_nuisance(forward: Forward, family: Family, base: list[np.ndarray], free: int):
@@ -149,7 +137,7 @@ def simulate(forward: Forward, hypothesis: Hypothesis, u, nu, family: Family, ro
     `rough`: from one difference instead of two, enough for a ranking. Strengths that served a family before
     are where it starts.
     """
-    what = ("slopes", family.directions, family.common, rough)
+    what = ("slopes", family.directions, rough)
     return forward.memory.recalled(
         hypothesis, u, nu, what, lambda: _simulated(forward, hypothesis, u, nu, family, rough)
     )
@@ -158,8 +146,6 @@ def simulate(forward: Forward, hypothesis: Hypothesis, u, nu, family: Family, ro
 def _simulated(forward, hypothesis, u, nu, family, rough):
     """The same, simulated."""
     count = len(family.directions)
-    if family.common:
-        hypothesis = replace(hypothesis, common=False)
 
     def sloped(strengths, some):
         """For each run the changes (K', M) with some directions, and their slopes."""

@@ -19,7 +19,7 @@ from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, of_one_strength, variants
 from sonicvacuum.discover.search import around, directions, restart, screen, secants
-from sonicvacuum.discover.search.planes import Start, joined, linear, variant
+from sonicvacuum.discover.search.planes import Start, linear, variant
 from sonicvacuum.discover.search.starts import setup_of, starts_of
 from sonicvacuum.effects import Setup
 
@@ -162,7 +162,7 @@ def _let_go(candidates: list[Candidate], start: Start) -> Start:
     for c in start.hypothesis.components:
         further = {x.parameter.name: x for x in alone.get(c.effect.id, ())}
         parts.append(replace(c, free=tuple(further.get(x.parameter.name, x) for x in c.free)))
-    return replace(start, hypothesis=Hypothesis(tuple(parts), start.hypothesis.common))
+    return replace(start, hypothesis=Hypothesis(tuple(parts)))
 
 
 def _key(start: Start, best: Combination) -> tuple:
@@ -226,7 +226,7 @@ def beside(forward: Forward, null: Fit, first: Fit, setup: Setup, only: str = ""
         u = np.column_stack([np.repeat(first.u[None], len(u), axis=0), u])
         places = np.zeros((len(u), 1), dtype=int) if places is None else places
         places = np.column_stack([np.tile(own, (len(u), 1)), places])
-        hypothesis = joined(first.hypothesis, Component(effect, free), setup)
+        hypothesis = first.hypothesis.with_component(Component(effect, free))
         return Start(gained + more, hypothesis, u, nu, places)
 
     return [s for s in abreast.each(forward, start, asked, calls=abreast.SLOPES) if s is not None]
@@ -236,7 +236,7 @@ def instead(forward: Forward, null: Fit, one: Fit, k: int, setup: Setup) -> list
     """Every effect of the catalogue, tried all over its range, in place of effect k of a set; all others
     stand where they are.
     """
-    beside = restart.less(forward, one, k, setup)
+    beside = restart.less(forward, one, k)
     return everywhere(forward, null, beside, setup, one.hypothesis.ids)
 
 
@@ -250,7 +250,7 @@ def everywhere(
 
     def start(branch, component):
         trials = secants.tried(branch, beside, component, setup, TRIALS, sizes(component.free[0]))
-        return _tried(beside, component, trials, left, setup) if trials else None
+        return _tried(beside, component, trials, left) if trials else None
 
     present = (*beside.hypothesis.ids, *known, *forward.experiment.excluded)
     components = [
@@ -261,9 +261,9 @@ def everywhere(
     return [s for s in abreast.each(forward, start, components) if s is not None]
 
 
-def _tried(beside: Fit, component: Component, trials, left: float, setup: Setup) -> Start:
+def _tried(beside: Fit, component: Component, trials, left: float) -> Start:
     """The start of one effect beside others from its best trials."""
-    hypothesis = joined(beside.hypothesis, component, setup)
+    hypothesis = beside.hypothesis.with_component(component)
     u = hypothesis.inside(np.array([[*t.beside, *t.u] for t in trials]))
     own = [c.place or 0 for c in beside.hypothesis.components]
     places = np.array([[*own, t.place or 0] for t in trials])

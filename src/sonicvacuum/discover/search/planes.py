@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, is_law, variants
+from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, variants
 from sonicvacuum.discover.search import screen
 from sonicvacuum.discover.search.starts import coordinates
 from sonicvacuum.effects import Setup
@@ -106,7 +106,7 @@ def _from_plane(scores, setup, ks, strengths, gain):
     for k, strength in zip(ks, strengths, strict=True):
         d = scores.directions[k]
         free = variant(d, setup)
-        hypothesis = joined(hypothesis, Component(setup.catalogue.effect(d.effect), free), setup)
+        hypothesis = hypothesis.with_component(Component(setup.catalogue.effect(d.effect), free))
         u = np.append(u, coordinates(free, d, strength))
         places.append(d.place or 0)
     return Start(float(gain), hypothesis, hypothesis.inside(u[None]), nu[None], np.array([places]))
@@ -116,10 +116,3 @@ def variant(direction, setup):
     """The free parameters of an effect whose strength is that of a direction."""
     options = variants(setup.catalogue.effect(direction.effect), setup)
     return next(v for v in options if v[0].parameter.name == direction.strength)
-
-
-def joined(hypothesis: Hypothesis, component: Component, setup: Setup) -> Hypothesis:
-    """A hypothesis with one effect more; two force laws share the common law set."""
-    laws = is_law(component.effect, setup) and any(is_law(c.effect, setup) for c in hypothesis.components)
-    more = hypothesis.with_component(component)
-    return Hypothesis(more.components, hypothesis.common or laws)

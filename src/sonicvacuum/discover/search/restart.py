@@ -41,7 +41,7 @@ def _trials(forward, one, k, setup):
     component = one.hypothesis.components[k]
     if not of_one_strength(component.free):
         return []
-    beside = less(forward, one, k, setup)
+    beside = less(forward, one, k)
     if not np.isfinite(beside.objective):
         return []
     sizes = secants.finely(component.free[0])
@@ -68,18 +68,16 @@ def moved(forward: Forward, one: Fit, iterations: int = ITERATIONS) -> Fit:
     return fit(forward, one.hypothesis, np.repeat(one.u[None], 2, axis=0), nu, iterations=iterations)
 
 
-def fewer(
-    forward: Forward, null: Fit, one: Fit, k: int, setup: Setup, iterations: int = refit.ITERATIONS
-) -> Fit:
+def fewer(forward: Forward, null: Fit, one: Fit, k: int, iterations: int = refit.ITERATIONS) -> Fit:
     """The best fit without effect k, from where a fit stands; `null` where none is left."""
     if len(one.hypothesis.components) == 1:
         return null
-    return moved(forward, less(forward, one, k, setup), iterations)
+    return moved(forward, less(forward, one, k), iterations)
 
 
-def less(forward: Forward, one: Fit, k: int, setup: Setup) -> Fit:
+def less(forward: Forward, one: Fit, k: int) -> Fit:
     """A fit with effect k taken away and all else as it stands."""
-    hypothesis, u = without(one.hypothesis, one.u, k, setup)
+    hypothesis, u = without(one.hypothesis, one.u, k)
     return Fit(hypothesis, linearise(forward, hypothesis, u[None], one.nu[None]))
 
 
@@ -90,7 +88,7 @@ def promised(one: Fit) -> float:
 
 
 def lower(
-    forward: Forward, null: Fit, found: list[Combination], singles: list[Candidate], setup: Setup
+    forward: Forward, null: Fit, found: list[Combination], singles: list[Candidate]
 ) -> list[Candidate] | None:
     """Single effects with those fitted anew that pairs, less their other effect, lead to lower minima; None
     where there are none.
@@ -106,7 +104,7 @@ def lower(
             before = own.fit.objective if own else least
             if np.isinf(before):
                 continue
-            one = less(forward, pair.fit, k, setup)
+            one = less(forward, pair.fit, k)
             if not one.normal.has_slopes[0] or promised(one) > before - LOWER:
                 continue
             inside = polish(forward, one)

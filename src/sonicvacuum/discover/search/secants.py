@@ -7,19 +7,13 @@ projected out.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.model.forward import Forward
-from sonicvacuum.discover.model.hypothesis import (
-    Component,
-    is_law,
-    of_one_strength,
-    variants,
-    with_common_laws,
-)
+from sonicvacuum.discover.model.hypothesis import Component, of_one_strength, variants
 from sonicvacuum.discover.model.parameters import Coordinate, shape_grid
 from sonicvacuum.discover.search import directions as ways
 from sonicvacuum.discover.search import screen
@@ -99,7 +93,7 @@ def tried(
     ]
     if not rows:
         return []
-    seen = _screened(forward, fit, component, setup, rows)
+    seen = _screened(forward, fit, component, rows)
     gain = 2.0 * seen.projected[0] - np.diag(seen.projected[1])
     order = np.argsort(-gain, kind="stable")[:most]
     names = tuple(c.parameter.name for c in free)
@@ -135,15 +129,12 @@ def _inside(free, u) -> bool:
     return shapes and free[0].low < u[0] < free[0].high
 
 
-def _screened(forward, fit, component, setup, rows):
+def _screened(forward, fit, component, rows):
     """The screen whose directions are the finite changes themselves."""
     effect, free = component.effect, component.free
     where = np.array([place for place, _ in rows])
     values = {c.parameter.name: c.value(np.array([u[k] for _, u in rows])) for k, c in enumerate(free)}
     strength = free[0].parameter
-    present = fit.hypothesis.ids
-    # Two laws take part in the common law set, whichever is in force.
-    common = is_law(effect, setup) and any(is_law(c.effect, setup) for c in fit.hypothesis.components)
 
     def change(setup, index, strengths):
         given = {name: value[index] for name, value in values.items()}
@@ -151,11 +142,9 @@ def _screened(forward, fit, component, setup, rows):
         given[strength.name] = np.where(strengths > 0.0, given[strength.name], off)
         if effect.places:
             given[effect.places] = where[index]
-        changed = effect.apply(setup, **given)
-        return with_common_laws(changed, (*present, effect.id)) if common else changed
+        return effect.apply(setup, **given)
 
     family = Family(tuple(Direction(effect.id, strength.name, place=p) for p, _ in rows), change)
     base = forward.columns(fit.hypothesis, fit.u[None], fit.nu[None], precise=True)
-    alone = replace(fit.hypothesis, common=False) if common else fit.hypothesis
-    columns = ways.finite(forward, alone, fit.u, fit.nu, family)
+    columns = ways.finite(forward, fit.hypothesis, fit.u, fit.nu, family)
     return screen.from_columns(forward, fit, family.directions, base, columns)

@@ -156,7 +156,7 @@ class Turns:
         """The best fits without one effect, each of `which` in turn."""
 
         def without(branch, k):
-            return restart.fewer(branch, self.null, fit, k, self.setup, pairs.ITERATIONS)
+            return restart.fewer(branch, self.null, fit, k, pairs.ITERATIONS)
 
         found = self._once.of_each(fit, which, lambda new: abreast.each(self.forward, without, new))
         for one in found:

@@ -18,7 +18,6 @@ from sonicvacuum.discover.fit.normal import linearise
 from sonicvacuum.discover.fit.refit import Fit, polish
 from sonicvacuum.discover.model import flexible
 from sonicvacuum.discover.model.forward import Forward
-from sonicvacuum.discover.model.hypothesis import FLEXIBLE, with_common_laws
 from sonicvacuum.discover.search import directions as ways
 from sonicvacuum.discover.search import profiles, screen
 from sonicvacuum.discover.search.directions import Direction, Family
@@ -65,7 +64,7 @@ def shape_test(forward: Forward, fit: Fit, catalogue: screen.Screen | None = Non
     shapes = list(distortions(forward, fit)) if _traced(forward) else []
     scalars = scalar_directions(forward)
     shapes += [scalars] if scalars else []
-    whole = _screened(forward, fit, families(forward, fit), shapes, rough=True)
+    whole = _screened(forward, fit, families(forward), shapes, rough=True)
     groups = _groups(whole)
     if catalogue is not None and len(catalogue.z):
         groups["catalogue"] = _largest(catalogue)
@@ -176,23 +175,22 @@ def _largest(catalogue):
     return largest, 1, min(1.0, trials * tails.chi_squared(largest, 1))
 
 
-def families(forward: Forward, fit: Fit) -> list[Family]:
+def families(forward: Forward) -> list[Family]:
     """The flexible law; stiffness of each contact and mass of each bead, one by one and as profiles."""
-    found = [_law(fit.hypothesis.ids)]
+    found = [_law()]
     return (
         [*found, _places(forward.experiment.beads), profiles.family()] if forward.experiment.beads else found
     )
 
 
-def _law(present):
+def _law():
     directions = [Direction("law", f"a{k}", two_sided=True) for k in range(flexible.CONTACT + flexible.DRAG)]
 
     def change(setup, index, strengths):
         contact, drag = flexible.changes(index, strengths)
-        changed = flexible.add(setup, contact, drag)
-        return with_common_laws(changed, (*present, FLEXIBLE))
+        return flexible.add(setup, contact, drag)
 
-    return Family(tuple(directions), change, 0.15, common=True)
+    return Family(tuple(directions), change, 0.15)
 
 
 def _places(beads):
