@@ -15,7 +15,7 @@ def friction(velocity, deceleration):
     return -deceleration * s * (1.5 - 0.5 * s * s)
 
 
-TERM = Term("guide-friction", "body", friction, 1, strengths=(0,))
+TERM = Term("guide-friction", "body", friction, 1)
 
 
 def coefficients(chain, stiffness, mass, force):

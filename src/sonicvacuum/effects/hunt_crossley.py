@@ -9,7 +9,7 @@ def hunt_crossley_force(delta, rate, elastic, damping):
     return 1.5 * damping * elastic * rate
 
 
-TERM = Term("hunt-crossley", "force", hunt_crossley_force, 1, strengths=(0,))
+TERM = Term("hunt-crossley", "force", hunt_crossley_force, 1)
 
 
 def coefficients(chain, stiffness, mass, damping):

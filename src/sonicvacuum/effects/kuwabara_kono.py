@@ -12,7 +12,7 @@ def viscoelastic_force(delta, rate, elastic, damping):
     return damping * root(delta) * rate
 
 
-TERM = Term("kuwabara-kono", "force", viscoelastic_force, 1, strengths=(0,))
+TERM = Term("kuwabara-kono", "force", viscoelastic_force, 1)
 
 
 def coefficients(chain, stiffness, mass, time):

@@ -9,7 +9,7 @@ def dashpot_force(delta, rate, elastic, damping):
     return damping * rate
 
 
-TERM = Term("linear-dashpot", "force", dashpot_force, 1, strengths=(0,))
+TERM = Term("linear-dashpot", "force", dashpot_force, 1)
 
 
 def coefficients(chain, stiffness, mass, damping):

@@ -16,7 +16,7 @@ def plastic_force(delta, loading, largest, top, residual):
     return select(residual * (largest - delta), top * power_3_2(share), loading)
 
 
-TERM = Term("plastic-contact", "path", plastic_force, 1, strengths=(0,))
+TERM = Term("plastic-contact", "path", plastic_force, 1)
 
 
 def coefficients(chain, stiffness, mass, residual):

@@ -12,7 +12,7 @@ def tsuji_force(delta, rate, elastic, damping):
     return damping * root(root(delta)) * rate
 
 
-TERM = Term("tsuji", "force", tsuji_force, 1, strengths=(0,))
+TERM = Term("tsuji", "force", tsuji_force, 1)
 
 
 def coefficients(chain, stiffness, mass, alpha):

@@ -10,7 +10,7 @@ def velocity_power_force(delta, rate, elastic, gamma, excess):
     return gamma * rate * power(absolute(rate), excess)
 
 
-TERM = Term("velocity-power", "force", velocity_power_force, 2, strengths=(0,))
+TERM = Term("velocity-power", "force", velocity_power_force, 2)
 
 
 def coefficients(chain, stiffness, mass, gamma, alpha):

@@ -9,7 +9,7 @@ def drag(velocity, rate):
     return -rate * velocity
 
 
-TERM = Term("viscous-drag", "body", drag, 1, strengths=(0,))
+TERM = Term("viscous-drag", "body", drag, 1)
 
 
 def coefficients(chain, stiffness, mass, rate):

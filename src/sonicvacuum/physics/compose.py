@@ -5,15 +5,14 @@ They fill what the stepper leaves open (see `table`), and are written as LLVM's 
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 from llvmlite import ir
 
-from sonicvacuum.physics.arithmetic import LANES_KIND, constant, is_any_positive, splat
+from sonicvacuum.physics.arithmetic import LANES_KIND, constant, splat
 from sonicvacuum.physics.composition import REST, REST_FORCE, Composition, U, V
 from sonicvacuum.physics.cubic import hermite, highest
-from sonicvacuum.physics.lanes import LANES, absolute, positive, select, without_fusing
+from sonicvacuum.physics.lanes import LANES, positive, select, without_fusing
 from sonicvacuum.physics.laws import Term
 from sonicvacuum.physics.tracing import Number, worked_out
 
@@ -61,37 +60,10 @@ class _Code:
     def _first(self, term):
         return self.composition.first_coefficient + self.laws.first_coefficient[term.name]
 
-    def acting(self, term: Term, otherwise: Number, value: Callable[[], Number]) -> Number:
-        """What `value` writes of a term, passed over where its strengths are zero in all lanes.
-
-        A term that has the law set to itself (beside the elastic one) is there because it acts.
-        """
-        if not term.strengths or len(self.laws.terms) < 3:
-            return value()
-        start, (first, *others) = self._first(term), term.strengths
-        sizes = absolute(self.read(start + first))
-        for k in others:
-            sizes = sizes + absolute(self.read(start + k))
-        acts, after = self.builder.append_basic_block(), self.builder.append_basic_block()
-        before = self.builder.block
-        self.builder.cbranch(is_any_positive(self.builder, sizes.value), acts, after)
-        self.builder.position_at_end(acts)
-        found, end = value().value, self.builder.block
-        self.builder.branch(after)
-        self.builder.position_at_end(after)
-        chosen = self.builder.phi(self.kind)
-        chosen.add_incoming(otherwise.value, before)
-        chosen.add_incoming(found, end)
-        return Number(self.builder, chosen)
-
     def with_terms(self, slot: str, total: Number, *arguments: Number) -> Number:
         """A total with what all terms of a slot add to it."""
-
-        def plus(term, before):
-            return before + self.call(term, "formula", *arguments)
-
         for term in self.laws.in_slot(slot):
-            total = self.acting(term, total, partial(plus, term, total))
+            total = total + self.call(term, "formula", *arguments)
         return total
 
     def depth(self, approach: Number) -> Number:
@@ -101,13 +73,9 @@ class _Code:
     def elastic(self, delta: Number, first_memory) -> Number:
         """The elastic force: the loading curve, or what paths make of it."""
         loading = elastic = self.loading(delta)
-
-        def unloading(term):
-            largest = self.memory(term, first_memory)
-            return self.call(term, "formula", delta, loading, largest, self.loading(largest))
-
         for term in self.laws.in_slot("path"):
-            elastic = self.acting(term, elastic, partial(unloading, term))
+            largest = self.memory(term, first_memory)
+            elastic = self.call(term, "formula", delta, loading, largest, self.loading(largest))
         return elastic
 
     def memory(self, term: Term, first_memory) -> Number:

@@ -48,8 +48,6 @@ class Term:
             compression at rest for `path`, zero for `memory`.
         energy: elastic energy stored, a function of (delta, c…) for slot `elastic`; None where the term
             stores none.
-        strengths: slots `path`, `force` and `body`: which coefficients are all zero where the term does
-            nothing, so that it is passed over there; None: it is always worked out.
         stores: slot `force`: whether it may store energy, nobody knows how much, and not only take it.
     """
 
@@ -60,7 +58,6 @@ class Term:
     growth: Callable | None = None
     start: Callable | None = None
     energy: Callable | None = None
-    strengths: tuple[int, ...] | None = None
     stores: bool = False
 
     def __post_init__(self):
@@ -89,8 +86,7 @@ class Term:
     def key(self) -> str:
         """Name and fingerprint of the formulas that are compiled."""
         formulas = [f for f in (self.formula, self.growth, self.energy) if f is not None]
-        strengths = "" if self.strengths is None else "/" + ".".join(map(str, self.strengths))
-        return f"{self.name}:{'.'.join(fingerprint(f) for f in formulas)}{strengths}"
+        return f"{self.name}:{'.'.join(fingerprint(f) for f in formulas)}"
 
 
 def hertz_force(delta, stiffness):

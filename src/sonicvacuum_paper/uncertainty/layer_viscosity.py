@@ -33,7 +33,7 @@ def coefficients(chain, stiffness, mass, thickness, time):
     return [time * np.ones_like(shape[0]), *shape]
 
 
-TERM = Term(ID, "force", viscous_force, 15, strengths=(0,))
+TERM = Term(ID, "force", viscous_force, 15)
 
 
 def change(setup: Setup, time_us) -> Setup:

@@ -28,10 +28,8 @@ def flexible_drag(velocity, pace, a, b, c):
     return -w * (a + b * s + c / (s + SLOW))
 
 
-CONTACT_TERM = Term(
-    "flexible-contact", "force", free_force, CONTACT + 3, strengths=tuple(range(3, CONTACT + 3))
-)
-DRAG_TERM = Term("flexible-drag", "body", flexible_drag, DRAG + 1, strengths=tuple(range(1, DRAG + 1)))
+CONTACT_TERM = Term("flexible-contact", "force", free_force, CONTACT + 3)
+DRAG_TERM = Term("flexible-drag", "body", flexible_drag, DRAG + 1)
 _NAMES = COEFFICIENTS
 _DRAGS = tuple(f"b{n}" for n in range(DRAG))
 
