@@ -117,8 +117,7 @@ class Turns:
         """The fit with the discrepancy at it counted as noise; what was tried under another is forgotten."""
         size = smooth.infer(self.plain, fit, self.known) if self.infer else smooth.Size(0.0, 0.0)
         size = size if size.found else smooth.Size(0.0, size.drop)
-        anew = self.null is None or not size.same(self.size)
-        if anew:
+        if self.null is None or not size.same(self.size):
             self.forward, self._once = self.plain, Once()
             if size.size:
                 e, how = self.plain.experiment, (size.excess, size.kernel)
@@ -126,7 +125,8 @@ class Turns:
             self.null = restart.moved(self.forward, plain_null) if size.size else plain_null
             self.tried = {}
         self.size = size
-        fit = restart.moved(self.forward, fit) if anew else fit
+        fit = self._once.of(fit, "moved", partial(restart.moved, self.forward, fit))
+        self._once.of(fit, "moved", lambda: fit)
         self._noted(fit)
         return fit
 
