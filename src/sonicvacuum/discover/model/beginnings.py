@@ -32,7 +32,7 @@ def begun(data: Experiment) -> Experiment:
     """The data set with what settles the numbers of its batches without traces."""
     from sonicvacuum.discover.model.forward import Forward
 
-    forward = Forward(data, cut=1.0)
+    forward = Forward(data)
     return replace(data, batches=tuple(replace(b, settled_s=_settled(forward, b)) for b in data.batches))
 
 

@@ -46,7 +46,7 @@ def _pairs(data):
     """
     from sonicvacuum.discover.model.forward import Forward
 
-    forward = Forward(data, cut=1.0)
+    forward = Forward(data)
     result = {}
     for batch in data.batches:
         seen = forward.simulate(batch, forward.nominal(batch, np.zeros((1, forward.layout.size))))
