@@ -17,7 +17,7 @@ OLDER = 65_927_677
         # The wall's modulus, known to a twentieth, stood in for it 39 standard errors off.
         (147, {"wall-compliance"}),
         # Slopes promised half of what viscous drag gains, which leaves much.
-        (677, {"guide-friction"}),
+        pytest.param(677, {"guide-friction"}, marks=pytest.mark.long),
         # The pair was fitted, in a minimum of its own.
         pytest.param(1824, {"contact-gap", "mass-defect"}, marks=pytest.mark.long),
         # Alone its contact ended beside its minimum, and a second effect made up for that.
@@ -44,6 +44,7 @@ def test_an_effect_behind_one_at_a_bead_is_fitted():
     assert session.discover(record, limits=False).verdict.named == ["guide-friction"]
 
 
+@pytest.mark.long
 def test_two_laws_of_damping_that_hide_behind_one_are_both_named():
     """One of them leaves nothing that passes for a misfit, and both together are four times as likely."""
     laws = ("hunt-crossley", "kuwabara-kono")
@@ -57,11 +58,12 @@ def test_two_laws_of_damping_that_hide_behind_one_are_both_named():
         assert abs(own.value - value) < 3.0 * own.sigma  # with these seeds 0.8 and 1.3
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("place", "named"),
     [
         # A compliant wall beside a systematic error of 1 %, which explains more than any effect does alone.
-        pytest.param(89, ["wall-compliance", "unknown"], marks=pytest.mark.long),
+        (89, ["wall-compliance", "unknown"]),
         # Nothing beside one of 0.3 %: a decaying gauge gains as much as would do beside noise.
         (101, ["unknown"]),
     ],

@@ -145,6 +145,7 @@ def test_a_modulus_far_from_the_handbooks_hides_no_second_effect():
     assert abs(ratio.value - 2.7) < 4.0 * ratio.sigma
 
 
+@pytest.mark.long
 def test_a_defect_beside_friction_is_found_at_its_own_bead():
     hidden = [("mass-defect", {"mass_ratio": 1.06, "bead": 6}), ("viscous-drag", {"rate_per_s": 120.0})]
     v = session.discover(made(hidden, seed=12)[0]).verdict
@@ -152,9 +153,9 @@ def test_a_defect_beside_friction_is_found_at_its_own_bead():
     assert v.parameters["mass-defect"]["bead"].value == 6
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
-    ("seed", "wall", "tau", "modulus"),
-    [(2, 0.93, 12_000.0, 1.6), pytest.param(3, 1.05, 20_000.0, 0.7, marks=pytest.mark.long)],
+    ("seed", "wall", "tau", "modulus"), [(2, 0.93, 12_000.0, 1.6), (3, 1.05, 20_000.0, 0.7)]
 )
 def test_a_pair_is_asked_for_a_third_effect_that_leaves_no_residual(seed, wall, tau, modulus):
     """A modulus 7 to 9 of its stated errors off was taken up by that error, and the pair left nothing."""

@@ -20,10 +20,12 @@ from sonicvacuum.discover.faults.found import Bench, Finding
 from sonicvacuum.discover.faults.judged import (
     Judged,
     Model,
+    each_once,
     excess,
     exchanged,
     most_of,
     obvious,
+    of_one_run,
     suspicious,
     without_slip,
 )
@@ -179,7 +181,10 @@ class Search(Ranking):
         """Whether a slip is put right before effects are asked for."""
         if exchanged(judged, model):
             return True
-        return obvious(judged, model) and not self._matched(judged, model)
+        if obvious(judged, model):
+            return not self._matched(judged, model)
+        least = judged.gain - policy.AHEAD
+        return of_one_run(judged, model) and all(c.gain < least for c in self._alone.beside(model))
 
     def _matched(self, judged: Judged, model: Model) -> bool:
         """Whether an effect alone explains about as much as a slip, or more: one that moves all pulses as an
@@ -238,8 +243,7 @@ class Search(Ranking):
         final = Model(self.bench, found.forward, found.final)
         if found.final is not found.null and (left or suspicious(final)):
             rivals += self._beside(found)
-        rivals = sorted(rivals, key=lambda j: -j.log_odds)
-        return self.weighed(found, rivals, left) if rivals else None
+        return self.weighed(found, each_once(rivals), left) if rivals else None
 
     def _beside(self, found: Investigation) -> list[Judged]:
         """Slips beside the effects that were found, as if beside the nominal model: their gain included."""

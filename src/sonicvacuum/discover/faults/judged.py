@@ -6,6 +6,7 @@ compared: χ², the penalty of the nuisances, and the logarithm of the noise of 
 
 import itertools
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -64,6 +65,16 @@ class Judged:
         return replace(found, value=self.slip.seen(self.model)) if self.slip.seen and self.model else found
 
 
+def each_once(judged: Iterable[Judged]) -> list[Judged]:
+    """Each slip as it is likeliest, whatever it was judged beside; the likeliest first."""
+    best: dict[tuple, Judged] = {}
+    for one in sorted(judged, key=lambda j: -j.log_odds):
+        # One without a size is another one at another bead, or with another number of them.
+        which = None if one.slip.continuous else one.slip.value(0.0)
+        best.setdefault((*one.slip.at, which), one)
+    return list(best.values())
+
+
 def excess(model: Model) -> float:
     """χ² of a nominal fit, its nuisances' included, above the number of data."""
     return model.fit.objective - data(model.forward)
@@ -85,6 +96,13 @@ def obvious(judged: Judged, model: Model) -> bool:
         and judged.gain > policy.SHARE * excess(model)
         and not FAULTS[judged.slip.fault].alias
     )
+
+
+def of_one_run(judged: Judged, model: Model) -> bool:
+    """Whether a slip of one whole run, its time zero or speed, takes away nearly all misfit of traces."""
+    slip, least = judged.slip, max(policy.LIKELY_GAIN, policy.SHARE * excess(model))
+    alone = slip.run is not None and slip.sensor is None and slip.continuous and model.bench.record.signals
+    return bool(alone) and judged.gain > least and not FAULTS[slip.fault].alias
 
 
 def exchanged(judged: Judged, model: Model) -> bool:

@@ -12,6 +12,9 @@ LEAST_GAIN = 18.0
 SHARE = 0.9
 # ... and gains so much that no prior matters.
 SURE_GAIN = 200.0
+# One of a single run, which no effect singles out, is put right before sets of effects are asked for where it
+# takes away that share, gains so much, and as much more than any effect alone.
+LIKELY_GAIN, AHEAD = 60.0, 30.0
 # Two runs are exchanged whatever else acts in them where their speeds differ by so many stated errors, and a
 # fit strikes each within this share of the difference (of logarithms) from the speed of the other.
 FAR_APART, EXCHANGED = 10.0, 0.25
