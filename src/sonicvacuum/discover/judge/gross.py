@@ -81,7 +81,7 @@ def standing_out(
     the data, what stood out at first is kept: one effect more would only stand for what is left.
     """
     prior = _beside_much(prior, setup)
-    found = [*found, *_crossed(forward, null, found, setup), *_profiles(forward, null, setup)]
+    found = [*found, *_crossed(forward, null, found, setup), *_profiles(forward, null)]
     found = _at_their_best(forward, null, found)
     first = None
     while True:
@@ -173,7 +173,7 @@ def _crossed(forward, null, found: list[Combination], setup: Setup) -> list[Comb
     return [c for c in found if np.isfinite(c.fit.objective)]
 
 
-def _profiles(forward, null, setup) -> list[Combination]:
+def _profiles(forward, null) -> list[Combination]:
     """Deviations along the chain as explanations, fitted where slopes promise that they explain much."""
     if forward.experiment.beads < 2:
         return []

@@ -50,7 +50,7 @@ def foreseen(scores: screen.Screen, count: int) -> float:
     two_sided = np.array([d.two_sided for d in scores.directions])
     chosen: list[int] = []
     total = 0.0
-    for _ in range(count):
+    for _ in range(min(count, len(score))):
         beside = gram[:, chosen] @ np.linalg.pinv(gram[np.ix_(chosen, chosen)], rcond=1e-9, hermitian=True)
         left = raw - np.einsum("kc,kc->k", beside, gram[:, chosen])
         able &= left > _PARALLEL * raw

@@ -303,7 +303,7 @@ def candidate(forward, null: Fit, scores: Screen, effect: Effect, effort: Effort
     total = float(np.logaddexp.reduce([f[0] for f in found]) - np.log(len(options)))
     flags = ("bound",) * bool(one.at_bound().any()) + ("unsettled",) * (not one.settled)
     instead = tuple((other - log, way) for other, way, _ in others if other > log - INSTEAD)
-    return Candidate(effect.id, one, gain, total, place_weights(scores, effect, one), flags, instead)
+    return Candidate(effect.id, one, gain, total, place_weights(scores, effect), flags, instead)
 
 
 def by_direction(scores: Screen, effect: Effect, gain: float):
@@ -314,7 +314,7 @@ def by_direction(scores: Screen, effect: Effect, gain: float):
     return np.maximum(squares - squares.max() + gain, 0.0) if len(squares) > 1 else None
 
 
-def place_weights(scores, effect, one):
+def place_weights(scores, effect):
     """(place, weight) of the likely places."""
     if not effect.places:
         return ()
