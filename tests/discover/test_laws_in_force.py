@@ -64,6 +64,5 @@ def test_an_effect_that_is_off_in_it_changes_nothing(forward):
     null = nominal(forward)
     families = directions.of_effect(effect("tsuji"), setup_of(forward))
     changes = directions.finite(forward, null.hypothesis, null.u, null.nu, families[0], np.full(1, 1e-9))
-    assert (
-        max(float(np.abs(c).max()) for c in changes) < 1e-4
-    )  # of a standard error: rounding, and a little damping
+    largest = max(float(np.abs(c).max()) for c in changes)
+    assert largest < 1e-4  # of a standard error: rounding, and a little damping

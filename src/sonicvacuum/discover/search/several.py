@@ -125,6 +125,7 @@ class Turns:
             self.null = restart.moved(self.forward, plain_null) if size.size else plain_null
             self.tried = {}
         self.size = size
+        # Once each: what a first fit left early in a valley may still go on, what has been followed does not.
         fit = self._once.of(fit, "moved", partial(restart.moved, self.forward, fit))
         self._once.of(fit, "moved", lambda: fit)
         self._noted(fit)
