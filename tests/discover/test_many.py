@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
+from made_tables import ball
 
 from sonicvacuum import records
 from sonicvacuum.cli.discover import Failure, _attempt, discover
@@ -89,9 +90,9 @@ def test_no_process_outlives_the_first_one_when_that_is_killed(tmp_path):
     wait_for(Path(f"/proc/{process}"), gone=True)
 
 
-def test_records_side_by_side_give_the_files_of_one_at_a_time(hidden, empty, tmp_path):
+def test_records_side_by_side_give_the_files_of_one_at_a_time(empty, tmp_path):
     paths = []
-    for name, record in (("damped", hidden), ("empty", empty)):
+    for name, record in (("table", ball()), ("traces", empty)):
         records.write(record, tmp_path / name)
         paths.append(str(tmp_path / name))
     told = {}

@@ -210,7 +210,7 @@ def solve(p: Plain, times):
 
     y0 = np.zeros(3 * n)
     y0[n] = p.speed
-    given = {"rtol": 1e-9, "max_step": 1e-6}
+    given = {"rtol": 1e-9, "max_step": 2e-6}
     given["atol"] = np.concatenate([np.full(n, 1e-15), np.full(n, 1e-10), np.full(n, 1e-9)])
     if p.residual:
         states = _turning(motion, lambda y: kinematics(y)[:2], times, y0, start, given)
