@@ -10,6 +10,7 @@ from sonicvacuum.discover.model.problem import experiment
 from sonicvacuum.discover.search import directions, planes, prospects, screen
 from sonicvacuum.discover.search.once import Once
 from sonicvacuum.discover.search.starts import setup_of
+from sonicvacuum.effects import CATALOGUE
 
 
 @pytest.fixture(scope="module")
@@ -44,6 +45,26 @@ def test_prospects_are_evidence(scores):
     assert prospects.by_slopes(10.0, scores, 3) == 10.0 + 0.5 * prospects.FORESEEN * gained
     assert prospects.by_slopes(10.0, scores, 0) == 10.0
     assert prospects.by_last(40.0, 45.0, 2) == 45.0 + 2 * prospects.HOPED * 5.0
+
+
+DRAG = [("viscous-drag", {"rate_per_s": 300.0})]
+
+
+@pytest.mark.parametrize(
+    ("effects", "asked", "room", "remains"),
+    [
+        ([], CATALOGUE.ids, 0, False),  # noise alone is left already
+        (DRAG, CATALOGUE.ids, 1, False),
+        (DRAG, CATALOGUE.ids, 0, True),  # nothing may be added
+        (DRAG, ("sensor-offset",), 1, True),  # where a gauge sits in its bead does little of what drag does
+    ],
+)
+def test_a_misfit_remains_where_slopes_promise_too_little_of_it(effects, asked, room, remains):
+    forward = Forward(experiment(made(effects, seed=3)[0]))
+    null = nominal(forward)
+    others = [name for name in CATALOGUE.ids if name not in asked]
+    seen = screen.screen(forward, null, directions.catalogue(setup_of(forward), others))
+    assert prospects.remains(forward, null, seen, room) == remains
 
 
 def test_what_is_known_of_a_fit_is_not_worked_out_again():

@@ -46,7 +46,7 @@ TURNS = policy.MOST_EFFECTS + 2
 
 class Turns:
     """One search; `forward` has no discrepancy, `known` are its `discrepancy.Shapes`, `needed` is the Δχ²
-    that an effect has to gain, `rival` a log evidence that a set has to come to, or is not asked for.
+    that an effect has to gain, `rival` a log evidence that is asked of a set, as is that it leaves nothing.
     """
 
     def __init__(
@@ -98,16 +98,17 @@ class Turns:
         return Grown(self.forward, self.null, self._noted(fit), self.size, self.tried)
 
     def _hopeless(self, fit, more=None) -> bool:
-        """Whether a set would stay behind its rival with all the effects that may still be added, by slopes
-        beside it or, once there is one more, by what that gained.
+        """Whether a set would stay behind its rival, or leave something, with all that may still be added: by
+        slopes beside it or, once there is one more, by what that gained.
         """
         own = self._evidence(fit)
         if more is not None:
             return prospects.by_last(own, self._evidence(more), self._room(more)) < self.rival
-        if not -np.inf < own < self.rival:
+        if np.isinf(own) or np.isinf(self.rival):
             return False
-        scores = pairs.screened(self.forward, fit, self.setup)
-        return prospects.by_slopes(own, scores, self._room(fit)) < self.rival
+        room, scores = self._room(fit), pairs.screened(self.forward, fit, self.setup)
+        behind = own < self.rival and prospects.by_slopes(own, scores, room) < self.rival
+        return behind or prospects.remains(self.forward, fit, scores, room)
 
     def _room(self, fit) -> int:
         """How many effects may still be added."""
