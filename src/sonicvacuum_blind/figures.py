@@ -274,7 +274,9 @@ def _bars(axes, rows, rules):
     look = {"fmt": "none", "ecolor": "black", "lw": 0.8, "capsize": 1.8}
     axes.errorbar(value[known], known, xerr=bars[:, known], **look)
     for k, (share, count) in enumerate(zip(value, rows["count"], strict=True)):
-        text = "–" if np.isnan(share) else f"{share:.0f} ({count:.0f})"
+        # A few of some thousand are not none.
+        shown = f"{share:.1g}" if 0.0 < share < 1.0 else f"{share:.0f}"
+        text = "–" if np.isnan(share) else f"{shown} ({count:.0f})"
         axes.text(163.0, k, text, ha="right", va="center", fontsize=6.5)
     axes.set_xlim(0.0, 163.0)
     axes.spines["bottom"].set_bounds(0.0, 100.0)

@@ -39,8 +39,10 @@ MEANT = (
     "Exact: the set named is the set hidden; unknown where the hidden effect is none of the catalogue's. "
     "Unqualified: without a word of unknown. Ideal rule: it is told all signatures, gives every effect "
     "the same prior, whatever its number of places, signs and shapes, fits each explanation through the "
-    "integrator, names that of most evidence and tosses a coin between equals; none is worked out for "
-    "three effects, nor where its own fit of what is hidden fails. Localisation is by run and "
+    "integrator, names that of most evidence and tosses a coin between equals; where one effect of less than "
+    "d′ 8 is hidden noise is a rival, and it names none at a false-alarm rate of 1 %. None is worked out for "
+    "three effects, nor where its own fit of what is hidden fails. A group is named after the d′ of the list "
+    "that is nearest to the one reached: 40 counts as 50. Localisation is by run and "
     "gauge: a cell found is right where the model without the "
     "hidden effect leaves d′ 1 or more there, and every cell of d′ 5 or more is to be found. Calibration "
     "errors are of the probability of the name given. An effect's PIT is the posterior probability below "
@@ -57,7 +59,7 @@ def told(study: Study) -> str:
     met, undecided, missed = study.goals
     return (
         f"{study.cases} records. Of {met + undecided + missed} goals {met} are met, {undecided} open and "
-        f"{missed} missed: met where the 95 % interval lies inside, open where it straddles."
+        f"{missed} missed: met where the whole 95 % interval fulfils it, missed where none of it does."
     )
 
 
@@ -116,7 +118,7 @@ def in_short(study: Study) -> str:
         f"Single effects of 3 to 500 standard errors named exactly: {found('exact name', 'all')}; pairs: "
         f"{found('exact pair', 'all')}; sets of three: {found('exact set of three', 'all')}.",
         f"Empty records named: {_alarms(study) or found('named on null', 'white')}; "
-        f"effects {outside} called unknown: {unknown}, given a wrong name unqualified: {wrong}.",
+        f"effects {outside} called unknown: {unknown}, given a wrong name and no word of unknown: {wrong}.",
         _beside_bic(study.baselines),
     )
     return "\n".join(lines)
@@ -133,16 +135,18 @@ def _beside_bic(baselines):
     """What BIC does on the same records; where it was not tried, what it did in the study before."""
     if baselines is None:
         return (
-            "Naming alone is no better than BIC's: on the study before, 83.3 % against 83.1 %; but BIC named "
-            "6.3 % of empty records, and 86.8 % of effects that no catalogue holds."
+            "Naming alone is no better than that of the Bayesian information criterion, BIC: on the study "
+            "before, 83.3 % against 83.1 %; but BIC named 6.3 % of empty records, and 86.8 % of effects that "
+            "no catalogue holds."
         )
     rows = {(r["rule"], r["measure"]): r for r in baselines.to_dict("records") if r["group"] in GROUPS}
     own, other = rows["sonicvacuum", EXACT], rows["bic", EXACT]
     better = float(own["low"]) > float(other["high"])
     return (
-        f"Naming alone is {'better than' if better else 'no better than'} BIC's: {percent(own)} against "
-        f"{percent(other)}; but BIC names {percent(rows['bic', ALARM])} of empty records, and "
-        f"{percent(rows['bic', WRONG])} of effects that no catalogue holds."
+        f"Naming alone is {'better than' if better else 'no better than'} that of the Bayesian information "
+        f"criterion, BIC: {percent(own)} against {percent(other)}; but BIC names "
+        f"{percent(rows['bic', ALARM])} of empty records, and {percent(rows['bic', WRONG])} of effects that "
+        "no catalogue holds."
     )
 
 

@@ -76,7 +76,7 @@ def _compared(metrics, target, row, claim, column, outcome):
     bound = {"at_least": "at least ", "at_most": "at most "}.get(target.test, "")
     spread = f" ± {claim.sigma}" if target.sigma > 0.0 else ""
     if target.test == "within":
-        spread = f" within {BOUND * target.sigma:.3g}"
+        spread, unit = f" ± {target.sigma:.1g}", f"{unit}, bound {BOUND * target.sigma:.3g}"
     against = f"{bound}{claim.value.replace('..', ' to ')}{spread}{unit}"
     return f"{claim.quantity} {shown(row.value, target)} against {against}{_by(outcome)}"
 

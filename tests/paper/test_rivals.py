@@ -9,7 +9,7 @@ from sonicvacuum.effects.coating_thickness import layer_factor
 from sonicvacuum.physics import layer_law
 from sonicvacuum.report import inline
 from sonicvacuum_paper.columns import column_cards
-from sonicvacuum_paper.report import rivals, uncertain
+from sonicvacuum_paper.report import answer, rivals, uncertain
 from sonicvacuum_paper.uncertainty import (
     decide,
     formats,
@@ -113,6 +113,18 @@ def test_a_law_speaks_for_the_layer_where_hertz_misses_a_speed(laws):
     assert told["ratios"] == ["1.52", "1.37"]
     changed = laws.assign(low_speed_m_s=laws.low_speed_m_s.where(laws.law != "tsuji", 130.0))
     assert rivals.of_laws(changed)["by_law"]["speaks"] == 4
+
+
+def test_how_many_laws_keep_a_pulse_whole_on_the_layer_is_said(laws):
+    told = rivals.of_laws(laws)
+    assert told["by_law"]["whole"] == 5
+    assert [row[2] for row in told["laws"][:2]] == ["1 kg/s", "1"]
+    assert answer._laws(told["by_law"]).endswith("on Hertz.")
+    split = (laws.contact == "layer") & laws.law.isin(("tsuji", "hunt-crossley"))
+    changed = laws.assign(pulses_fig6b=laws.pulses_fig6b.mask(split, 3.0))
+    told = rivals.of_laws(changed)["by_law"]
+    assert told["whole"] == 3
+    assert answer._laws(told).endswith("stays whole on the layer with 3 of them.")
 
 
 def test_the_viscous_force_of_a_layer_is_the_slope_of_its_elastic_force():

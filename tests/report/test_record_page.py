@@ -264,7 +264,7 @@ def test_what_leaves_the_range_of_the_physics_stands_on_the_page(tmp_path):
     told = "contact 3 is pressed by 200 um, 0.17 of its <effective> radius"
     write_json(verdict(warnings=[told]), folder / "verdict.json")
     page = write_page(folder).read_text(encoding="utf-8")
-    assert "Beware: contact 3 is pressed by 200 um, 0.17 of its &lt;effective&gt; radius." in page
+    assert "Beware: contact 3 is pressed by 200 µm, 0.17 of its &lt;effective&gt; radius." in page
 
 
 def test_a_name_of_any_kind_leaves_ids_whole(tmp_path):

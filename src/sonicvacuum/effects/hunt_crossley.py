@@ -31,7 +31,7 @@ EFFECT = Effect(
     reference="Hunt & Crossley, J. Appl. Mech. 42, 440 (1975)",
     parameters=(
         Parameter(
-            "damping_s_per_m", "s/m", 0.0, 1e-4, 10.0, "log-uniform", 0.1, "c, restitution 1 - c v", 0.0
+            "damping_s_per_m", "s/m", 0.0, 1e-4, 10.0, "log-uniform", 0.1, "c of the restitution 1 - c v", 0.0
         ),
     ),
     signature="loss in proportion to amplitude: strong pulses decay fast, weak ones hardly; "

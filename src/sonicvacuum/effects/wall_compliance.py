@@ -17,7 +17,7 @@ EFFECT = Effect(
     reference="Job, Melo, Sokolow & Sen, Phys. Rev. Lett. 94, 178002 (2005)",
     parameters=(
         Parameter(
-            "stiffness_ratio", "1", 1.0, 0.02, 50.0, "log-uniform", 0.5, "over the nominal constant", 1e-6
+            "stiffness_ratio", "1", 1.0, 0.02, 50.0, "log-uniform", 0.5, "wall stiffness over nominal", 1e-6
         ),
     ),
     signature="wall reading lower and longer, reflection later (softer) or the reverse; nothing before "

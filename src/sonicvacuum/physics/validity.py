@@ -79,6 +79,18 @@ def check_forces(history: History) -> None:
         )
 
 
+def _named(contact: int, chain: Chain) -> str:
+    """A contact in words: by its number and by what touches there."""
+    one = f"contact {contact}"
+    if not chain.beads:
+        return f"{one} (striker and wall)"
+    if contact == 0:
+        return f"{one} (striker and bead 1)"
+    if contact == chain.beads:
+        return f"{one} (bead {contact} and wall)"
+    return f"{one} (beads {contact} and {contact + 1})"
+
+
 def overlap(chain: Chain, history: History, depth: np.ndarray) -> str:
     """Beads pressed into each other beyond what contact laws hold for.
 
@@ -91,7 +103,8 @@ def overlap(chain: Chain, history: History, depth: np.ndarray) -> str:
     worst = share[contact, lane]
     if not worst > OVERLAP:
         return ""
-    place = f"contact {history.contacts[contact]} is pressed by {depth[contact, lane] / _MICRO:.3g} um, "
+    named, um = _named(history.contacts[contact], chain), depth[contact, lane] / _MICRO
+    place = f"{named} is pressed by {um:.3g} um, "
     if worst >= 1.0:
         raise MeaninglessError(
             f"{place}{worst:.3g} times its effective radius: no contact law holds there; check modulus, mass "
@@ -111,8 +124,8 @@ def layer(chain: Chain, history: History, depth: np.ndarray) -> str:
     if through.any():
         k = int(np.argmax(np.where(through, worst - there, -np.inf)))
         return (
-            f"contact {history.contacts[k]} is pressed by {worst[k] / _MICRO:.3g} um, more than its coatings "
-            f"of {there[k] / _MICRO:.3g} um together are thick: what lies under them bears the load"
+            f"{_named(history.contacts[k], chain)} is pressed by {worst[k] / _MICRO:.3g} um, more than its "
+            f"coatings of {there[k] / _MICRO:.3g} um together are thick: what lies under them bears the load"
         )
     if any(action.term.name == layer_law.NAME for action in chain.actions):
         return ""
@@ -122,9 +135,9 @@ def layer(chain: Chain, history: History, depth: np.ndarray) -> str:
     if not wide[k] > NARROW:
         return ""
     return (
-        f"contact {history.contacts[k]} reaches a radius of {wide[k]:.2g} times the thickness of its coating "
-        f"({thin[k] / _MICRO:.3g} um) and is taken for one of solid beads of the coating's material: on its "
-        "core the coating is stiffer (coating-thickness)"
+        f"{_named(history.contacts[k], chain)} reaches a radius of {wide[k]:.2g} times the thickness of its "
+        f"coating ({thin[k] / _MICRO:.3g} um) and is taken for one of solid beads of the coating's material: "
+        "on its core the coating is stiffer (coating-thickness)"
     )
 
 
@@ -200,7 +213,7 @@ def pressure(chain: Chain, history: History, force: np.ndarray, depth: np.ndarra
     if not share[k] > YIELD:
         return ""
     return (
-        f"the pressure of contact {history.contacts[k]} reaches {np.nanmax(centre[k]) / 1e9:.3g} GPa, "
+        f"the pressure of {_named(history.contacts[k], chain)} reaches {np.nanmax(centre[k]) / 1e9:.3g} GPa, "
         f"{share[k]:.3g} times the yield strength: contacts would yield, which elastic laws leave out"
     )
 

@@ -277,7 +277,9 @@ def decided(verdict: Verdict) -> list[str]:
         "pair": "what the best pair leaves",
         "set": "what the last set of effects leaves",
     }
-    lines = [f"Decisive: {reason}." for reason in verdict.reasons]
+    # The first one decided; others say what else explains the data, or what was taken for granted.
+    heads = ["Decisive", *["Besides"] * len(verdict.reasons)]
+    lines = [f"{head}: {reason}." for head, reason in zip(heads, verdict.reasons, strict=False)]
     return lines + [
         f"By chance alone, {left.get(step, step)} would come about with probability {number(str(p), 2)}."
         for step, p in verdict.alarms.items()

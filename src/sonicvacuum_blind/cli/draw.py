@@ -5,7 +5,7 @@ import click
 from sonicvacuum.cli.helped import FOLDER, PRESENT, verb
 
 
-@verb("sonicvacuum blind draw figures/blind --picture accuracy --out pictures")
+@verb("sonicvacuum blind draw workflow/resources/reference/blind_full --picture accuracy --out pictures")
 @click.argument("folder", type=PRESENT)
 @click.option(
     "--picture",

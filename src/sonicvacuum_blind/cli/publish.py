@@ -9,7 +9,10 @@ from sonicvacuum.cli.helped import FOLDER, PRESENT, verb
 from sonicvacuum.outputs import check_apart
 
 
-@verb("sonicvacuum blind publish results/blind/full --page docs/study.md --keep figures/blind")
+@verb(
+    "sonicvacuum blind publish results/blind/full --page docs/study.md "
+    "--keep workflow/resources/reference/blind_full"
+)
 @click.argument("folder", type=PRESENT)
 @click.option("--page", required=True, type=existing(), help="Page (Markdown) whose tables are renewed.")
 @click.option("--readme", type=existing(), help="README whose lines on the study are renewed.")

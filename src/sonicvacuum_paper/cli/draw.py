@@ -31,7 +31,7 @@ def draw(figure, cards, histories, points, out):
     figures.make(figure, simulations, out, [digitised.read(path) for path in points])
 
 
-@verb("sonicvacuum paper digitised fig4-points.yaml --figure results/figures/fig4.csv")
+@verb("sonicvacuum paper digitised fig4-points.yaml --figure figures/fig4.csv")
 @click.argument("points", type=existing())
 @click.option("--figure", required=True, type=existing(), help="Numbers of its figure (CSV).")
 def digitised(points, figure):

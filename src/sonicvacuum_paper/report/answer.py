@@ -75,7 +75,10 @@ def _laws(found):
     layer, hertz = found["ratios"]
     all_ = found["speaks"] == found["of"]
     laws = f"All {COUNTS.get(found['of'], found['of'])}" if all_ else f"{found['speaks']} of {found['of']}"
-    return f" {laws} laws of loss agree: ratio {layer} on the layer, {hertz} on Hertz."
+    told = f" {laws} laws of loss agree on both speeds: ratio {layer} on the layer, {hertz} on Hertz"
+    if found["whole"] == found["of"]:
+        return f"{told}."
+    return f"{told}; the pulse of Fig. 6(b) stays whole on the layer with {found['whole']} of them."
 
 
 def _verdict(rows):

@@ -22,9 +22,11 @@ from sonicvacuum_paper.verdict import BOUND
 WITHIN = 0.95
 # Errors of the ledger: of the printed duration in us, and of 130 m/s.
 DURATION, LOW = 14.0, 7.35
+# Pulses that the paper saw leave the chain of Fig. 6(b).
+WHOLE = 1
 # Columns of the fits to the record.
 SHOWN = (formats.MODULUS, formats.LAYER, formats.LOSS)
-WORDS = {formats.LAYER: "the layer", formats.MODULUS: "a stiffer polymer"}
+WORDS = {formats.LAYER: "the layer", formats.MODULUS: "another modulus of the polymer"}
 # Prior of one effect, as discover has it.
 PRIOR = (1.0 - evidence.PRIOR_NONE - evidence.PRIOR_UNKNOWN) / len(IDS)
 CELLS = ("speed_m_s", "half_duration_us", "decay")
@@ -167,7 +169,7 @@ def of_laws(table: pd.DataFrame) -> dict:
     of_hertz = table[table.contact == "matched"]
     ratios = [_span(part.speed_m_s / part.low_speed_m_s, 3) for part in (of_layer, of_hertz)]
     rows = [
-        [title(r.contact), WITH_LAYER.effect(r.law).title, f"{number(r.value, 2)}", *_cells(r)]
+        [title(r.contact), WITH_LAYER.effect(r.law).title, _calibrated(r), *_cells(r)]
         for r in table.itertuples()
     ]
     words = {
@@ -175,14 +177,22 @@ def of_laws(table: pd.DataFrame) -> dict:
         "of": len(speaks),
         "ratios": ratios,
         "forces": _span(of_layer.gauge_N, 2),
+        "whole": int((of_layer.pulses_fig6b == WHOLE).sum()),
+        "durations": _span(of_layer.duration_us, 3),
     }
     return {"laws": rows, "by_law": words}
+
+
+def _calibrated(row):
+    """The number of a law with its unit."""
+    (unit,) = {p.unit for p in WITH_LAYER.effect(row.law).parameters if p.name == row.parameter}
+    return f"{number(row.value, 2)}{unit_of(unit)}"
 
 
 def _cells(row):
     """Numbers of a law, in the order of the report's table."""
     ratio = row.speed_m_s / row.low_speed_m_s
-    shown = (row.speed_m_s, row.low_speed_m_s, ratio, row.gauge_N, row.decay, row.split_g9)
+    shown = (row.speed_m_s, row.low_speed_m_s, ratio, row.duration_us, row.gauge_N, row.decay, row.split_g9)
     return [*(number(v, 3) for v in shown), number(row.pulses_fig6b, 1)]
 
 
