@@ -1,5 +1,7 @@
 """What effects may still gain by slopes: chosen one beside the other, and held against a rival."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from made_records import made
@@ -51,20 +53,22 @@ DRAG = [("viscous-drag", {"rate_per_s": 300.0})]
 
 
 @pytest.mark.parametrize(
-    ("effects", "asked", "room", "remains"),
+    ("effects", "excluded", "room", "remains"),
     [
-        ([], CATALOGUE.ids, 0, False),  # noise alone is left already
-        (DRAG, CATALOGUE.ids, 1, False),
-        (DRAG, CATALOGUE.ids, 0, True),  # nothing may be added
-        (DRAG, ("sensor-offset",), 1, True),  # where a gauge sits in its bead does little of what drag does
+        ([], (), 0, False),  # noise alone is left already
+        (DRAG, (), 1, False),
+        (DRAG, (), 0, True),  # nothing may be added
+        # Where a gauge sits in its bead does little of what drag does.
+        (DRAG, tuple(name for name in CATALOGUE.ids if name != "sensor-offset"), 1, True),
     ],
 )
-def test_a_misfit_remains_where_slopes_promise_too_little_of_it(effects, asked, room, remains):
-    forward = Forward(experiment(made(effects, seed=3)[0]))
+def test_a_misfit_remains_where_slopes_promise_too_little_of_it(effects, excluded, room, remains):
+    e = replace(experiment(made(effects, seed=3)[0]), excluded=excluded)
+    forward = Forward(e)
     null = nominal(forward)
-    others = [name for name in CATALOGUE.ids if name not in asked]
-    seen = screen.screen(forward, null, directions.catalogue(setup_of(forward), others))
-    assert prospects.remains(forward, null, seen, room) == remains
+    assert prospects.remains(forward, null, setup_of(forward), room) == remains
+    # The same of a set that has no rival to come to.
+    assert prospects.hopeless(forward, null, setup_of(forward), room, 1.0, 0.0) == remains
 
 
 def test_what_is_known_of_a_fit_is_not_worked_out_again():

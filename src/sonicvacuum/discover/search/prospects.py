@@ -7,15 +7,16 @@ Evidence is in natural logs; what the effects to come will cost is left aside.
 from sonicvacuum.discover.fit import wide
 from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.model.forward import Forward
-from sonicvacuum.discover.search import planes, unknown
+from sonicvacuum.discover.search import pairs, planes, unknown
 from sonicvacuum.discover.search.screen import Screen
+from sonicvacuum.effects import Setup
 
 # One more effect is hoped to gain so many times the log evidence of the one before it.
 HOPED = 2.0
 # All effects that may still be added are hoped to gain so many times what slopes promise of them together: in
 # sets of three with d' 20 each it took up to 1.7 times to come to their rivals, and on the way to those that
-# leave nothing up to 2.1 times stood out along one group of shapes; beside a chain of graded moduli it was
-# 2.6 times at three effects, 5.6 at four and 12 at five.
+# leave nothing up to 2.8 times stood out along one group of shapes; beside a chain of graded moduli it was
+# 2.6 times at three effects, 5.6 at four and 12 at five, beside a dimer 4.7 and 5.7 at four.
 FORESEEN = 4.0
 
 
@@ -29,12 +30,21 @@ def by_slopes(own: float, scores: Screen, room: int) -> float:
     return own + 0.5 * FORESEEN * planes.foreseen(scores, room)
 
 
-def remains(forward: Forward, fit: Fit, scores: Screen, room: int) -> bool:
-    """Whether a set is sure to leave a misfit with `room` effects more: along a group of shapes stands out
-    more than slopes beside the set, its `scores`, let one hope for.
+def hopeless(forward: Forward, fit: Fit, setup: Setup, room: int, own: float, rival: float) -> bool:
+    """Whether a set of evidence `own` stays behind its rival with `room` effects more, or leaves much for all
+    these.
     """
-    if not wide.leaves_much(forward, fit.objective):
-        return False
+    if own < rival and by_slopes(own, pairs.screened(forward, fit, setup), room) < rival:
+        return True
+    return wide.leaves_much(forward, fit.objective) and remains(forward, fit, setup, room)
+
+
+def remains(forward: Forward, fit: Fit, setup: Setup, room: int) -> bool:
+    """Whether a set is sure to leave a misfit with `room` effects more: along a group of shapes stands out
+    more than slopes beside the set let one hope for.
+    """
     seen = unknown.shape_test(forward, fit)
     along = max((chi2 - freedom for chi2, freedom, _ in seen.groups.values()), default=0.0)
-    return seen.failed and along > FORESEEN * planes.foreseen(scores, room)
+    if not seen.failed:
+        return False
+    return along > FORESEEN * planes.foreseen(pairs.screened(forward, fit, setup), room)

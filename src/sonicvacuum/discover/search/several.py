@@ -85,6 +85,8 @@ class Turns:
         which are worth another one once a single effect took the place of two.
         """
         few = len(fit.hypothesis.components) <= FEW
+        if np.isfinite(self.rival) and prospects.remains(self.forward, fit, self.setup, self._room(fit)):
+            return None
         for move in [m for m in moves if few or m == self._again]:
             moves.remove(move)
             more = move(fit)
@@ -106,9 +108,7 @@ class Turns:
             return prospects.by_last(own, self._evidence(more), self._room(more)) < self.rival
         if np.isinf(own) or np.isinf(self.rival):
             return False
-        room, scores = self._room(fit), pairs.screened(self.forward, fit, self.setup)
-        behind = own < self.rival and prospects.by_slopes(own, scores, room) < self.rival
-        return behind or prospects.remains(self.forward, fit, scores, room)
+        return prospects.hopeless(self.forward, fit, self.setup, self._room(fit), own, self.rival)
 
     def _room(self, fit) -> int:
         """How many effects may still be added."""
