@@ -48,9 +48,9 @@ _TITLES = {"a": "(a) Coated beads", "b": "(b) Bare steel beads"}
 
 CAPTION = style.paragraph("""
 Speed between the gauges against contact force above rest. Marks: simulated, without losses unless said,
-striker at 0.02 to 1 m/s (open: no weight); thick: Eq. (7); broken: Eq. (6). Red:
-printed, with 10 % bounds, at the contact force (with loss in (a)), open at the gauge reading. Dotted: 3 N.
-The paper's points are not available.
+striker at 0.02 to 1 m/s (open: no weight); thick: Eq. (7); broken: Eq. (6). Red: printed, with 10 % bounds,
+at the contact force (with loss in (a)), open at the gauge reading. Dotted: 3 N. The paper's points are not
+available.
 """)
 CRACKS = 3.0  # N, the level at which the paper saw cracks
 # Striker of Fig. 3, m/s: where in the sweep the printed speeds stand.

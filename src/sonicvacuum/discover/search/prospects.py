@@ -44,7 +44,7 @@ def remains(forward: Forward, fit: Fit, setup: Setup, room: int) -> bool:
     more than slopes beside the set let one hope for.
     """
     seen = unknown.shape_test(forward, fit)
-    along = max((chi2 - freedom for chi2, freedom, _ in seen.groups.values()), default=0.0)
     if not seen.failed:
         return False
+    along = max(chi2 - freedom for chi2, freedom, _ in seen.groups.values())
     return along > FORESEEN * planes.foreseen(pairs.screened(forward, fit, setup), room)
