@@ -113,3 +113,10 @@ def test_a_limit_says_on_which_side_of_the_value_without_the_effect_it_lies(
 ):
     row = {"effect": effect, "parameter": parameter, "limit_95": value, "estimate": estimate}
     assert rows.limit(row, CATALOGUE)["limit"] == told
+
+
+def test_only_the_first_reason_is_called_decisive():
+    reasons = ["it leaves nothing", "masses taken as exact"]
+    told = words.decided(verdict(reasons=reasons, alarms={"single": 0.4}))
+    assert told[:2] == ["Decisive: it leaves nothing.", "Besides: masses taken as exact."]
+    assert told[2].startswith("By chance alone, what the best single effect leaves")

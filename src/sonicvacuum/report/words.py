@@ -278,8 +278,7 @@ def decided(verdict: Verdict) -> list[str]:
         "set": "what the last set of effects leaves",
     }
     # The first one decided; others say what else explains the data, or what was taken for granted.
-    heads = ["Decisive", *["Besides"] * len(verdict.reasons)]
-    lines = [f"{head}: {reason}." for head, reason in zip(heads, verdict.reasons, strict=False)]
+    lines = [f"{'Besides' if k else 'Decisive'}: {reason}." for k, reason in enumerate(verdict.reasons)]
     return lines + [
         f"By chance alone, {left.get(step, step)} would come about with probability {number(str(p), 2)}."
         for step, p in verdict.alarms.items()
