@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sonicvacuum.discover.fit import broad
+from sonicvacuum.discover.fit import broad, strides
 from sonicvacuum.discover.fit.descent import SETTLED, descend, differences
 from sonicvacuum.discover.fit.normal import Normal, linearised
 from sonicvacuum.discover.model.forward import Forward
@@ -187,13 +187,24 @@ def _finished(forward, hypothesis, now):
     """
     if not (np.isfinite(now.objective[0]) and now.has_slopes[0]):
         return now
+    now, columns = _rested(forward, hypothesis, now)
+    if not broad.asks(hypothesis):
+        return now
+    if strides.rough(now, broad.sloped(forward, hypothesis, now, columns)):
+        lower = strides.farther(forward, hypothesis, now)
+        now, columns = (now, columns) if lower is now else _rested(forward, hypothesis, lower)
+    return broad.broadened(forward, hypothesis, now, columns)
+
+
+def _rested(forward, hypothesis, now):
+    """A fit after its last steps, and columns of a point nearby."""
     for _ in range(AFRESH):
         before = now.objective[0]
         fresh, columns = linearised(forward, hypothesis, now.u, now.nu, None, differences(now), True)
         now = descend(forward, hypothesis, fresh, None, LAST, columns, precise=True)[0]
         if not before - now.objective[0] > GAINED:
             break
-    return broad.broadened(forward, hypothesis, now, columns) if broad.asks(hypothesis) else now
+    return now, columns
 
 
 def simulated(forward: Forward, hypothesis: Hypothesis, u, nu, places=None) -> np.ndarray:
