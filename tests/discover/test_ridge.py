@@ -190,6 +190,23 @@ def test_slopes_that_hold_over_the_errors_are_kept_to_the_byte(two):
     assert forward_bend is fit.normal
 
 
+@pytest.mark.parametrize("room", [0.0, 0.01, 0.4])
+def test_slopes_beside_a_bound_are_those_of_the_law(two, room):
+    """Errors reach WIDE, more than there is room for: a point clipped leaves the valley by many NARROW."""
+    bound = two.coordinates[1].high
+    middle = np.array([-2.0, bound - room])
+    forward = Valley(middle)
+    fit = forward.fit(two, middle)
+    # The law's own slopes at the middle, without the steps of a difference.
+    columns = forward.columns(two, fit.u[None], fit.nu[None], step=1e-6)
+    exact = from_slopes(forward, 2, fit.u[None], fit.nu[None], columns)
+    wide = broad.sloped(forward, two, exact, columns)
+    error = np.sqrt(np.diag(broad.covariance(wide)))
+    # A bend is a parabola, which the points tell from a slope: equal but for rounding over such differences.
+    assert error == pytest.approx(np.sqrt(np.diag(broad.covariance(exact))), rel=1e-4)
+    assert error == pytest.approx(WIDE * np.sqrt(1.09) / 2.0, rel=1e-3)  # and NARROW / 2 across, squared
+
+
 class Counted(Valley):
     """A count more, right from half a width along the valley on, off by four standard errors before."""
 

@@ -88,20 +88,29 @@ def _axes(now):
     return rows * np.minimum(1.0, FARTHEST / np.abs(rows).max(axis=1))[:, None]
 
 
+def _within(hypothesis, u, moves):
+    """Points to either side; to the other one where a move leaves the bounds: clipped, it would leave the axis
+    and climb out of the valley, which is no slope along it.
+    """
+    beyond = np.any(hypothesis.inside(u + moves) != u + moves, axis=1)
+    return np.where(beyond[:, None], u - moves, u + moves)
+
+
 def sloped(forward: Forward, hypothesis: Hypothesis, now: Normal, columns: list[np.ndarray]) -> Normal | None:
     """The normal equations with slopes over the axes; None where too few points can be simulated."""
     axes = _axes(now)
     moves = np.concatenate([np.zeros((1, now.free)), *(x * axes for x in POINTS)])
-    u = hypothesis.inside(now.u + moves)
+    u = hypothesis.inside(_within(hypothesis, now.u, moves))
     u[0] = now.u[0]
     found = forward.sampled(hypothesis, u, np.repeat(now.nu, len(u), axis=0))
     sound = np.isfinite(sum(value.sum(axis=1) for value in found))
     # In units of the axes, so that the shortest counts like the longest.
     along = np.linalg.solve(axes.T, (u - now.u).T).T[sound]
-    lines = np.column_stack([along, np.ones(len(along))])
-    if not sound[0] or np.linalg.matrix_rank(lines) <= now.free:
+    # With what bends along each axis, which is no slope where all points lie to one side of it.
+    lines = np.column_stack([along, np.ones(len(along)), np.square(along)])
+    if not sound[0] or np.linalg.matrix_rank(lines[:, : now.free + 1]) <= now.free:
         return None
-    to_slopes = np.linalg.solve(axes, np.linalg.pinv(lines)[:-1])
+    to_slopes = np.linalg.solve(axes, np.linalg.pinv(lines)[: now.free])
     own = [k for k, c in enumerate(hypothesis.coordinates) if not c.parameter.acts_like]
     parts = []
     for run, value in enumerate(found):
