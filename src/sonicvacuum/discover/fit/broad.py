@@ -89,8 +89,8 @@ def _axes(now):
 
 
 def _within(hypothesis, u, moves):
-    """Points to either side; to the other one where a move leaves the bounds: clipped, it would leave the axis
-    and climb out of the valley, which is no slope along it.
+    """Points to either side; to the other one where a move leaves the bounds: clipped, it would leave the
+    axis and climb out of the valley, which is no slope along it.
     """
     beyond = np.any(hypothesis.inside(u + moves) != u + moves, axis=1)
     return np.where(beyond[:, None], u - moves, u + moves)
