@@ -117,7 +117,7 @@ def test_a_single_effect_that_a_pair_leads_lower_is_followed_beyond_its_range():
     start = Fit(
         Hypothesis((alone,)), linearise(forward, Hypothesis((alone,)), np.zeros((1, 1)), null.nu[None])
     )
-    own = Candidate("sensor-gain", start, null.objective - start.objective, 0.0, ((1, 1.0),), ())
+    own = Candidate("sensor-gain", start, null.objective - start.objective, 0.0)
     both = Hypothesis((alone,)).with_component(drag)
     at = np.array([[c.inverse(0.3) if c.parameter.name == "gain_ratio" else c.low for c in both.coordinates]])
     pair = pairs.combination(null, fit(forward, both, at, np.zeros((1, forward.layout.size))), setup)
@@ -178,11 +178,11 @@ def test_a_single_effect_that_sets_come_down_to_is_known_by_its_lower_minimum():
     )
     elsewhere = Hypothesis((Component(effect("sensor-gain"), free, place=0),))
     short = Fit(elsewhere, linearise(forward, elsewhere, np.log([[1.1]]), null.nu[None]))
-    own = Candidate("sensor-gain", short, null.objective - short.objective, -5.0, ((0, 1.0),))
+    own = Candidate("sensor-gain", short, null.objective - short.objective, -5.0)
     other = Candidate("viscous-drag", short, own.gain, 0.0)
     led = restart.led(null, there, [own, other])
     assert [c.effect for c in led] == ["sensor-gain", "viscous-drag"]
-    assert led[0].fit is there and led[0].places == ((1, 1.0),)
+    assert led[0].fit is there
     assert led[0].gain == pytest.approx(null.objective - there.objective)
     # Of the evidence only the misfit has changed.
     assert led[0].log_bayes == pytest.approx(-5.0 + 0.5 * (led[0].gain - own.gain))

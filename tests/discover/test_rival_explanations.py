@@ -47,10 +47,14 @@ def test_rivals_without_an_effect_say_nothing_of_its_parameter(verdict, fit):
     assert (share.tolist(), off.tolist()) == ([1.0], [0.0])
     ((share, off),) = rivals.shifts(fit, [Rival(1.0, null)])
     assert (share.tolist(), off.tolist()) == ([1.0], [0.0])
+
+
+def test_an_effect_that_sits_elsewhere_has_its_parameter_there(fit):
     (elsewhere,) = (replace(c, place=3) for c in fit.hypothesis.components)
     moved = replace(beside(fit, 1.0, 0.0), hypothesis=replace(fit.hypothesis, components=(elsewhere,)))
     ((share, off),) = rivals.shifts(fit, [Rival(0.5, fit), Rival(0.5, moved)])
-    assert (share.tolist(), off.tolist()) == ([1.0], [0.0])
+    assert share.tolist() == [0.5, 0.5]
+    assert off == pytest.approx([0.0, fit.sigma[0]])
 
 
 def test_one_strength_may_do_what_another_does(verdict):
@@ -70,9 +74,9 @@ def test_one_strength_may_do_what_another_does(verdict):
     assert (share.tolist(), off.tolist()) == ([0.5, 0.5], [0.0, -0.1])
     # Another nominal fit is worth as much to both; a better fit of the one makes the other less likely.
     lower = SimpleNamespace(objective=null.objective - 5.0)
-    assert rounds._moved(one, lower, fits[0], (), ()).ways == one.ways
+    assert rounds._moved(one, lower, fits[0], ()).ways == one.ways
     better = SimpleNamespace(objective=fits[0].objective - 2.0 * np.log(3.0))
-    shares = [share for share, _ in rounds._moved(one, null, better, (), ()).ways]
+    shares = [share for share, _ in rounds._moved(one, null, better, ()).ways]
     assert shares == pytest.approx([0.75, 0.25])
 
 

@@ -8,11 +8,13 @@ import re
 from itertools import pairwise
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 from made_verdicts import model, verdict, write
 from msgspec.structs import replace
 
 from sonicvacuum.discover import given
+from sonicvacuum.discover.draws import PLACES, Draws
 from sonicvacuum.discover.law import Law, Near
 from sonicvacuum.discover.verdict import Known, Value, write_json
 from sonicvacuum.effects import CATALOGUE
@@ -147,7 +149,26 @@ def test_a_gauge_at_fault_is_called_by_its_name():
         "gain_ratio": Value(value=0.68, sigma=0.01), "sensor": Value(value=1.0, sigma=0.0)}})  # fmt: skip
     (one,) = rows.effects(found, CATALOGUE, {}, ["g1", "wall"])
     place = one["parameters"][1]
-    assert (place["name"], place["value"]) == ("sits at gauge", "wall")
+    assert (place["name"], place["value"], place["interval"]) == ("sits at gauge", "wall", "")
+    odds = Draws("sensor-gain", "sensor", PLACES, np.array([1.0, 0.0]), np.array([0.7, 0.3]))
+    (one,) = rows.effects(found, CATALOGUE, {("sensor-gain", "sensor"): odds}, ["g1", "wall"])
+    assert one["parameters"][1]["interval"] == "wall\N{NO-BREAK SPACE}(0.70), g1\N{NO-BREAK SPACE}(0.30)"
+
+
+def test_a_place_is_told_with_the_others_that_it_may_be():
+    found = verdict(parameters={"contact-gap": {
+        "gap_um": Value(value=0.04, sigma=0.01), "contact": Value(value=4.0, sigma=0.6)}})  # fmt: skip
+    share = np.array([0.4, 0.06, 0.45, 0.09])
+    odds = Draws("contact-gap", "contact", PLACES, np.array([4.0, 2.0, 3.0, 5.0]), share)
+    (one,) = rows.effects(found, CATALOGUE, {("contact-gap", "contact"): odds})
+    place = one["parameters"][1]
+    assert (place["name"], place["value"]) == ("sits at contact", "4")
+    # What is told first, then by what they have, as many as have 90 % together.
+    assert place["interval"].split(", ") == [
+        f"{k}\N{NO-BREAK SPACE}({p})" for k, p in ((4, "0.40"), (3, "0.45"), (5, "0.09"))
+    ]
+    # How intervals were found is said of parameters; a place has none.
+    assert words.drawn({("contact-gap", "contact"): odds}) == ""
 
 
 def test_one_ball_falls_on_its_wall_and_is_not_made_of_it():

@@ -19,10 +19,10 @@ from itertools import chain
 import numpy as np
 
 from sonicvacuum.discover import proposals
-from sonicvacuum.discover.draws import AVERAGED, LINEAR, PROFILE, SAMPLED, TRUSTED, Draws, pareto_k
+from sonicvacuum.discover.draws import AVERAGED, LINEAR, PLACES, PROFILE, SAMPLED, TRUSTED, Draws, pareto_k
 from sonicvacuum.discover.fit import broad, ridge
 from sonicvacuum.discover.fit.refit import Fit
-from sonicvacuum.discover.judge import rivals
+from sonicvacuum.discover.judge import rivals, whereabouts
 from sonicvacuum.discover.judge.rivals import Rival
 from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.forward import CHUNK, Forward
@@ -55,7 +55,13 @@ def posterior(forward: Forward, fit: Fit, found: Sequence[Rival] = ()) -> list[D
     without any.
 
     Where rivals that have a parameter make notably more of its error, its draws stand once for each of them.
+    Effects that sit somewhere have their places, too, which are among the rivals (`whereabouts`).
     """
+    sits = [Draws(e.id, e.places, PLACES, at, share) for e, at, share in whereabouts.of_each(found, fit)]
+    return [*_parameters(forward, fit, found), *sits]
+
+
+def _parameters(forward, fit, found):
     if not len(fit.u):
         return []
     bent = broad.asks(fit.hypothesis) and not fit.at_bound().any()

@@ -107,7 +107,7 @@ def investigate(
         missed = null.objective - lower.objective
         if missed > policy.STOPPED_SHORT * found[0].gain:
             return investigate(given, threads, lower)
-        found, null = [_moved(c, lower, c.fit, c.places, c.flags) for c in found], lower
+        found, null = [_moved(c, lower, c.fit, c.flags) for c in found], lower
         scores = screen.screen(forward, null, families)
     few = enough.told(forward, (c for c in found if significant(c, threshold, prior)))
     passes = (
@@ -247,9 +247,9 @@ def _polished(forward, null, found, threshold):
         if c.gain > least and (hopeful or not c.fit.settled):
             better = polish(branch, c.fit)
             flags = tuple(f for f in c.flags if f != "unsettled") + ("unsettled",) * (not better.settled)
-            c = _moved(c, null, better, c.places, flags)
+            c = _moved(c, null, better, flags)
         if c.gain > least and wide.wide(branch):
-            c = _moved(c, null, wide.again(branch, c.fit), c.places, c.flags)
+            c = _moved(c, null, wide.again(branch, c.fit), c.flags)
         # What a bound holds back may be far behind for that alone.
         further = c.gain > least or (c.gain > 0.0 and bounds.held_back(c.fit))
         return _beyond(branch, null, c) if further else c
@@ -274,7 +274,7 @@ def _beyond(forward, null, c):
     """A candidate followed beyond the bounds that its fit stands at."""
     better, held = bounds.beyond(forward, c.fit)
     flags = (*(f for f in c.flags if f != "bound"), *("beyond",) * (better is not c.fit), *("bound",) * held)
-    return _moved(c, null, better, c.places, flags)
+    return _moved(c, null, better, flags)
 
 
 def _along(forward, null, found):
@@ -292,8 +292,7 @@ def _along(forward, null, found):
         return None if better is start else better
 
     def moved(k, better):
-        where = ((better.hypothesis.components[0].place, 1.0),)
-        result[k] = _moved(result[k], null, better, where, result[k].flags)
+        result[k] = _moved(result[k], null, better, result[k].flags)
 
     around_each = abreast.each(forward, lambda branch, k: refined(branch, found[k].fit), placed)
     for k, better in zip(placed, around_each, strict=True):
@@ -308,9 +307,9 @@ def _along(forward, null, found):
     return enough.first(forward, evidence.ranked(result, forward.experiment.prior_odds))
 
 
-def _moved(c, null, better, where, flags):
+def _moved(c, null, better, flags):
     """A candidate whose fit has been improved, or that is held against another nominal fit."""
     more, lower = null.objective - better.objective - c.gain, c.fit.objective - better.objective
     instead = tuple((log - 0.5 * lower, way) for log, way in c.instead)
     gain, log_bayes = c.gain + more, c.log_bayes + 0.5 * more
-    return Candidate(c.effect, better, gain, log_bayes, where, flags, instead)
+    return Candidate(c.effect, better, gain, log_bayes, flags, instead)

@@ -25,7 +25,7 @@ from sonicvacuum.discover.draws import Draws
 from sonicvacuum.discover.faults import competition
 from sonicvacuum.discover.fit import goodness, heldout
 from sonicvacuum.discover.fit.refit import Fit
-from sonicvacuum.discover.judge import degenerate, explanations, locate, strained
+from sonicvacuum.discover.judge import degenerate, explanations, locate, strained, whereabouts
 from sonicvacuum.discover.judge.law import surface
 from sonicvacuum.discover.model import window
 from sonicvacuum.discover.model.forward import Forward
@@ -134,14 +134,15 @@ def discover(
     clock.mark("next experiment")
     named = verdict.named_effects(found)
     counted = found.counted or found
-    drawn = posterior(counted.forward, counted.final, found.rivals) if named else []
+    rivals = whereabouts.among(found.rivals, counted.forward, counted.final) if named else found.rivals
+    drawn = posterior(counted.forward, counted.final, rivals) if named else []
     clock.mark("posterior")
     result = Verdict(
         record=found.forward.experiment.name,
         named=found.named,
         probabilities=found.probabilities,
         confusable=alike,
-        parameters=verdict.parameters(counted.final, found.rivals, drawn) if named else {},
+        parameters=verdict.parameters(counted.final, rivals, drawn) if named else {},
         gap=verdict.gaps(found.null, final, found.sizes, before, left),
         where=verdict.where(places),
         upper_limits=verdict.upper_limits(limits),
@@ -149,6 +150,7 @@ def discover(
         next_experiment=proposal,
         reasons=[
             *found.reasons,
+            *(whereabouts.unsure(rivals, counted.final, forward.experiment.gauges) if named else ()),
             *_taken_as_stated(found, records),
             *(law.reasons(told) if free else ()),
             *verdict.corrections(outcome.findings),
@@ -164,7 +166,7 @@ def discover(
         fit=verdict.goodness_of_fit(*fits, found.smooth or forward.experiment.model_floor_rel or 0.0, wider),
         sources=verdict.sources(catalogue),
         warnings=_doubts(found, records[0]) or UNSET,
-        nuisances=verdict.nuisances(counted.forward, counted.final, found.rivals),
+        nuisances=verdict.nuisances(counted.forward, counted.final, rivals),
     )
     said = tuple(line for lines in notes for line in lines)
     return Result(outcome.record, records, said, found, places, after, limits, result, free, tuple(drawn))

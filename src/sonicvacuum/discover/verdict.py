@@ -16,6 +16,7 @@ from sonicvacuum.discover.draws import SAMPLED, Draws
 from sonicvacuum.discover.faults.found import Finding
 from sonicvacuum.discover.fit.goodness import Goodness
 from sonicvacuum.discover.fit.heldout import HeldOut
+from sonicvacuum.discover.fit.places import ALONG
 from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.judge import rivals
 from sonicvacuum.discover.judge.degenerate import Limit
@@ -168,8 +169,8 @@ def sources(catalogue: Catalogue, ids=None) -> Sources:
 def parameters(
     fit: Fit, found: Sequence[Rival] = (), drawn: Sequence[Draws] = ()
 ) -> dict[str, dict[str, Value]]:
-    """Values and standard errors of the free parameters, with what rivals that have them make of them; places
-    with error 0.
+    """Values and standard errors of the free parameters, with what rivals that have them make of them; of
+    beads and contacts the distance of where else the effect may sit, root mean square; 0 of gauges.
 
     Where many draws of the posterior are much wider than the Gaussian of the fit, as along a valley that
     bends, their width is the error.
@@ -186,10 +187,18 @@ def parameters(
             told = error if width <= BENT * error else width
             values[name] = Value(value=float(c.value(u)), sigma=_finite(told))
         if component.effect.places:
-            values[component.effect.places] = Value(value=float(component.place), sigma=0.0)
+            values[component.effect.places] = _place(component, drawn)
         first += len(component.free)
         result[component.effect.id] = values
     return result
+
+
+def _place(component, drawn):
+    """The place of an effect, and how far off it may be."""
+    one, along = component.effect, component.effect.places in ALONG
+    wide = [d for d in drawn if (d.effect, d.parameter) == (one.id, one.places)] if along else []
+    off = [float(d.weight @ np.square(d.value - component.place)) for d in wide]
+    return Value(value=float(component.place), sigma=math.sqrt(sum(off)))
 
 
 def nuisances(forward: Forward, fit: Fit, found: Sequence[Rival] = ()) -> dict[str, Known] | UnsetType:

@@ -186,7 +186,7 @@ def effects(verdict, catalogue, draws, gauges=()) -> list[dict]:
     for name, given in verdict.parameters.items():
         one = catalogue.effect(name)
         parameters = [
-            _place(key, value, gauges)
+            _place(key, value, draws.get((name, key)), gauges)
             if key == one.places
             else _parameter(one.parameter(key), value, draws.get((name, key)))
             for key, value in given.items()
@@ -204,18 +204,36 @@ def effects(verdict, catalogue, draws, gauges=()) -> list[dict]:
     return found
 
 
-def _place(key, found, gauges):
-    """Row of the place of an effect; a gauge, which verdicts count from 0, by its name."""
-    name = f"{found.value:g}"
-    if key == "sensor" and gauges:
-        key, name = "gauge", gauges[int(found.value)]
-    return {"name": f"sits at {key}", "value": name, "interval": "", "searched": "", "off": ""}
+def _place(key, found, draws, gauges):
+    """Row of the place of an effect, and how likely it and others are; a gauge, which verdicts count from 0,
+    by its name.
+    """
+
+    def name(place):
+        return gauges[int(place)] if key == "sensor" and gauges else f"{place:g}"
+
+    told = [f"{name(place)}\N{NO-BREAK SPACE}({share(p)})" for place, p in _likely(found.value, draws)]
+    where = "gauge" if key == "sensor" and gauges else key
+    row = {"name": f"sits at {where}", "value": name(found.value), "searched": "", "off": ""}
+    return row | {"interval": ", ".join(told), "odds": True}
+
+
+def _likely(told, draws):
+    """(place, probability) of the told place and the likeliest others, as many as together have 90 %."""
+    odds = {} if draws is None else dict(zip(draws.value.tolist(), draws.weight.tolist(), strict=True))
+    found, total = [], 0.0
+    for place in sorted(odds, key=lambda place: (place != told, -odds[place])):
+        if total < 0.9:
+            found.append((place, odds[place]))
+            total += odds[place]
+    return found
 
 
 def _parameter(p, found, draws):
     """Row of a parameter: what, value with its error, 90 % interval, range searched, value without effect."""
     return {
         "name": p.help,
+        "odds": False,
         "value": with_error(found.value, found.sigma) + unit_of(p.unit),
         "interval": _interval(found.value, found.sigma, draws),
         "searched": f"{number(p.low)} to {number(p.high)}",

@@ -5,7 +5,7 @@ Every sentence is made from `verdict.json`, `model.json` and the tables beside t
 
 import math
 
-from sonicvacuum.discover.draws import AVERAGED, LINEAR, SAMPLED, pareto_k
+from sonicvacuum.discover.draws import AVERAGED, LINEAR, PLACES, SAMPLED, pareto_k
 from sonicvacuum.discover.judge.explanations import key
 from sonicvacuum.discover.verdict import Next, Verdict
 from sonicvacuum.effects import CATALOGUE, Catalogue
@@ -29,6 +29,7 @@ def in_words(probability: float) -> str:
 
 def drawn(draws) -> str:
     """How the intervals were found, "" without draws; `draws` as in `discover.draws.read`."""
+    draws = {name: d for name, d in draws.items() if d.how != PLACES}
     if any(d.how == AVERAGED for d in draws.values()):
         rest = {name: d for name, d in draws.items() if d.how != AVERAGED}
         said = "Explanations that have a parameter in common put it at different values: where that matters, "

@@ -36,7 +36,6 @@ class Candidate:
         fit: the best of its fits.
         gain: Δχ² (nuisance penalties included) against the nominal model.
         log_bayes: natural log of the Bayes factor against it.
-        places: (place, weight) where it may sit.
         flags: what to doubt: "bound", "beyond" (the range of the catalogue), "unsettled".
         instead: (log of its weight over that of `fit`, fit) with others of the effect's strengths free.
     """
@@ -45,7 +44,6 @@ class Candidate:
     fit: Fit
     gain: float
     log_bayes: float
-    places: tuple[tuple[int, float], ...] = ()
     flags: tuple[str, ...] = ()
     instead: tuple[tuple[float, Fit], ...] = ()
 

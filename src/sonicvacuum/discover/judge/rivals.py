@@ -69,9 +69,9 @@ def shifts(fit: Fit, found: Sequence[Rival]) -> list[tuple[np.ndarray, np.ndarra
 
 
 def _coordinates(fit):
-    """(effect, its place, parameter) → coordinate and its value."""
+    """(effect, parameter) → coordinate and its value, wherever the effect sits."""
     components = fit.hypothesis.components
-    names = [(c.effect.id, c.place, free.parameter.name) for c in components for free in c.free]
+    names = [(c.effect.id, free.parameter.name) for c in components for free in c.free]
     return dict(zip(names, zip(fit.hypothesis.coordinates, fit.u, strict=True), strict=True))
 
 
@@ -82,5 +82,5 @@ def _coordinate(fit, name, coordinate):
     free = _coordinates(fit)
     if name in free:
         return free[name][1]
-    there = any((c.effect.id, c.place) == name[:2] for c in fit.hypothesis.components)
+    there = name[0] in fit.hypothesis.ids
     return 0.0 if there and not coordinate.endless else None

@@ -130,6 +130,5 @@ def alone(null: Fit, one: Fit, own: Candidate | None, flags: tuple[str, ...] = (
     gain = null.objective - one.objective
     log_bayes = own.log_bayes + 0.5 * (gain - own.gain) if own else evidence.log_bayes(one, gain)
     (component,) = one.hypothesis.components
-    where = (own.places if own else ()) if component.place is None else ((component.place, 1.0),)
     flags += ("unsettled",) * (not one.settled)
-    return Candidate(component.effect.id, one, gain, log_bayes, where, flags)
+    return Candidate(component.effect.id, one, gain, log_bayes, flags)

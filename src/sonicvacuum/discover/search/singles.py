@@ -303,7 +303,7 @@ def candidate(forward, null: Fit, scores: Screen, effect: Effect, effort: Effort
     total = float(np.logaddexp.reduce([f[0] for f in found]) - np.log(len(options)))
     flags = ("bound",) * bool(one.at_bound().any()) + ("unsettled",) * (not one.settled)
     instead = tuple((other - log, way) for other, way, _ in others if other > log - INSTEAD)
-    return Candidate(effect.id, one, gain, total, place_weights(scores, effect), flags, instead)
+    return Candidate(effect.id, one, gain, total, flags, instead)
 
 
 def by_direction(scores: Screen, effect: Effect, gain: float):
@@ -312,14 +312,3 @@ def by_direction(scores: Screen, effect: Effect, gain: float):
         [np.square(z) for d, z in zip(scores.directions, scores.z, strict=True) if d.effect == effect.id]
     )
     return np.maximum(squares - squares.max() + gain, 0.0) if len(squares) > 1 else None
-
-
-def place_weights(scores, effect):
-    """(place, weight) of the likely places."""
-    if not effect.places:
-        return ()
-    at = [k for k, d in enumerate(scores.directions) if d.effect == effect.id]
-    squares = np.square(scores.z[at])
-    weights = np.exp(0.5 * (squares - squares.max()))
-    weights /= weights.sum()
-    return tuple((scores.directions[k].place, float(w)) for k, w in zip(at, weights, strict=True) if w > 0.01)
