@@ -52,6 +52,8 @@ class Row:
         seconds, simulations: what it cost.
         added: the case is one that the study has besides its main list, of a kind of which that has few: it
             counts among its like, and not where all cases are added up.
+        place_in: the hidden bead, contact or gauge is among those that have 90 % together, as for `place`;
+            NaN of verdicts that have no odds of places.
     """
 
     id: str
@@ -93,6 +95,7 @@ class Row:
     seconds: float
     simulations: int
     added: int = 0
+    place_in: float = math.nan
 
 
 def score(
@@ -237,6 +240,7 @@ def _row(truth, verdict, folder, ideal):
         cells_large=cells[3],
         seconds=_number((verdict.get("timing_s") or {}).get("total")),
         simulations=int(verdict.get("simulations") or 0),
+        place_in=stated.place_in(truth, folder),
     )
 
 

@@ -11,7 +11,7 @@ from sonicvacuum_blind.breakdown import KINDS, coverage, ideal_share, pit
 from sonicvacuum_blind.calibration import BASE_RATES, ece, honest, resampled
 from sonicvacuum_blind.score import UNKNOWN, Row, SummaryLine
 from sonicvacuum_blind.shares import counted, counted_of, quantile, ratio_of_sums, share, strength_bin
-from sonicvacuum_blind.stated import CREDIBLE, Parameter
+from sonicvacuum_blind.stated import CREDIBLE, SET, Parameter
 from sonicvacuum_blind.study import STRENGTHS
 
 # Of d′: from here on places are asked for, and leftovers of outside effects count.
@@ -79,6 +79,9 @@ def _places(rows):
     strong = [r for r in chosen if r.reached >= STRONG]
     yield counted_of("place right", "d' 10 and more", strong, "place", ">= 0.95")
     yield counted_of("place right", "d' below 10", [r for r in chosen if r.reached < STRONG], "place")
+    odds = [r for r in rows if not math.isnan(r.place_in)]
+    if odds:
+        yield counted_of(f"place in its {100 * SET:.0f} % set", "all", odds, "place_in")
 
 
 def _classes(of):

@@ -10,6 +10,7 @@ MEASURES = {
     "exact pair": "two hidden effects named exactly",
     "exact set of three": "three hidden effects named exactly",
     "place right": "put at the right bead, contact or gauge",
+    "place in its 90 % set": "that place among those that have 90 % together",
     "size of that set": "how many explanations these are",
     "named on null": "effect named where none is hidden",
     "slip named on null": "slip of the laboratory named where nothing is hidden",

@@ -73,6 +73,13 @@ def test_what_stands_beside_a_verdict_is_scored(tmp_path):
     assert row(truth(hidden=placed), verdict(), folder=tmp_path).place == 1.0
     placed[0]["bead"] = 5
     assert row(truth(hidden=placed), verdict(), folder=tmp_path).place == 0.0
+    assert math.isnan(row(truth(hidden=placed), verdict(), folder=tmp_path).place_in)
+    with (tmp_path / "posterior.csv").open("a") as stream:
+        stream.writelines(f"tsuji,bead,places,{at},{p}\n" for at, p in ((4, 0.3), (6, 0.09), (5, 0.61)))
+    # Beads 5 and 4 have 0.91 together.
+    for bead, inside in ((5, 1.0), (4, 1.0), (6, 0.0), (7, 0.0)):
+        placed[0]["bead"] = bead
+        assert row(truth(hidden=placed), verdict(), folder=tmp_path).place_in == inside
     cells = "r1,g1,delay,0.001\nr1,g1,width,0.001\nr2,g1,delay,0.002\nr2,wall,delay,0.3\n"
     (tmp_path / "where.csv").write_text("run,sensor,feature,q_before\n" + cells)
     found = row(truth(), verdict(), folder=tmp_path, ideal=IDEAL)
