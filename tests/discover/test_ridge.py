@@ -83,6 +83,10 @@ def two():
     return Hypothesis((Component(own, free),))
 
 
+def broadened(forward, two, now, columns):
+    return broad.broadened(forward, two, now, broad.sloped(forward, two, now, columns), columns)
+
+
 def test_an_effect_of_several_parameters_asks_for_it(two):
     assert broad.asks(two)
     assert not broad.asks(Hypothesis())
@@ -175,7 +179,7 @@ def test_jumps_are_not_taken_for_slopes(two):
     truth = WIDE * np.sqrt(1.09) / 2.0
     assert np.sqrt(np.diag(broad.covariance(fit.normal))).max() < 0.3 * truth
     columns = forward.columns(two, fit.u[None], fit.nu[None])
-    better = broad.broadened(forward, two, fit.normal, columns)
+    better = broadened(forward, two, fit.normal, columns)
     error = np.sqrt(np.diag(broad.covariance(better)))
     # Slopes through four points of jumping data err: a factor of two either way is what intervals bear.
     assert error == pytest.approx([truth, truth], rel=0.5)
@@ -186,7 +190,7 @@ def test_slopes_that_hold_over_the_errors_are_kept_to_the_byte(two):
     forward = Valley([-2.0, 0.5])
     fit = forward.fit(two, [-2.0, 0.5])
     columns = forward.columns(two, fit.u[None], fit.nu[None])
-    forward_bend = broad.broadened(forward, two, fit.normal, columns)
+    forward_bend = broadened(forward, two, fit.normal, columns)
     assert forward_bend is fit.normal
 
 
@@ -227,7 +231,7 @@ def test_where_data_hold_counts_the_valley_is_followed_to_where_they_are_right(t
     fit = forward.fit(two, middle)
     assert fit.objective == pytest.approx(16.0)
     columns = forward.columns(two, fit.u[None], fit.nu[None])
-    better = broad.broadened(forward, two, fit.normal, columns)
+    better = broadened(forward, two, fit.normal, columns)
     # Right from (1/2)² / 1.09 = 0.23 on; points of the valley lie up to a standard error further.
     assert better.objective[0] < 2.5
     assert (better.u[0] - middle).sum() >= 0.5 * WIDE
@@ -278,5 +282,5 @@ def test_where_nothing_can_be_simulated_the_fit_stays_as_it_is(two):
     fit = Valley(middle).fit(two, middle)
     columns = Valley(middle).columns(two, fit.u[None], fit.nu[None])
     forward = Nowhere(middle)
-    assert broad.broadened(forward, two, fit.normal, columns) is fit.normal
+    assert broadened(forward, two, fit.normal, columns) is fit.normal
     assert ridge.valley(forward, two, fit.normal, broad.covariance(fit.normal), columns) is None

@@ -14,7 +14,7 @@ class Part(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class Value(Part, kw_only=True):
-    """A parameter with its standard error; `sigma` 0 for a place."""
+    """A parameter with its standard error; of a bead or contact how far off it may be, 0 of a gauge."""
 
     value: float
     sigma: float

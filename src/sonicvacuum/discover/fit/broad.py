@@ -32,13 +32,23 @@ def asks(hypothesis: Hypothesis) -> bool:
     return any(len(c.free) > 1 for c in hypothesis.components)
 
 
-def broadened(forward: Forward, hypothesis: Hypothesis, now: Normal, columns: list[np.ndarray]) -> Normal:
+def broadened(
+    forward: Forward,
+    hypothesis: Hypothesis,
+    now: Normal,
+    wide: Normal | None,
+    columns: list[np.ndarray],
+) -> Normal:
     """A fit, one lane, with slopes over its own standard errors, at the lowest point of its valley; as it is
     where its errors stay what they were, and are no longer than errors can be.
 
-    `columns` are those of a point nearby (`Forward.columns`), whose slopes to the nuisances are held.
+    Args:
+        forward: the predictor.
+        hypothesis: with an effect of several parameters.
+        now: the fit.
+        wide: the same with slopes over its errors (`sloped`).
+        columns: of a point nearby (`Forward.columns`), whose slopes to the nuisances are held.
     """
-    wide = sloped(forward, hypothesis, now, columns) if now.has_slopes[0] else None
     if wide is None or not wide.has_slopes[0]:
         return now
     if _alike(now, wide) and not _flat(wide) and not _counted(forward, len(columns)):
@@ -97,7 +107,11 @@ def _within(hypothesis, u, moves):
 
 
 def sloped(forward: Forward, hypothesis: Hypothesis, now: Normal, columns: list[np.ndarray]) -> Normal | None:
-    """The normal equations with slopes over the axes; None where too few points can be simulated."""
+    """The normal equations with slopes over the axes; None where too few points can be simulated, or where no
+    slopes tell the axes.
+    """
+    if not now.has_slopes[0]:
+        return None
     axes = _axes(now)
     moves = np.concatenate([np.zeros((1, now.free)), *(x * axes for x in POINTS)])
     u = hypothesis.inside(_within(hypothesis, now.u, moves))

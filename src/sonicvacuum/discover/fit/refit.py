@@ -190,10 +190,12 @@ def _finished(forward, hypothesis, now):
     now, columns = _rested(forward, hypothesis, now)
     if not broad.asks(hypothesis):
         return now
-    if strides.rough(now, broad.sloped(forward, hypothesis, now, columns)):
-        lower = strides.farther(forward, hypothesis, now)
-        now, columns = (now, columns) if lower is now else _rested(forward, hypothesis, lower)
-    return broad.broadened(forward, hypothesis, now, columns)
+    wide = broad.sloped(forward, hypothesis, now, columns)
+    lower = strides.farther(forward, hypothesis, now) if strides.rough(now, wide) else now
+    if lower is not now:
+        now, columns = _rested(forward, hypothesis, lower)
+        wide = broad.sloped(forward, hypothesis, now, columns)
+    return broad.broadened(forward, hypothesis, now, wide, columns)
 
 
 def _rested(forward, hypothesis, now):
