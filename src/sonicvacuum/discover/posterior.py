@@ -26,6 +26,8 @@ from sonicvacuum.discover.judge import rivals, whereabouts
 from sonicvacuum.discover.judge.rivals import Rival
 from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.forward import CHUNK, Forward
+from sonicvacuum.discover.rounds import Investigation
+from sonicvacuum.discover.verdict import named_effects
 
 # Draws, and their seed; SPARE times as many are proposed, for those that lie beyond the bounds.
 DRAWS, SEED, SPARE = 200, 20061017, 16
@@ -48,6 +50,17 @@ SHORTEST = 5
 NOTHING = 1500.0
 # The widest proposal, as a share of the range that is searched.
 WIDEST = 0.5
+
+
+def of_named(found: Investigation) -> tuple[list[Rival], list[Draws]]:
+    """Rivals of what is named, which stands once for each place where its effects may sit, and what the data
+    say of its parameters and places; the rivals as they are, and [], where no effect is named.
+    """
+    if not named_effects(found):
+        return found.rivals, []
+    one = found.counted or found
+    every = whereabouts.among(found.rivals, one.forward, one.final)
+    return every, posterior(one.forward, one.final, every)
 
 
 def posterior(forward: Forward, fit: Fit, found: Sequence[Rival] = ()) -> list[Draws]:

@@ -16,6 +16,7 @@ from sonicvacuum.discover import (
     hidden,
     law,
     next_experiment,
+    posterior,
     quantities,
     unnamed,
     upper,
@@ -30,7 +31,6 @@ from sonicvacuum.discover.judge.law import surface
 from sonicvacuum.discover.model import window
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.nuisances import assumed, exact
-from sonicvacuum.discover.posterior import posterior
 from sonicvacuum.discover.rounds import Investigation
 from sonicvacuum.discover.search.free_law import FreeLaw
 from sonicvacuum.discover.verdict import Verdict
@@ -132,10 +132,8 @@ def discover(
     stages.begin("next experiment")
     proposal = next_experiment.propose(found, alike)
     clock.mark("next experiment")
-    named = verdict.named_effects(found)
-    counted = found.counted or found
-    rivals = whereabouts.among(found.rivals, counted.forward, counted.final) if named else found.rivals
-    drawn = posterior(counted.forward, counted.final, rivals) if named else []
+    named, counted = verdict.named_effects(found), found.counted or found
+    rivals, drawn = posterior.of_named(found)
     clock.mark("posterior")
     result = Verdict(
         record=found.forward.experiment.name,
