@@ -58,11 +58,6 @@ def two():
     return Hypothesis((Component(own, variants(own, None)[0]),))
 
 
-def begun(hollow):
-    """Coordinates in a hollow, so many from the lowest."""
-    return MIDDLE + 0.5 * APART * hollow
-
-
 def settled(forward, two, hollow):
     """A fit at rest in a hollow, so many from the lowest, its last steps not taken."""
     start = MIDDLE[None] + 0.5 * APART * hollow

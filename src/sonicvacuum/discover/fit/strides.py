@@ -8,7 +8,7 @@ errors, nuisances following as slopes have it, and are followed down; and once m
 
 import numpy as np
 
-from sonicvacuum.discover.fit import ridge
+from sonicvacuum.discover.fit import broad, ridge
 from sonicvacuum.discover.fit.descent import descend
 from sonicvacuum.discover.fit.normal import Normal, linearised
 from sonicvacuum.discover.model.forward import Forward
@@ -57,5 +57,4 @@ def _strides(hypothesis, now):
 
 def _longest(now):
     """(p,) longest axis of the errors of the coordinates, a standard error long."""
-    covariance = np.linalg.pinv(now.total()[1][0], hermitian=True)
-    return ridge.principal_axes(covariance[: now.free, : now.free])[-1]
+    return ridge.principal_axes(broad.covariance(now))[-1]

@@ -44,7 +44,7 @@ def among(rivals: Sequence[Rival], forward: Forward, told: Fit) -> list[Rival]:
     if not any(c.effect.places for c in told.hypothesis.components):
         return list(rivals)
     others = [r for r in rivals if not same(r.fit, told)]
-    own = sum(r.probability for r in rivals) - sum(r.probability for r in others)
+    own = sum(r.probability for r in rivals if same(r.fit, told))
     sits = spread(forward, told, setup_of(forward))
     return [*(replace(r, probability=r.probability * (own or 1.0)) for r in sits), *others]
 
