@@ -4,9 +4,9 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from made_records import block
+from made_records import SIGMA, block, made
 
-from sonicvacuum.discover import next_experiment
+from sonicvacuum.discover import next_experiment, session
 from sonicvacuum.discover.fit import wide
 from sonicvacuum.discover.fit.refit import fit
 from sonicvacuum.discover.imagined import changes, changes_of_two, together
@@ -183,3 +183,30 @@ def test_a_run_is_said_in_words(change, told):
     proposal = Next(change=change, separates=["tsuji", "viscous-drag"], delta_chi2=25.0)
     text = words.experiment(proposal, [])
     assert told in text and "5 standard errors" in text
+
+
+def seen_from(bead, seed):
+    """The verdict on a gap at contact 3 that one gauge saw from a bead."""
+    gauge = {"id": "g", "kind": "embedded", "bead": bead, "sigma_N": SIGMA, "gain_rel_sigma": 0.02}
+    record, _ = made([("contact-gap", {"gap_um": 0.6, "contact": 3})], seed=seed, sensors=[gauge])
+    found = session.discover(record, threads=1).verdict
+    return found, [line for line in found.reasons if "sits at" in line]
+
+
+def test_what_is_clear_but_for_its_place_is_asked_where_it_sits():
+    """From bead 7 a gap at contact 3 looks like one at contact 2; from between them it does not. A load
+    would close it.
+    """
+    found, unsure = seen_from(7, seed=3)
+    assert found.named == ["contact-gap"] and not found.confusable and unsure
+    proposal = found.next_experiment
+    assert proposal.places == [{"contact-gap": 3}, {"contact-gap": 2}]
+    assert "at contact 3 and gap in the chain at contact 2" in words.experiment(proposal, [])
+    assert not words.settled(found)
+    assert not {"chain.static_force_N", "chain.orientation"} & proposal.change.keys()
+    found, unsure = seen_from(proposal.change["sensors.g.bead"], seed=4)
+    assert found.parameters["contact-gap"]["contact"].value == 3 and not unsure
+
+
+def test_a_gauge_is_called_by_its_name_where_an_effect_is_said_to_sit():
+    assert words.placed("sensor-gain+tsuji", {"sensor-gain": "g4"}).startswith("sensor gain at gauge g4 and ")

@@ -5,17 +5,22 @@ parameters and with all nuisances as far as the data at hand allow. The χ² tha
 expected to decide between the two (Box & Hill, Technometrics 9, 57, 1967; Buzzi-Ferraris & Forzatti, Chem.
 Eng. Sci. 38, 225, 1983), with the scatter that noise gives it. Proposed is the run after which, whichever is
 true by its present probability, all others are most likely behind it; but for those that no run puts there,
-such as a general law where one of its limits is true.
+such as a general law where one of its limits is true. Where what is missing is clear, but not where it
+sits, explanations are its places.
 """
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 import scipy
+from msgspec import UNSET
 
 from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.imagined import changes, changes_of_two, together
+from sonicvacuum.discover.judge import whereabouts
 from sonicvacuum.discover.judge.degenerate import ALIKE
+from sonicvacuum.discover.judge.rivals import Rival
 from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.rounds import Investigation
@@ -35,22 +40,31 @@ _BESIDE = 10
 
 @dataclass(frozen=True)
 class Explanation:
-    """One that is left: its name, natural log of its weight, and its fit to the old runs."""
+    """One that is left: its name, natural log of its weight, its fit to the old runs, and where its effects
+    sit, where that is asked.
+    """
 
     name: str
     weight: float
     fit: Fit
+    places: dict[str, int | str] = field(default_factory=dict)
 
 
-def propose(found: Investigation, alike: list[list[str]]) -> Next | None:
+def propose(found: Investigation, alike: list[list[str]], rivals: Sequence[Rival] = ()) -> Next | None:
     """The run that most likely leaves one explanation alone; None without signals or rivals.
 
     Two quantities of the last run are changed only where none alone would decide.
+
+    Args:
+        found: the search.
+        alike: sets of effects that the data cannot tell from what is named.
+        rivals: what is named stands there once for each place where its effects may sit.
     """
-    forward = found.forward
-    if not any(r.has_signals for r in forward.experiment.runs):
+    if not any(r.has_signals for r in found.forward.experiment.runs):
         return None
-    left = _left(found, alike)
+    sits = [] if alike else _at_places(found, rivals)
+    forward = (found.counted or found).forward if sits else found.forward
+    left = sits or _left(found, alike)
     if len(left) < 2:
         return None
     known = [precision(forward, one.fit) for one in left]
@@ -59,28 +73,32 @@ def propose(found: Investigation, alike: list[list[str]]) -> Next | None:
     if not tried:
         return None
     behind = put_behind(weights, apart)
-    if alike and (surely(weights, behind) < SURE).all():
-        others = _tried(forward, left, known, changes_of_two(forward.experiment))
-        tried, apart = tried + others[0], np.concatenate([apart, others[1]])
+    if (alike or sits) and (surely(weights, behind) < SURE).all():
+        two, further = _tried(forward, left, known, changes_of_two(forward.experiment))
+        tried, apart = tried + two, np.concatenate([apart, further])
         behind = put_behind(weights, apart)
     value = resolved(weights, behind)
     able = np.flatnonzero(behind.max(axis=0)[0, 1:] > _HOPELESS) + 1
-    rivals = able if len(able) else np.arange(1, len(left))
+    others = able if len(able) else np.arange(1, len(left))
     # Where any run will do, or none: the one that decides most.
-    order = np.lexsort((apart[:, 0, rivals].min(axis=1), np.round(value, 3)))
+    order = np.lexsort((apart[:, 0, others].min(axis=1), np.round(value, 3)))
     best = next(k for k in order[::-1] if len(tried[k]) == 1)
     if value[order[-1]] > value[best] + WORTH_TWO:
         best = order[-1]
-    rival = int(rivals[np.argmin(apart[best, 0, rivals])])
-    separates = [left[0].name, left[rival].name]
-    return Next(change=tried[best], separates=separates, delta_chi2=float(apart[best, 0, rival]))
+    rival = int(others[np.argmin(apart[best, 0, others])])
+    between = (left[0], left[rival])
+    return Next(
+        change=tried[best],
+        separates=[one.name for one in between],
+        delta_chi2=float(apart[best, 0, rival]),
+        places=[one.places for one in between] if sits else UNSET,
+    )
 
 
 def _tried(forward, left, known, imagined):
     """Changes, and (c, n, n) how far each run takes explanations apart."""
-    # Records that hang differently say nothing of such an effect when taken together.
-    turned = any(_depends_on_orientation(one.fit) for one in left)
-    offers = [one for one in imagined if not (turned and "chain.orientation" in one[0])]
+    kept = _kept(left)
+    offers = [one for one in imagined if not kept & one[0].keys()]
 
     def asked(branch, some):
         new = Forward(together([experiment for _, experiment in some]), branch.threads)
@@ -124,9 +142,30 @@ def surely(weights: np.ndarray, behind: np.ndarray) -> np.ndarray:
     return behind.min(axis=2) @ np.exp(weights - np.logaddexp.reduce(weights))
 
 
-def _depends_on_orientation(fit):
-    """Whether an effect of a fit is off at the recorded orientation."""
-    return any(c.effect.depends_on_orientation for c in fit.hypothesis.components)
+def _kept(left: list[Explanation]) -> set[str]:
+    """What no run may change: records that hang differently say nothing of an effect of the orientation when
+    taken together, and whatever loads a chain closes its gaps.
+    """
+    effects = [c.effect for one in left for c in one.fit.hypothesis.components]
+    turned = {"chain.orientation"} if any(e.depends_on_orientation for e in effects) else set()
+    loaded = {"chain.orientation", "chain.static_force_N"} if any(e.unloaded for e in effects) else set()
+    return turned | loaded
+
+
+def _at_places(found: Investigation, rivals) -> list[Explanation]:
+    """What is named at each place where it may sit, the told one first; [] where that is clear."""
+    one = found.counted or found
+    gauges = one.forward.experiment.gauges
+    own = whereabouts.where_open(rivals, one.final)
+    return [
+        Explanation(
+            "+".join(r.fit.hypothesis.ids),
+            float(np.log(r.probability)),
+            r.fit,
+            whereabouts.named(r.fit, gauges),
+        )
+        for r in [*own[:1], *sorted(own[1:], key=lambda r: -r.probability)][: 1 + _ALIKE]
+    ]
 
 
 def _left(found: Investigation, alike) -> list[Explanation]:

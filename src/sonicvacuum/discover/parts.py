@@ -92,12 +92,14 @@ class Known(Part, kw_only=True):
 
 class Next(Part, kw_only=True):
     """The change of the experiment that most likely leaves one explanation alone; the best one and its
-    nearest rival there, and the `delta_chi2` predicted between them.
+    nearest rival there, and the `delta_chi2` predicted between them. Where these are one explanation at two
+    places, `places` has the bead, contact or gauge of each of its effects at either.
     """
 
     change: dict[str, float | int | str]
     separates: list[str]
     delta_chi2: float
+    places: list[dict[str, int | str]] | UnsetType = UNSET
 
 
 class Source(Part, kw_only=True):

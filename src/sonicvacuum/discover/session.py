@@ -129,12 +129,12 @@ def discover(
     )
     told = law.told(free, found) if free else UNSET
     clock.mark("limits")
-    stages.begin("next experiment")
-    proposal = next_experiment.propose(found, alike)
-    clock.mark("next experiment")
     named, counted = verdict.named_effects(found), found.counted or found
     rivals, drawn = posterior.of_named(found)
     clock.mark("posterior")
+    stages.begin("next experiment")
+    proposal = next_experiment.propose(found, alike, rivals)
+    clock.mark("next experiment")
     result = Verdict(
         record=found.forward.experiment.name,
         named=found.named,

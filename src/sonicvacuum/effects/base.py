@@ -167,6 +167,8 @@ class Effect:
         of_material: whether it belongs to the contact material, so that beads of another size have it too.
         depends_on_orientation: whether its off value is the chain's recorded orientation, so that records
             that hang differently cannot be asked about it together.
+        unloaded: whether it is there only while nothing presses on the chain, so that a run under load says
+            nothing of it.
         source: where it is from, None for the effects of the project.
     """
 
@@ -188,6 +190,7 @@ class Effect:
     stated: Callable | None = field(default=None, repr=False)
     of_material: bool = False
     depends_on_orientation: bool = False
+    unloaded: bool = False
     source: Source | None = None
 
     def parameter(self, name: str) -> Parameter:

@@ -29,5 +29,6 @@ EFFECT = Effect(
     when_to_use="horizontal chains without preload; a delay at one place that depends on the speed",
     when_not="the same delay at all speeds; chains under preload",
     dissipative=False,
+    unloaded=True,
     change=change,
 )

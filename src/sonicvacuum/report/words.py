@@ -4,6 +4,7 @@ Every sentence is made from `verdict.json`, `model.json` and the tables beside t
 """
 
 import math
+from collections.abc import Mapping
 
 from sonicvacuum.discover.draws import AVERAGED, LINEAR, PLACES, SAMPLED, pareto_k
 from sonicvacuum.discover.judge.explanations import key
@@ -75,6 +76,16 @@ def plain(explanation: str, catalogue: Catalogue = CATALOGUE) -> str:
     said = {"none": "nothing missing", "unknown": "something unknown"}
     names = [n.strip() for n in explanation.split("+")]
     return joined([said.get(n) or _title(n, catalogue) for n in names])
+
+
+def placed(explanation: str, places: Mapping[str, int | str], catalogue: Catalogue = CATALOGUE) -> str:
+    """The same with the bead, contact or gauge of each effect that has one in `places`."""
+    said = []
+    for name in explanation.split("+"):
+        where = catalogue.effect(name).places if name in places else None
+        word = "gauge" if where == "sensor" else where
+        said.append(plain(name, catalogue) + (f" at {word} {places[name]}" if where else ""))
+    return joined(said)
 
 
 def _title(name, catalogue):
@@ -229,7 +240,8 @@ def alternatives(verdict: Verdict, catalogue: Catalogue = CATALOGUE) -> str:
 def settled(verdict: Verdict) -> bool:
     """Whether nothing is left that a further run would have to decide."""
     sure = (verdict.probability or 0.0) >= SURE[0][0]
-    return sure and not verdict.confusable and "unknown" not in verdict.named
+    somewhere = verdict.next_experiment is not None and bool(verdict.next_experiment.places)
+    return sure and not verdict.confusable and "unknown" not in verdict.named and not somewhere
 
 
 def experiment(proposal: Next | None, cells: list[dict], catalogue: Catalogue = CATALOGUE) -> str:
@@ -239,7 +251,8 @@ def experiment(proposal: Next | None, cells: list[dict], catalogue: Catalogue = 
             return "No proposal: the gain of a further run is predicted for traces, and this record has none."
         return "No proposal: no rivals are left to separate."
     steps = joined(_changes(proposal.change))
-    one, other = (plain(name, catalogue) for name in proposal.separates[:2])
+    where = proposal.places or [{}, {}]
+    one, other = (placed(*x, catalogue) for x in zip(proposal.separates[:2], where, strict=True))
     text = (
         f"One more run {steps} would most likely leave one explanation alone: {one} and {other}, its nearest "
         f"rival there, would differ by about "

@@ -85,6 +85,19 @@ def unsure(rivals: Iterable[Rival], told: Fit, gauges: Sequence[Gauge]) -> list[
     return lines
 
 
+def where_open(rivals: Iterable[Rival], told: Fit) -> list[Rival]:
+    """What is told at each of its places, the told one first; [] where that is as good as sure."""
+    rivals = list(rivals)
+    sure = all(share[0] >= SURE for _, _, share in of_each(rivals, told))
+    return [] if sure else [r for r in rivals if same(r.fit, told)]
+
+
+def named(one: Fit, gauges: Sequence[Gauge]) -> dict[str, int | str]:
+    """Effect → where it sits: number of its bead or contact, or name of its gauge."""
+    at = [(c.effect, c.place) for c in one.hypothesis.components if c.place is not None]
+    return {e.id: gauges[place].id if e.places == "sensor" else place for e, place in at}
+
+
 def _log_weight(told, one):
     """Log of the evidence of a fit over that of what is told; strengths have one prior at all places."""
     gain = max(told.objective, 1.0)
