@@ -46,6 +46,25 @@ def test_the_only_one_that_leaves_noise_is_chosen(monkeypatch, as_is, slips, cho
     assert kept.simulations == 100 * (1 + len(slips) * (as_is == GROSS))
 
 
+@pytest.mark.parametrize(
+    ("leaves", "ranked", "chosen"),
+    [
+        (9.0, GROSS, "gauges-swapped"),
+        # What is left is no more than what sets of effects may explain.
+        (3.0, GROSS, None),
+        # One that gains by itself does it.
+        (9.0, NOISE, "gauge-misplaced"),
+    ],
+)
+def test_a_slip_that_an_effect_hides_is_asked_for_where_nothing_else_will_do(
+    monkeypatch, leaves, ranked, chosen
+):
+    monkeypatch.setattr(alone, "alone", lambda m, only=(): (best(m.leaves), 0))
+    behind = [slip("gauges-swapped", NOISE), slip("bead-count", GROSS)]
+    found = alone.Kept().explained([slip("gauge-misplaced", ranked)], model(leaves * SIZE), behind)
+    assert (found and found.slip.fault) == chosen
+
+
 def best(leaves):
     """Two effects; the better one leaves that."""
     ends = {"one": leaves, "another": leaves + 9000.0}
@@ -77,20 +96,32 @@ def test_single_effects_are_fitted_once_for_a_model(monkeypatch):
 
 
 @pytest.mark.long
-def test_sets_of_effects_are_not_asked_for_where_a_gauge_sits_a_bead_off(monkeypatch):
+@pytest.mark.parametrize(
+    ("left", "slip", "told"),
+    [
+        (0.3, lambda record: changes.gauge_moved(record, "g4", 1), ("gauge-misplaced", "g4", 4.0)),
+        # Of the record as it is four other effects explain more.
+        (
+            0.5,
+            lambda record: changes.gauges_swapped(record, "g4", "g7"),
+            ("gauges-swapped", ["g4", "g7"], None),
+        ),
+    ],
+)
+def test_sets_of_effects_are_not_asked_for_where_gauges_stand_in_wrong_places(monkeypatch, left, slip, told):
     gauges = [
         {"id": "g4", "kind": "embedded", "bead": 4, "sigma_N": 0.1, "gain_rel_sigma": 0.02},
         {"id": "g7", "kind": "embedded", "bead": 7, "sigma_N": 0.1, "gain_rel_sigma": 0.02},
         {"id": "wall", "kind": "wall", "sigma_N": 0.2, "gain_rel_sigma": 0.02},
     ]
     record, _ = made(
-        [("plastic-contact", {"residual_fraction": 0.3})], seed=5, speeds=(0.3, 0.45, 0.6), sensors=gauges
+        [("plastic-contact", {"residual_fraction": left})], seed=5, speeds=(0.3, 0.45, 0.6), sensors=gauges
     )
     investigated, investigate = [], competition.investigate
     monkeypatch.setattr(
         competition, "investigate", lambda e, *given: investigated.append(e) or investigate(e, *given)
     )
-    found = session.discover(changes.gauge_moved(record, "g4", 1)).verdict
+    found = session.discover(slip(record)).verdict
     assert found.named == ["plastic-contact"]
-    assert [(f.fault, f.sensor, f.value) for f in found.faults] == [("gauge-misplaced", "g4", 4.0)]
+    assert [(f.fault, f.sensor, f.value) for f in found.faults] == [told]
     assert len(investigated) == 1

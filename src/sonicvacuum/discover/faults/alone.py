@@ -5,7 +5,7 @@ effect of the record as it is: to find that out by sets of effects takes minutes
 """
 
 import math
-from collections.abc import Set
+from collections.abc import Iterable, Sequence, Set
 from dataclasses import replace
 
 from sonicvacuum.discover.faults import policy
@@ -53,30 +53,47 @@ class Kept:
             self.simulations += chains
         return self._found
 
-    def explained(self, ranked: list[Judged], model: Model) -> Judged | None:
+    def explained(
+        self, ranked: Sequence[Judged], model: Model, behind: Sequence[Judged] = ()
+    ) -> Judged | None:
         """The slip without a size beside which an effect leaves noise, where there is one such slip and, as
         the record is, every effect leaves far more.
+
+        Args:
+            ranked: slips that gain by themselves, the likeliest first.
+            model: of the record as it is.
+            behind: slips that do not: asked where none of the others will do, and what is left is gross.
         """
         found, size = self.beside(model), data(model.forward)
-        if _left(found, size) < max(policy.GROSS * size, policy.SURE_GAIN):
+        left, leading = _left(found, size), {c.effect for c in found[:LEADING]}
+        if left < max(policy.GROSS * size, policy.SURE_GAIN):
             return None
-        leading = {c.effect for c in found[:LEADING]}
-        noise = policy.SUSPICIOUS * math.sqrt(2.0 * size)
+        # What explains the record as it is says little of what acts beside a slip that explains most of it.
+        slips = wholes(ranked)[: policy.FOLLOWED]
+        fitting = self._leaving_noise(slips[:1], frozenset(), size)
+        fitting += self._leaving_noise(slips[1:], leading, size)
+        if not fitting and left > policy.BURIED * size:
+            fitting = self._leaving_noise(wholes(behind), leading, size)
+        return fitting[0] if len(fitting) == 1 else None
+
+    def _leaving_noise(self, slips, leading, size):
+        """Those of some slips beside which an effect leaves no more than noise: a leading one, or any."""
         fitting = []
-        for judged in wholes(ranked):
+        for judged in slips:
             beside, chains = alone(judged.model, leading)
             self.simulations += chains
+            noise = policy.SUSPICIOUS * math.sqrt(2.0 * size)
             fitting += [judged] if _left(beside, data(judged.model.forward)) < noise else []
-        return fitting[0] if len(fitting) == 1 else None
+        return fitting
 
     def at_hand(self, model: Model) -> list[Candidate] | None:
         """They, None where another model was asked for last."""
         return self._found if self._model is model else None
 
 
-def wholes(ranked: list[Judged]) -> list[Judged]:
-    """The first slips without a size: a place, an exchange, a number of beads."""
-    return [j for j in ranked if not j.slip.continuous and not j.slip.of_values][: policy.FOLLOWED]
+def wholes(slips: Iterable[Judged]) -> list[Judged]:
+    """Slips without a size: a place, an exchange, a number of beads."""
+    return [j for j in slips if not j.slip.continuous and not j.slip.of_values]
 
 
 def _left(found, size):

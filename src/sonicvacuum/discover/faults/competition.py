@@ -204,9 +204,9 @@ class Search(Ranking):
 
     def _beside_one_effect(self, ranked: list[Judged], model: Model) -> Judged | None:
         """A slip beside which one effect explains the record, see `alone`."""
-        if excess(model) < policy.SURE_GAIN or not wholes(ranked):
+        if excess(model) < policy.SURE_GAIN or not wholes([*ranked, *self.behind]):
             return None
-        return self._alone.explained(ranked, model)
+        return self._alone.explained(ranked, model, self.behind)
 
     def _like_slips(self, found: Investigation, name: str) -> bool:
         """Whether an effect named moves data as some slip does."""

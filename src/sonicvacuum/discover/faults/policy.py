@@ -23,6 +23,10 @@ REST = 0.01
 # Where the best effect leaves more than so many times the χ² of noise, and no less than `SURE_GAIN`, a slip
 # beside which an effect leaves noise alone needs not be held against sets of effects.
 GROSS = 1.0
+# Where it leaves more than so many times that, slips that explain nothing by themselves are asked as well: in
+# a chain that takes most of a pulse the gauge in front reads most, so that gauges which stand exchanged may
+# be nearer to the nominal model than in their places.
+BURIED = 4.0
 # A slip that leaves more than this share of the misfit, whatever else is added, is no explanation.
 LEFT = 0.3
 # Slips that are followed to their minimum after a linear look at all of them.
