@@ -6,7 +6,7 @@ import pytest
 from made_records import made
 
 from sonicvacuum.discover import session
-from sonicvacuum.discover.faults import alone, changes, competition
+from sonicvacuum.discover.faults import alone, changes, searching
 from sonicvacuum.discover.faults.judged import Judged
 from sonicvacuum.discover.faults.slips import Slip
 
@@ -117,9 +117,9 @@ def test_sets_of_effects_are_not_asked_for_where_gauges_stand_in_wrong_places(mo
     record, _ = made(
         [("plastic-contact", {"residual_fraction": left})], seed=5, speeds=(0.3, 0.45, 0.6), sensors=gauges
     )
-    investigated, investigate = [], competition.investigate
+    investigated, investigate = [], searching.investigate
     monkeypatch.setattr(
-        competition, "investigate", lambda e, *given: investigated.append(e) or investigate(e, *given)
+        searching, "investigate", lambda e, *given: investigated.append(e) or investigate(e, *given)
     )
     found = session.discover(slip(record)).verdict
     assert found.named == ["plastic-contact"]

@@ -11,9 +11,10 @@ from msgspec.structs import replace
 
 from sonicvacuum.discover import session
 from sonicvacuum.discover.faults import changes, ranking
-from sonicvacuum.discover.faults.competition import LIKELIER, Search
+from sonicvacuum.discover.faults.competition import Search
 from sonicvacuum.discover.faults.found import Bench
 from sonicvacuum.discover.faults.judged import Judged
+from sonicvacuum.discover.faults.policy import LIKELIER
 from sonicvacuum.discover.faults.ranking import Ranking
 from sonicvacuum.discover.faults.slips import hypotheses
 from sonicvacuum.discover.faults.weights import parts

@@ -62,7 +62,7 @@ class Kept:
         Args:
             ranked: slips that gain by themselves, the likeliest first.
             model: of the record as it is.
-            behind: slips that do not: asked where none of the others will do, and what is left is gross.
+            behind: some that do not: asked where none of the others will do, and what is left is gross.
         """
         found, size = self.beside(model), data(model.forward)
         left, leading = _left(found, size), {c.effect for c in found[:LEADING]}

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sonicvacuum.discover.faults import policy, tables
-from sonicvacuum.discover.faults.alone import Kept, wholes
+from sonicvacuum.discover.faults.alone import wholes
 from sonicvacuum.discover.faults.examine import examine, with_noise_of
 from sonicvacuum.discover.faults.found import Bench, Finding
 from sonicvacuum.discover.faults.judged import (
@@ -29,8 +29,8 @@ from sonicvacuum.discover.faults.judged import (
     suspicious,
     without_slip,
 )
-from sonicvacuum.discover.faults.ranking import Ranking
 from sonicvacuum.discover.faults.retract import retracted, value
+from sonicvacuum.discover.faults.searching import Searching
 from sonicvacuum.discover.faults.table import FAULTS
 from sonicvacuum.discover.faults.weights import (
     ALIKE,
@@ -55,13 +55,6 @@ from sonicvacuum.discover.policy import SAME_MINIMUM
 from sonicvacuum.discover.rounds import Investigation, investigate
 from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.records import Record
-
-# A slip with more of the probability than this is not shared with an effect that is like another: it is told.
-LIKELIER = 0.5
-
-
-# Share of what another slip has to explain that suffices for a run that is far off.
-ALONE = 0.4
 
 
 @dataclass(frozen=True)
@@ -124,13 +117,11 @@ def _investigated(benches, catalogue, threads):
     return investigate(Bench(benches[0].record, lost, lines).masked(experiment), threads)
 
 
-class Search(Ranking):
+class Search(Searching):
     """Slips of one record that only the model can tell, in competition with effects."""
 
     def __init__(self, bench: Bench, catalogue: Catalogue, threads: int, plain: list[Finding]):
         super().__init__(bench, catalogue, threads, plain)
-        self._nominal: Model | None = None
-        self._alone = Kept()
         # Effects that alone explain as much as the likeliest slip, which moves all pulses as they may.
         self._matching: set[str] = set()
 
@@ -139,6 +130,8 @@ class Search(Ranking):
         for _ in range(policy.MOST):
             model = self._nominal = self.nominal()
             looked = suspicious(model)
+            if looked and self._spikes_beside_one(model):
+                continue
             ranked = self.ranked(model) if looked else []
             if ranked and obvious(ranked[0], model) and (lower := without_slip(ranked[0], model)):
                 model = self._nominal = lower
@@ -151,11 +144,13 @@ class Search(Ranking):
                 break
         else:
             ranked, looked = [], True
+        bench = self.bench
         found = self._investigate()
-        if model.bench is self.bench and found.null.objective < model.fit.objective - SAME_MINIMUM:
-            # What slips gained on a nominal fit that had stopped short is none of their own.
-            model = self._nominal = Model(self.bench, model.forward, found.null)
-            looked = suspicious(model)
+        spiky = self.bench is not bench
+        if spiky or (model.bench is bench and found.null.objective < model.fit.objective - SAME_MINIMUM):
+            # What slips gained beside spikes, or on a fit that had stopped short, is none of their own.
+            model = self.nominal() if spiky else Model(bench, model.forward, found.null)
+            self._nominal, looked = model, suspicious(model)
             ranked = self.ranked(model) if looked else []
         traced = bool(self.bench.record.signals)
         if not ranked and set(found.named) - {explanations.UNKNOWN}:
@@ -170,12 +165,6 @@ class Search(Ranking):
         order = sorted(self.findings, key=lambda f: -f.probability)
         simulations = self.simulations + self._alone.simulations
         return Outcome(found, tuple(order), self.bench.record, simulations)
-
-    def _investigate(self) -> Investigation:
-        one = self._nominal
-        if one is None or one.bench is not self.bench:
-            return investigate(self.make(self.bench), self.threads)
-        return investigate(self.make(self.bench), self.threads, one.fit, self._alone.at_hand(one))
 
     def _sure(self, judged: Judged, model: Model) -> bool:
         """Whether a slip is put right before effects are asked for."""
@@ -235,7 +224,7 @@ class Search(Ranking):
             # What is left is more than a slip that explains little of it. A run that is far off is not to be
             # mistaken for anything else, and may leave as much as an effect makes.
             most = most_of(found.null.objective, size)
-            rivals = [j for j in ranked if j.gain > (ALONE if j.slip.far else 1.0) * most]
+            rivals = [j for j in ranked if j.gain > (policy.ALONE if j.slip.far else 1.0) * most]
             rivals += self._beside_the_best(found)
         else:
             rivals = [*ranked, *self._in_place(found)]
@@ -289,7 +278,7 @@ class Search(Ranking):
         """The investigation of the record with the best rival put right, None where that is no better."""
         same = [j for j in rivals if alias(j, found)]
         near = [j for j in rivals if same and j.gain > same[0].gain - ALIKE]
-        if same and parts(near, same[0]).max() <= LIKELIER:
+        if same and parts(near, same[0]).max() <= policy.LIKELIER:
             self._share(found, near, same[0])
             return None
         best, as_is = rivals[0], weight_of(found)

@@ -23,9 +23,9 @@ REST = 0.01
 # Where the best effect leaves more than so many times the χ² of noise, and no less than `SURE_GAIN`, a slip
 # beside which an effect leaves noise alone needs not be held against sets of effects.
 GROSS = 1.0
-# Where it leaves more than so many times that, slips that explain nothing by themselves are asked as well: in
-# a chain that takes most of a pulse the gauge in front reads most, so that gauges which stand exchanged may
-# be nearer to the nominal model than in their places.
+# Where it leaves more than so many times that, exchanges of gauges that explain nothing by themselves are
+# asked as well: in a chain that takes most of a pulse the gauge in front reads most, so that gauges which
+# stand exchanged may be nearer to the nominal model than in their places.
 BURIED = 4.0
 # A slip that leaves more than this share of the misfit, whatever else is added, is no explanation.
 LEFT = 0.3
@@ -65,6 +65,10 @@ PLAIN = 0.999
 # χ² of the nominal model above its number of data, and of its nuisances above theirs, in standard deviations
 # of χ², from which slips are looked for.
 SUSPICIOUS = 3.0
+# A slip with more of the probability than this is not shared with an effect that is like another: it is told.
+LIKELIER = 0.5
+# Share of what another slip has to explain that suffices for a run that is far off.
+ALONE = 0.4
 
 
 def log_prior(alternatives: int) -> float:

@@ -1,0 +1,71 @@
+"""The search for effects in a record as far as it was put right, spikes that its pulses hide left out."""
+
+import math
+
+from sonicvacuum.discover.faults import policy
+from sonicvacuum.discover.faults.alone import Kept
+from sonicvacuum.discover.faults.found import Bench, Finding
+from sonicvacuum.discover.faults.judged import Model
+from sonicvacuum.discover.faults.ranking import Ranking
+from sonicvacuum.discover.faults.strays import Strays, masked, strays, told
+from sonicvacuum.discover.faults.weights import unexplained
+from sonicvacuum.discover.fit.enough import data
+from sonicvacuum.discover.fit.refit import Fit, fit
+from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.rounds import Investigation, investigate
+from sonicvacuum.effects import Catalogue
+
+
+class Searching(Ranking):
+    """Slips of one record, and the effects in it."""
+
+    def __init__(self, bench: Bench, catalogue: Catalogue, threads: int, plain: list[Finding]):
+        super().__init__(bench, catalogue, threads, plain)
+        self._nominal: Model | None = None
+        self._alone = Kept()
+
+    def _investigate(self) -> Investigation:
+        """The effects; where spikes that a pulse hid are all that these leave, without them."""
+        found = self._searched()
+        if unexplained(found) and self._noise_and_spikes(found.forward, found.final):
+            return self._searched()
+        return found
+
+    def _spikes_beside_one(self, model: Model) -> bool:
+        """Whether the model as it is, or the best effect alone, leaves noise and spikes, which are masked: no
+        slip and no set of effects explains them. Where some show, in a trace or beside the model, others may
+        hide.
+        """
+        if not self.bench.record.signals:
+            return False
+        if self._noise_and_spikes(model.forward, model.fit):
+            return True
+        shown = any(f.fault == "spikes" for f in self.findings) or bool(strays(model.forward, model.fit))
+        best = self._alone.beside(model)[:1] if shown else []
+        return any(self._noise_and_spikes(model.forward, c.fit) for c in best)
+
+    def _noise_and_spikes(self, forward: Forward, one: Fit) -> bool:
+        """Whether a fit leaves no more, which are masked then."""
+        hidden = strays(forward, one)
+        if not hidden or not self._noise_without(hidden, one):
+            return False
+        self._mask(hidden)
+        return True
+
+    def _noise_without(self, hidden: Strays, one: Fit) -> bool:
+        """Whether a fit leaves noise without some spikes; those of hundreds of standard deviations have drawn
+        it off.
+        """
+        forward = Forward(self.judged(masked(self.bench, hidden)), self.threads)
+        found, size = fit(forward, one.hypothesis, one.u[None], one.nu[None]), data(forward)
+        self.simulations += forward.chains
+        return found.objective < size + policy.SUSPICIOUS * math.sqrt(2.0 * size)
+
+    def _mask(self, spikes: Strays) -> None:
+        self.bench, self.findings = masked(self.bench, spikes), told(self.findings, spikes)
+
+    def _searched(self) -> Investigation:
+        one = self._nominal
+        if one is None or one.bench is not self.bench:
+            return investigate(self.make(self.bench), self.threads)
+        return investigate(self.make(self.bench), self.threads, one.fit, self._alone.at_hand(one))

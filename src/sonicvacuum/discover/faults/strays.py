@@ -1,0 +1,61 @@
+"""Spikes that a pulse hides: samples that stand out of what a model with effects leaves.
+
+In a trace a spike has to stand out by more than its neighbours differ, and on the flank of a strong pulse
+these differ by many standard deviations. What the right model leaves there is noise, and spikes.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from sonicvacuum.discover.faults import policy
+from sonicvacuum.discover.faults.found import Bench, Finding
+from sonicvacuum.discover.fit.refit import Fit
+from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.model.masks import SPIKE_SIGMAS
+from sonicvacuum.discover.search.unknown import raw
+
+# What a wrong model leaves is as smooth as its pulses: of so many samples on either side none is off by such
+# a share of a spike.
+BESIDE, SMOOTH = 2, 0.4
+# (run id, gauge id) → (T,) what a model leaves, in standard deviations of the noise, 0 but for spikes.
+Strays = dict[tuple[str, str], np.ndarray]
+
+
+def strays(forward: Forward, fit: Fit) -> Strays:
+    """Samples that stand out of what a fit leaves, by trace; traces without any are left out."""
+    e, found = forward.experiment, {}
+    for run, read in zip(e.runs, raw(forward, fit), strict=True):
+        for s, gauge in enumerate(e.gauges if run.has_signals else ()):
+            there = np.ones(len(run.time), dtype=bool) if run.present is None else run.present[s]
+            left = np.zeros(len(run.time))
+            left[there] = standing_out((run.readings[s] - read[s])[there] / e.sigma[s])
+            if left.any():
+                found[run.id, gauge.id] = left
+    return found
+
+
+def standing_out(left: np.ndarray) -> np.ndarray:
+    """(T,) what a model leaves, (T,) in standard deviations of the noise, 0 in place of all but spikes."""
+    size = np.abs(left)
+    around = np.pad(size, BESIDE)
+    near = [around[k : k + len(size)] for k in range(2 * BESIDE + 1) if k != BESIDE]
+    return np.where((size > SPIKE_SIGMAS) & (np.max(near, axis=0) < SMOOTH * size), left, 0.0)
+
+
+def masked(bench: Bench, found: Strays) -> Bench:
+    """A record in which these samples do not count either."""
+    rows = {at: left != 0.0 for at, left in found.items()}
+    return replace(bench, lost=bench.lost | {at: r | bench.lost.get(at, False) for at, r in rows.items()})
+
+
+def told(findings: list[Finding], found: Strays) -> list[Finding]:
+    """Findings with these samples among the spikes of each trace."""
+    known = {(f.run, f.sensor): f.value or 0.0 for f in findings if f.fault == "spikes"}
+    count: dict[tuple[str | None, str], float] = {}
+    for (run, gauge), left in found.items():
+        # Where spikes are told of in all runs of a gauge they are counted together.
+        at = (None, gauge) if (None, gauge) in known else (run, gauge)
+        count[at] = count.get(at, known.get(at, 0.0)) + np.count_nonzero(left)
+    kept = [f for f in findings if f.fault != "spikes" or (f.run, f.sensor) not in count]
+    return kept + [Finding("spikes", *at, float(n), policy.PLAIN, corrected=True) for at, n in count.items()]
