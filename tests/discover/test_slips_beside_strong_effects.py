@@ -48,6 +48,19 @@ def test_lines_are_told_by_what_the_model_reads_beside_an_effect(effect, slip):
     assert {(s.fault, s.run, s.sensor) for s in drifts(record, nominal(record))} != {(slip, run, "g4")}
 
 
+def test_all_of_a_trace_tells_of_its_line_beside_the_right_effect():
+    """A standard deviation of the noise from first sample to last: the half of the trace that is quiet
+    has it for a level.
+    """
+    sound = made([("plastic-contact", {"residual_fraction": 0.3})], noise=0.0)[0]
+    read = {run: dict(signals.readings) for run, signals in sound.signals.items()}
+    record = altered(noisy(sound), "g4", lambda y: y + SIGMA * TIME / 700.0)
+    assert [slip.fault for slip in drifts(record, read)] == ["baseline"]
+    (told,) = drifts(record, read, known=True)
+    # Two lines through 700 samples each know their common end to a tenth of a sample's noise; twice that.
+    assert told.fault == "drift" and told.value(0.0) == pytest.approx(SIGMA, abs=0.2 * SIGMA)
+
+
 def nominal(record):
     return predicted(together((record,)))
 

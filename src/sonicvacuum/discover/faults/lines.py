@@ -41,14 +41,16 @@ class _Line:
         return self.level + self.middle * self.slope
 
 
-def drifts(record: Record, predicted) -> list[Slip]:
+def drifts(record: Record, predicted, known: bool = False) -> list[Slip]:
     """Gauges whose readings lie along straight lines, or off zero, where the model reads nothing.
 
     Args:
         record: with signals.
         predicted: run id → gauge id → (T,) reading of the model.
+        known: whether the model has effects, so that all of a trace may tell of its line, where little of it
+            is quiet; beside the nominal model an effect would be taken for a line.
     """
-    found = {g.id: _lines(record, predicted, g) for g in record.gauges}
+    found = {g.id: _lines(record, predicted, g, known) for g in record.gauges}
     return [_slip(record, id, lines) for id, lines in found.items() if lines]
 
 
@@ -101,7 +103,7 @@ def _straightened(id, lines, errors, record, _):
     return changes.looser(changes.straightened(record, id, lines), {id: errors})
 
 
-def _lines(record, predicted, gauge) -> dict[str, _Line]:
+def _lines(record, predicted, gauge, known) -> dict[str, _Line]:
     """The line of each run; none where lines leave more than noise."""
     found = {}
     for run, signals in record.signals.items():
@@ -111,7 +113,9 @@ def _lines(record, predicted, gauge) -> dict[str, _Line]:
         places = (np.flatnonzero(_nothing(model, share)) for share in NOTHING)
         left = signals.readings[gauge.id] - model
         line = next((one for at in places if (one := _line(at, left[at], gauge.sigma))), None)
-        line = line or _line_beside(model, left, gauge.sigma)
+        if line is None or known:
+            whole = _line_beside(model, left, gauge.sigma)
+            line = max(filter(None, (line, whole)), key=lambda one: one.gain, default=None)
         if line is None:
             return {}
         found[run] = line

@@ -111,7 +111,8 @@ class Ranking:
         slips = [*with_starts(hypotheses(record), record, seen, model), *late_runs(record, model, seen)]
         slips = [s for s in slips if (s.fault, s.run, s.sensor) not in done]
         slips = _possible(slips, model)
-        shown = [*time_zero(record, seen), *drifts(record, _read(model) or seen)]
+        read = _read(model)
+        shown = [*time_zero(record, seen), *drifts(record, read or seen, known=bool(read))]
         stages.begin("slips of the laboratory")
         far = excess(model) > policy.SURE_GAIN
         looked = judge.look_at(slips)
