@@ -6,8 +6,8 @@ import pytest
 from made_records import made
 
 from sonicvacuum.discover import session
-from sonicvacuum.discover.faults import alone, changes, searching
-from sonicvacuum.discover.faults.judged import Judged
+from sonicvacuum.discover.faults import alone, changes, competition, searching
+from sonicvacuum.discover.faults.judged import Judged, Model
 from sonicvacuum.discover.faults.slips import Slip
 
 SIZE = 1000
@@ -63,6 +63,29 @@ def test_a_slip_that_an_effect_hides_is_asked_for_where_nothing_else_will_do(
     behind = [slip("gauges-swapped", NOISE), slip("bead-count", GROSS)]
     found = alone.Kept().explained([slip("gauge-misplaced", ranked)], model(leaves * SIZE), behind)
     assert (found and found.slip.fault) == chosen
+
+
+@pytest.mark.parametrize(
+    ("leaves", "slips", "chosen"),
+    [
+        (GROSS, {"gauge-misplaced": 4000.0, "bead-count": 3000.0}, "gauge-misplaced"),
+        # Two that do it have to be weighed, and none may.
+        (GROSS, {"gauge-misplaced": 4000.0, "run-off": 3990.0}, None),
+        (GROSS, {"bead-count": 3000.0}, None),
+        # An effect that explains no more than most may be no effect.
+        (20.0 * SIZE, {"gauge-misplaced": 19_000.0}, None),
+        (NOISE, {"gauge-misplaced": 30.0}, None),
+    ],
+)
+def test_a_slip_is_asked_for_beside_the_effect_that_explains_nearly_all(leaves, slips, chosen):
+    beside = [Judged(Slip(fault, None), 0.0, gain, 0.5 * gain) for fault, gain in slips.items()]
+    as_is = Model(None, model(0.0).forward, SimpleNamespace(objective=101.0 * SIZE))
+    search = object.__new__(competition.Search)
+    search.behind, search._alone = ["kept"], SimpleNamespace(beside=lambda m: best(leaves))
+    search.ranked = lambda m, afar: beside if m.fit.objective == leaves and afar else []
+    found = search._beside_the_leading(as_is)
+    assert (found and found.slip.fault) == chosen
+    assert search.behind == ["kept"]
 
 
 def best(leaves):

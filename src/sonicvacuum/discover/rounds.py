@@ -252,7 +252,7 @@ def _polished(forward, null, found, threshold):
             c = _moved(c, null, wide.again(branch, c.fit), c.flags)
         # What a bound holds back may be far behind for that alone.
         further = c.gain > least or (c.gain > 0.0 and bounds.held_back(c.fit))
-        return _beyond(branch, null, c) if further else c
+        return _beyond(branch, null, c, null.objective - most) if further else c
 
     result = abreast.each(forward, polished, found, "leading effects")
     return enough.first(forward, evidence.ranked(result, forward.experiment.prior_odds))
@@ -270,9 +270,9 @@ def _lower(forward, null, found, threshold) -> Fit | None:
     return one if one.objective < null.objective - policy.SAME_MINIMUM else None
 
 
-def _beyond(forward, null, c):
-    """A candidate followed beyond the bounds that its fit stands at."""
-    better, held = bounds.beyond(forward, c.fit)
+def _beyond(forward, null, c, lowest):
+    """A candidate followed beyond the bounds that its fit stands at, towards the lowest objective so far."""
+    better, held = bounds.beyond(forward, c.fit, lowest)
     flags = (*(f for f in c.flags if f != "bound"), *("beyond",) * (better is not c.fit), *("bound",) * held)
     return _moved(c, null, better, flags)
 

@@ -47,6 +47,7 @@ from sonicvacuum.discover.faults.weights import (
     without,
 )
 from sonicvacuum.discover.fit import evidence
+from sonicvacuum.discover.fit.enough import data
 from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.judge import explanations
 from sonicvacuum.discover.model.nominal import predicted
@@ -193,9 +194,25 @@ class Search(Searching):
 
     def _beside_one_effect(self, ranked: list[Judged], model: Model) -> Judged | None:
         """A slip beside which one effect explains the record, see `alone`."""
-        if excess(model) < policy.SURE_GAIN or not wholes([*ranked, *self.behind]):
+        if excess(model) < policy.SURE_GAIN:
             return None
+        if (one := self._beside_the_leading(model)) or not wholes([*ranked, *self.behind]):
+            return one
         return self._alone.explained(ranked, model, self.behind)
+
+    def _beside_the_leading(self, model: Model) -> Judged | None:
+        """The only slip that leaves noise beside the effect that explains nearly all, but not all, by itself:
+        where a strong effect acts, the nominal model does not tell which slip was made.
+        """
+        size, best = data(model.forward), self._alone.beside(model)[0]
+        left = best.fit.objective - size
+        if not max(policy.GROSS * size, policy.SURE_GAIN) < left < policy.NEARLY * excess(model):
+            return None
+        behind = self.behind
+        beside, self.behind = self.ranked(replace(model, fit=best.fit), afar=True), behind
+        noise = policy.SUSPICIOUS * math.sqrt(2.0 * size)
+        fitting = [j for j in beside if left - j.gain < noise]
+        return fitting[0] if len(fitting) == 1 else None
 
     def _like_slips(self, found: Investigation, name: str) -> bool:
         """Whether an effect named moves data as some slip does."""

@@ -27,6 +27,8 @@ GROSS = 1.0
 # asked as well: in a chain that takes most of a pulse the gauge in front reads most, so that gauges which
 # stand exchanged may be nearer to the nominal model than in their places.
 BURIED = 4.0
+# An effect that leaves less than this share of the misfit is there, whatever slip was made beside it.
+NEARLY = 0.1
 # A slip that leaves more than this share of the misfit, whatever else is added, is no explanation.
 LEFT = 0.3
 # Slips that are followed to their minimum after a linear look at all of them.

@@ -26,6 +26,9 @@ FAST = 1.0 / 300.0
 # In χ², less is no reason to leave the range.
 WORTH = 0.5
 _ROOM = 1e-6
+# A turn that takes away less than this share of what is still to go is the last one: were the others worth as
+# much, most of it would remain, and laws far beyond their ranges take long to simulate.
+STILL = 0.1
 # Part of a range within which a bound is near, at most.
 CLOSE = 0.05
 
@@ -63,11 +66,12 @@ def held_back(fit: Fit) -> bool:
     )
 
 
-def beyond(forward: Forward, fit: Fit) -> tuple[Fit, bool]:
+def beyond(forward: Forward, fit: Fit, lowest: float = np.inf) -> tuple[Fit, bool]:
     """The fit with the coordinates that are stuck let go, again and again while that gains, and whether one
     is stuck even so.
 
-    The same fit where letting go gains nothing: there the bound holds nothing back.
+    The same fit where letting go gains nothing: there the bound holds nothing back. `lowest` is the objective
+    of the best explanation so far: what has far to go to it, and hardly comes nearer, is let go no further.
     """
     found, held = fit, False
     if not stuck(fit).any():
@@ -79,7 +83,10 @@ def beyond(forward: Forward, fit: Fit) -> tuple[Fit, bool]:
         further = _further(forward, found, soon)
         if not further.objective < found.objective - WORTH:
             return found, False
+        nearer, to_go = found.objective - further.objective, further.objective - lowest
         found, held = further, bool(stuck(further, soon).any())
+        if nearer < STILL * to_go:
+            break
     return found, held
 
 
