@@ -194,11 +194,11 @@ class Search(Searching):
 
     def _beside_one_effect(self, ranked: list[Judged], model: Model) -> Judged | None:
         """A slip beside which one effect explains the record, see `alone`."""
-        if excess(model) < policy.SURE_GAIN:
+        gross = excess(model) > max(policy.SURE_GAIN, policy.BURIED * data(model.forward))
+        if excess(model) < policy.SURE_GAIN or not (wholes(ranked) or gross):
             return None
-        if (one := self._beside_the_leading(model)) or not wholes([*ranked, *self.behind]):
-            return one
-        return self._alone.explained(ranked, model, self.behind)
+        one = self._beside_the_leading(model)
+        return one or self._alone.explained(ranked, model, self.behind)
 
     def _beside_the_leading(self, model: Model) -> Judged | None:
         """The only slip that leaves noise beside the effect that explains nearly all, but not all, by itself:
