@@ -27,7 +27,7 @@ class Searching(Ranking):
     def _investigate(self) -> Investigation:
         """The effects; where spikes that a pulse hid are all that these leave, without them."""
         found = self._searched()
-        if unexplained(found) and self._noise_and_spikes(found.forward, found.final):
+        if unexplained(found) and self._masks(strays(found.forward, found.final), found.final):
             return self._searched()
         return found
 
@@ -38,31 +38,27 @@ class Searching(Ranking):
         """
         if not self.bench.record.signals:
             return False
-        if self._noise_and_spikes(model.forward, model.fit):
+        hidden = strays(model.forward, model.fit)
+        if self._masks(hidden, model.fit):
             return True
-        shown = any(f.fault == "spikes" for f in self.findings) or bool(strays(model.forward, model.fit))
+        shown = bool(hidden) or any(f.fault == "spikes" for f in self.findings)
         best = self._alone.beside(model)[:1] if shown else []
-        return any(self._noise_and_spikes(model.forward, c.fit) for c in best)
+        return any(self._masks(strays(model.forward, c.fit), c.fit) for c in best)
 
-    def _noise_and_spikes(self, forward: Forward, one: Fit) -> bool:
-        """Whether a fit leaves no more, which are masked then."""
-        hidden = strays(forward, one)
-        if not hidden or not self._noise_without(hidden, one):
-            return False
-        self._mask(hidden)
-        return True
-
-    def _noise_without(self, hidden: Strays, one: Fit) -> bool:
-        """Whether a fit leaves noise without some spikes; those of hundreds of standard deviations have drawn
-        it off.
+    def _masks(self, hidden: Strays, one: Fit) -> bool:
+        """Whether a fit leaves noise without some spikes, which are masked then; those of hundreds of
+        standard deviations have drawn it off.
         """
-        forward = Forward(self.judged(masked(self.bench, hidden)), self.threads)
+        if not hidden:
+            return False
+        bench = masked(self.bench, hidden)
+        forward = Forward(self.judged(bench), self.threads)
         found, size = fit(forward, one.hypothesis, one.u[None], one.nu[None]), data(forward)
         self.simulations += forward.chains
-        return found.objective < size + policy.SUSPICIOUS * math.sqrt(2.0 * size)
-
-    def _mask(self, spikes: Strays) -> None:
-        self.bench, self.findings = masked(self.bench, spikes), told(self.findings, spikes)
+        if found.objective > size + policy.SUSPICIOUS * math.sqrt(2.0 * size):
+            return False
+        self.bench, self.findings = bench, told(self.findings, hidden)
+        return True
 
     def _searched(self) -> Investigation:
         one = self._nominal
