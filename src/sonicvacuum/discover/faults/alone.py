@@ -9,7 +9,7 @@ from collections.abc import Iterable, Sequence, Set
 from dataclasses import replace
 
 from sonicvacuum.discover.faults import policy
-from sonicvacuum.discover.faults.judged import Judged, Model
+from sonicvacuum.discover.faults.judged import Judged, Model, scatter
 from sonicvacuum.discover.fit.enough import data
 from sonicvacuum.discover.fit.evidence import Candidate
 from sonicvacuum.discover.search import directions, screen, singles
@@ -82,8 +82,7 @@ class Kept:
         for judged in slips:
             beside, chains = alone(judged.model, leading)
             self.simulations += chains
-            noise = policy.SUSPICIOUS * math.sqrt(2.0 * size)
-            fitting += [judged] if _left(beside, data(judged.model.forward)) < noise else []
+            fitting += [judged] if _left(beside, data(judged.model.forward)) < scatter(size) else []
         return fitting
 
     def at_hand(self, model: Model) -> list[Candidate] | None:

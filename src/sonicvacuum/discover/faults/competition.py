@@ -26,6 +26,7 @@ from sonicvacuum.discover.faults.judged import (
     most_of,
     obvious,
     of_one_run,
+    scatter,
     suspicious,
     without_slip,
 )
@@ -210,8 +211,7 @@ class Search(Searching):
             return None
         behind = self.behind
         beside, self.behind = self.ranked(replace(model, fit=best.fit), afar=True), behind
-        noise = policy.SUSPICIOUS * math.sqrt(2.0 * size)
-        fitting = [j for j in beside if left - j.gain < noise]
+        fitting = [j for j in beside if left - j.gain < scatter(size)]
         return fitting[0] if len(fitting) == 1 else None
 
     def _like_slips(self, found: Investigation, name: str) -> bool:

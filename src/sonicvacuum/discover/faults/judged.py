@@ -82,7 +82,7 @@ def excess(model: Model) -> float:
 
 def most_of(objective: float, size: float) -> float:
     """What a slip has to gain that explains a misfit: all but a share of what `size` data's noise is not."""
-    return (1.0 - policy.LEFT) * (objective - size - policy.SUSPICIOUS * math.sqrt(2.0 * size))
+    return (1.0 - policy.LEFT) * (objective - size - scatter(size))
 
 
 def obvious(judged: Judged, model: Model) -> bool:
@@ -151,6 +151,11 @@ def both_off(worth: list[Judged]) -> set[str]:
     return {f"{a} and {b}" for a in off for b in off if a != b}
 
 
+def scatter(size: float) -> float:
+    """χ² above so many data that is noise at most."""
+    return policy.SUSPICIOUS * math.sqrt(2.0 * size)
+
+
 def suspicious(model: Model) -> bool:
     """Whether a nominal fit leaves more than its noise, or strains its nuisances."""
     one, size = model.fit, data(model.forward)
@@ -158,9 +163,7 @@ def suspicious(model: Model) -> bool:
         return True
     misfit = float(one.normal.chi2.sum()) - size
     strained = float(one.nu @ one.nu)
-    return misfit > policy.SUSPICIOUS * math.sqrt(2.0 * size) or strained > tails.chi_squared_at(
-        1e-3, len(one.nu)
-    )
+    return misfit > scatter(size) or strained > tails.chi_squared_at(1e-3, len(one.nu))
 
 
 def tabled(experiment: Experiment) -> bool:

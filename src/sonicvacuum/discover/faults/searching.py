@@ -1,11 +1,8 @@
 """The search for effects in a record as far as it was put right, spikes that its pulses hide left out."""
 
-import math
-
-from sonicvacuum.discover.faults import policy
 from sonicvacuum.discover.faults.alone import Kept
 from sonicvacuum.discover.faults.found import Bench, Finding
-from sonicvacuum.discover.faults.judged import Model
+from sonicvacuum.discover.faults.judged import Model, scatter
 from sonicvacuum.discover.faults.ranking import Ranking
 from sonicvacuum.discover.faults.strays import Strays, masked, strays, told
 from sonicvacuum.discover.faults.weights import unexplained
@@ -55,7 +52,7 @@ class Searching(Ranking):
         forward = Forward(self.judged(bench), self.threads)
         found, size = fit(forward, one.hypothesis, one.u[None], one.nu[None]), data(forward)
         self.simulations += forward.chains
-        if found.objective > size + policy.SUSPICIOUS * math.sqrt(2.0 * size):
+        if found.objective > size + scatter(size):
             return False
         self.bench, self.findings = bench, told(self.findings, hidden)
         return True
