@@ -21,6 +21,8 @@ LOCKED := $(INSTALL) --require-hashes -r
 # PYTHONDONTWRITEBYTECODE is set, every process would compile them anew, a sixth of a verdict.
 COMPILEALL = $(BIN)/python -m compileall -qq -j 0
 BYTECODE = $(COMPILEALL) -x '[/\\]tests?[/\\]' .venv/lib || true
+# Tests rewritten for their messages are kept, or every run would rewrite them anew: twenty seconds where that is forbidden.
+TEST = PYTHONDONTWRITEBYTECODE= $(BIN)/pytest
 COMPILE := pip compile --quiet --universal --generate-hashes --no-emit-index-url --no-annotate --python-version 3.11 \
 	--custom-compile-command "make lock"
 
@@ -75,10 +77,10 @@ test: env  ## check format, style, types, import contracts, and run the tests
 	$(BIN)/snakefmt --check Snakefile workflow
 	$(BIN)/lint-imports --no-logo
 	$(BIN)/mypy
-	$(BIN)/pytest --numprocesses $(CORES) --dist loadfile
+	$(TEST) --numprocesses $(CORES) --dist loadfile
 
 long: env  ## the tests that take longest, which `make test` leaves out
-	$(BIN)/pytest --numprocesses $(CORES) -m long
+	$(TEST) --numprocesses $(CORES) -m long
 
 browser: .venv/browsed  ## try the pages in a real browser, those of results/ among them: Chromium on the path, or CHROMIUM=PATH
 	$(BIN)/pytest tests/report/browser_pages.py

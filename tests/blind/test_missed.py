@@ -11,17 +11,18 @@ from sonicvacuum_blind.study import cases
 OLDER = 65_927_677
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("place", "named"),
     [
         # The wall's modulus, known to a twentieth, stood in for it 39 standard errors off.
         (147, {"wall-compliance"}),
         # Slopes promised half of what viscous drag gains, which leaves much.
-        pytest.param(677, {"guide-friction"}, marks=pytest.mark.long),
+        (677, {"guide-friction"}),
         # The pair was fitted, in a minimum of its own.
-        pytest.param(1824, {"contact-gap", "mass-defect"}, marks=pytest.mark.long),
+        (1824, {"contact-gap", "mass-defect"}),
         # Alone its contact ended beside its minimum, and a second effect made up for that.
-        pytest.param(1832, {"relaxing-contact"}, marks=pytest.mark.long),
+        (1832, {"relaxing-contact"}),
     ],
 )
 def test_the_lowest_minimum_is_found(place, named):
@@ -84,6 +85,7 @@ def test_one_effect_is_found_for_which_two_others_had_made_up():
     assert {"contact-exponent", "guide-friction"} < set(named)
 
 
+@pytest.mark.long
 def test_the_interval_of_a_contact_that_relaxes_slowly_holds_its_truth():
     """Strength and time of it are nearly one number; slopes of short steps put both 20 errors off."""
     record, truth = hide(cases("again")[1399])

@@ -136,6 +136,7 @@ def test_beads_of_two_kinds_in_turn_are_outside_the_catalogue():
     assert v.probabilities["unknown"] == pytest.approx(policy.REFUSED_UNKNOWN)
 
 
+@pytest.mark.long
 def test_a_modulus_far_from_the_handbooks_hides_no_second_effect():
     """e times the handbook's: slopes at the handbook's value point half as far."""
     hidden = [("dynamic-modulus", {"modulus_ratio": 2.7}), ("sensor-lowpass", {"tau_us": 8.0})]

@@ -103,12 +103,10 @@ def test_a_run_that_is_off_is_put_right_beside_an_effect():
     assert v.named == ["viscous-drag"]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("effects", "ratio", "named"),
-    [
-        ([], 0.1, []),
-        pytest.param([("kuwabara-kono", {"time_us": 0.6})], 0.03, ["kuwabara-kono"], marks=pytest.mark.long),
-    ],
+    [([], 0.1, []), ([("kuwabara-kono", {"time_us": 0.6})], 0.03, ["kuwabara-kono"])],
 )
 def test_heavier_beads_are_no_error_of_the_striker(effects, ratio, named):
     """Where the striker meets the beads once more is no smooth matter of masses: a search by slopes stopped
@@ -131,6 +129,7 @@ def test_a_slip_likelier_than_the_effect_that_is_like_another_is_told(empty):
     assert first > LIKELIER
 
 
+@pytest.mark.long
 def test_a_gauge_in_volts_does_not_change_the_name_of_the_damping(hidden):
     """Beside a gain that far off, pairs that were held to the catalogue's range of it fitted worse."""
     v = session.discover(altered(hidden, "wall", lambda y: 0.08 * y)).verdict

@@ -153,6 +153,7 @@ def test_a_rough_misfit_is_no_larger_smooth_one(empty):
     assert 0.5 < left < 2.0  # a step of 1.3 in the noise is 1.7 in its square
 
 
+@pytest.mark.long
 def test_an_effect_is_kept_beside_a_smooth_misfit():
     hidden = made([("viscous-drag", {"rate_per_s": 300.0})], seed=2)[0]
     v = session.discover(with_systematics(hidden, 0.01)).verdict

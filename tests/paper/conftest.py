@@ -1,4 +1,4 @@
-"""All cards of the configuration, simulated once for all tests of this folder (about a second)."""
+"""All cards of the configuration, simulated and read once for the tests of this folder (fifteen seconds)."""
 
 from pathlib import Path
 
