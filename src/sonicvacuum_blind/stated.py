@@ -25,6 +25,8 @@ SET = 0.9
 # Parameters whose effect vanishes as they grow, and what the others are where they do nothing.
 INVERSE = (("sensor-droop", "tau_us"), ("coating-thickness", "layer_thickness_um"))
 NOTHING = {"exponent": 1.5}
+# Ends at which studies hide a truth.
+ENDS = {("gravity", "fraction"): (0.0, 1.0)}
 CURE = "run sonicvacuum discover again"
 
 
@@ -70,6 +72,11 @@ class Parameter:
     value: float
     sigma: float
     pit: float
+
+    @property
+    def at_an_end(self) -> bool:
+        """Whether the truth is an end of what the parameter can be: a chain that lies flat, or stands."""
+        return self.truth in ENDS.get((self.effect, self.parameter), ())
 
 
 def parameters(truth: dict, verdict: dict, folder: Path | None = None) -> list[Parameter]:

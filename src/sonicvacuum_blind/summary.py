@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from sonicvacuum_blind import design
-from sonicvacuum_blind.breakdown import KINDS, coverage, ideal_share, pit
+from sonicvacuum_blind.breakdown import KINDS, LEVELS, coverage, ideal_share, pit
 from sonicvacuum_blind.calibration import BASE_RATES, ece, honest, resampled
 from sonicvacuum_blind.score import UNKNOWN, Row, SummaryLine
 from sonicvacuum_blind.shares import counted, counted_of, quantile, ratio_of_sums, share, strength_bin
@@ -20,6 +20,7 @@ OF_IDEAL = ">= 0.97 of ideal"
 # Kind of record that only a study of its own holds.
 BESIDE = "beside"
 ADDED, HONEST = "with the records added", "right probabilities"
+RIGHT = "of sets named exactly, truths at an end left out"
 
 
 def summary(rows: Iterable[Row], parameters: Iterable[Parameter] = ()) -> list[SummaryLine]:
@@ -45,6 +46,7 @@ def summary(rows: Iterable[Row], parameters: Iterable[Parameter] = ()) -> list[S
         *_wrong(of),
         *_probabilities(main, rows),
         *_intervals(main, parameters),
+        *_intervals_of_right_names(rows, parameters),
         *_located(main),
         *_errors(main),
         *_gaps([r for r in of["single"] if r.reached >= STRONG and r.exact]),
@@ -162,12 +164,23 @@ def _intervals(rows, parameters):
     yield SummaryLine(
         "PIT-ECDF inside its band", group, len(effects), outside, math.nan, math.nan, goal="<= 0"
     )
-    for one in coverage(parameters)[:4]:
-        yield SummaryLine(
-            f"{100 * one.level:.0f} % interval holds truth", "all", one.count, one.value, one.low, one.high
-        )
+    yield from _covered("all", parameters)
     held, count = sum(r.held for r in rows), sum(r.limits for r in rows)
     yield SummaryLine("upper limit holds truth", "hidden, not named", count, *share(held, count))
+
+
+def _intervals_of_right_names(rows, parameters):
+    """An interval is stated given the set that is named: beside another one it is of another model. One
+    between quantiles cannot hold a truth at an end of what a parameter can be, whatever the data.
+    """
+    right = {r.id for r in rows if r.exact}
+    return _covered(RIGHT, [p for p in parameters if p.id in right and not p.at_an_end])
+
+
+def _covered(group, parameters):
+    for one in coverage(parameters)[: len(LEVELS)]:
+        measure = f"{100 * one.level:.0f} % interval holds truth"
+        yield SummaryLine(measure, group, one.count, one.value, one.low, one.high)
 
 
 def _located(rows):

@@ -62,6 +62,8 @@ GROUPS = {
     "all parameters": "all parameters (1: yes, 0: no)",
     "effects whose ECDF leaves it": "number of effects of which they do not",
     "cells": "runs by gauges",
+    "of sets named exactly": "of sets named exactly",
+    "truths at an end left out": "chains that lie flat or stand left out",
     "proposed": "the proposed run",
     "random": "a run drawn at random",
     "before": "before one more run",

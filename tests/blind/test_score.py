@@ -16,7 +16,7 @@ from sonicvacuum.files import InputError
 from sonicvacuum_blind import breakdown
 from sonicvacuum_blind.score import Row, read_table, row, score, write_table
 from sonicvacuum_blind.shares import quantile, wilson
-from sonicvacuum_blind.stated import parameters
+from sonicvacuum_blind.stated import Parameter, parameters
 from sonicvacuum_blind.summary import summary
 
 
@@ -276,6 +276,21 @@ def test_coverage_by_effect_and_seconds_by_kind():
     # Linear between order statistics, numpy's default.
     assert (times["single"].median, times["single"].percentile_90) == pytest.approx((3.0, 3.8))
     assert times["null"].count == 0
+
+
+def test_intervals_are_counted_of_right_names_apart_and_without_truths_at_an_end():
+    """Four records: an interval that holds, one that does not, one of a set that is wrong, one at an end."""
+    given = {"a": verdict(), "b": verdict(), "c": verdict(["gravity"]), "d": verdict()}
+    rows = [row(truth(id), one) for id, one in given.items()]
+    case = "single", "traces", 10.0
+    middle = [
+        Parameter(id, *case, "tsuji", "alpha", 0.1, 0.1, 0.01, pit)
+        for id, pit in zip("abc", (0.5, 0.999, 0.0), strict=True)
+    ]
+    end = Parameter("d", *case, "gravity", "fraction", 1.0, 0.99, 0.01, 1.0)
+    lines = [s for s in summary(rows, [*middle, end]) if "interval holds" in s.measure]
+    assert [s.count for s in lines] == [4] * 4 + [2] * 4
+    assert [s.value for s in lines] == [0.25] * 4 + [0.5] * 4
 
 
 def test_interval_of_a_median():
