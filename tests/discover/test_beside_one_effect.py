@@ -18,12 +18,13 @@ GROSS = 5.0 * SIZE
 def model(leaves):
     """A model of as many data, beside which the best effect leaves that."""
     experiment = SimpleNamespace(runs=[None], size=lambda run: SIZE)
-    return SimpleNamespace(forward=SimpleNamespace(experiment=experiment, chains=0), leaves=leaves)
+    forward = SimpleNamespace(experiment=experiment, chains=0)
+    return SimpleNamespace(forward=forward, leaves=leaves, fit=SimpleNamespace(objective=101.0 * SIZE))
 
 
-def slip(fault, leaves, width=0.0, of_values=False):
+def slip(fault, leaves, width=0.0, of_values=False, gain=100.0):
     one = Slip(fault, None, width=width, of_values=of_values)
-    return Judged(one, 0.0, 100.0, 50.0, model(leaves))
+    return Judged(one, 0.0, gain, 0.5 * gain, model(leaves))
 
 
 @pytest.mark.parametrize(
@@ -63,6 +64,16 @@ def test_a_slip_that_an_effect_hides_is_asked_for_where_nothing_else_will_do(
     behind = [slip("gauges-swapped", NOISE), slip("bead-count", GROSS)]
     found = alone.Kept().explained([slip("gauge-misplaced", ranked)], model(leaves * SIZE), behind)
     assert (found and found.slip.fault) == chosen
+
+
+@pytest.mark.parametrize(("share", "every"), [(0.9, True), (0.03, False)])
+def test_every_effect_is_asked_beside_a_slip_that_takes_most_of_the_misfit_away(monkeypatch, share, every):
+    asked = []
+    monkeypatch.setattr(alone, "alone", lambda m, only=(): (asked.append(only) or best(m.leaves), 0))
+    slips = [slip("bead-count", GROSS, gain=share * 100.0 * SIZE), slip("gauge-misplaced", GROSS)]
+    alone.Kept().explained(slips, model(GROSS))
+    leading = {"one", "another"}
+    assert [set(only) for only in asked[1:]] == [set() if every else leading, leading]
 
 
 @pytest.mark.parametrize(

@@ -1,10 +1,12 @@
 """A valley with bumps on its floor, in closed form: fits stop in any hollow, strides find the lowest."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from sonicvacuum.discover import policy
 from sonicvacuum.discover.fit import broad, refit, strides
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, variants
 from sonicvacuum.discover.model.nuisances import Layout
@@ -64,9 +66,9 @@ def settled(forward, two, hollow):
     return refit.fit(forward, two, start, np.zeros((1, forward.layout.size)), finish=False)
 
 
-def rough(forward, two, one):
+def rough(forward, two, one, size=3):
     columns = forward.columns(two, one.u[None], one.nu[None])
-    return strides.rough(one.normal, broad.sloped(forward, two, one.normal, columns))
+    return strides.rough(one.normal, broad.sloped(forward, two, one.normal, columns), size)
 
 
 @pytest.mark.parametrize("hollow", [-5, -2, 1, 4])
@@ -104,5 +106,12 @@ def test_a_smooth_floor_is_not_strode_over(two, monkeypatch):
     assert refit.finished(forward, one).u == pytest.approx(MIDDLE, abs=1e-3)  # a twentieth of its error
 
 
+def test_bumps_are_nothing_beside_a_gross_misfit(two):
+    forward = Bumpy(high=1.0)
+    one = settled(forward, two, 2)
+    gross = replace(one, normal=replace(one.normal, chi2=one.normal.chi2 + 3 * policy.GROSS))
+    assert rough(forward, two, one) and not rough(forward, two, gross)
+
+
 def test_slopes_that_cannot_be_taken_tell_of_no_bumps(two):
-    assert not strides.rough(settled(Bumpy(high=1.0), two, 3).normal, None)
+    assert not strides.rough(settled(Bumpy(high=1.0), two, 3).normal, None, 3)

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Sequence, Set
 from dataclasses import replace
 
 from sonicvacuum.discover.faults import policy
-from sonicvacuum.discover.faults.judged import Judged, Model, scatter
+from sonicvacuum.discover.faults.judged import Judged, Model, excess, scatter
 from sonicvacuum.discover.fit.enough import data
 from sonicvacuum.discover.fit.evidence import Candidate
 from sonicvacuum.discover.search import directions, screen, singles
@@ -68,10 +68,11 @@ class Kept:
         left, leading = _left(found, size), {c.effect for c in found[:LEADING]}
         if left < max(policy.GROSS * size, policy.SURE_GAIN):
             return None
-        # What explains the record as it is says little of what acts beside a slip that explains most of it.
         slips = wholes(ranked)[: policy.FOLLOWED]
-        fitting = self._leaving_noise(slips[:1], frozenset(), size)
-        fitting += self._leaving_noise(slips[1:], leading, size)
+        # What explains the record as it is says little of what acts beside a slip that explains most of it.
+        most = slips[:1] if slips and slips[0].gain > policy.MOSTLY * excess(model) else []
+        fitting = self._leaving_noise(most, frozenset(), size)
+        fitting += self._leaving_noise(slips[len(most) :], leading, size)
         if not fitting and left > policy.BURIED * size:
             fitting = self._leaving_noise(wholes(behind), leading, size)
         return fitting[0] if len(fitting) == 1 else None

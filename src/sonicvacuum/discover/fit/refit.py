@@ -191,7 +191,8 @@ def _finished(forward, hypothesis, now):
     if not broad.asks(hypothesis):
         return now
     wide = broad.sloped(forward, hypothesis, now, columns)
-    lower = strides.farther(forward, hypothesis, now) if strides.rough(now, wide) else now
+    size = sum(forward.experiment.size(run) for run in range(len(columns)))
+    lower = strides.farther(forward, hypothesis, now) if strides.rough(now, wide, size) else now
     if lower is not now:
         now, columns = _rested(forward, hypothesis, lower)
         wide = broad.sloped(forward, hypothesis, now, columns)

@@ -8,6 +8,7 @@ errors, nuisances following as slopes have it, and are followed down; and once m
 
 import numpy as np
 
+from sonicvacuum.discover import policy
 from sonicvacuum.discover.fit import broad, ridge
 from sonicvacuum.discover.fit.descent import descend
 from sonicvacuum.discover.fit.normal import Normal, linearised
@@ -23,9 +24,15 @@ NEAR, FAR, MANY, ROUNDS = 4.0, 400.0, 12, 5
 ITERATIONS, ENOUGH, LOWER = 30, 0.02, 0.5
 
 
-def rough(now: Normal, wide: Normal | None) -> bool:
-    """Whether bumps may hold a fit, one lane, by its slopes over short steps and over its errors."""
-    if wide is None or not (now.has_slopes[0] and wide.has_slopes[0]):
+def rough(now: Normal, wide: Normal | None, size: int) -> bool:
+    """Whether bumps may hold a fit, one lane, of so many data, by its slopes over short steps and over its
+    errors. Where it leaves a gross misfit, bumps are nothing beside that.
+    """
+    if (
+        wide is None
+        or not (now.has_slopes[0] and wide.has_slopes[0])
+        or now.objective[0] > policy.GROSS * size
+    ):
         return False
     short, far = (np.linalg.norm(_longest(one)) for one in (now, wide))
     return bool(short < SHARP and far > ROUGH * short)
