@@ -245,20 +245,35 @@ def with_error(value, sigma):
     """Value ± standard error with two digits of the error."""
     if not sigma > 0.0:
         return f"{value:.4g} (error not determined)"
+    places = _places(value, sigma)
+    if places is None:
+        return f"{number(value)} ± {number(sigma, 2)}"
+    return f"{_to(value, places)} ± {_to(sigma, places)}"
+
+
+def _places(value, sigma):
+    """Decimals down to the second digit of an error; None where powers of ten say it better."""
     # Rounding may carry: 0.0996 is 0.10.
     places = 1 - math.floor(math.log10(float(f"{sigma:.1e}")))
-    if places >= 7 or abs(value) >= 1e6:
-        return f"{number(value)} ± {number(sigma, 2)}"
-    digits = max(0, places)
-    return f"{round(value, places):.{digits}f} ± {round(sigma, places):.{digits}f}"
+    return None if places >= 7 or abs(value) >= 1e6 else places
+
+
+def _to(value, places):
+    return f"{round(value, places):.{max(0, places)}f}"
 
 
 def _interval(value, sigma, draws):
-    """The 90 % interval of the draws, where there are any, or else of the Gaussian."""
-    if draws is not None:
-        return f"{_rounded(draws.quantile(0.05), 4)} to {_rounded(draws.quantile(0.95), 4)}"
+    """The 90 % interval of the draws, where there are any, or else of the Gaussian: one digit more than the
+    value, since it may lean far to one side.
+    """
     room = policy.NINETY * sigma
-    return f"{_rounded(value - room, 4)} to {_rounded(value + room, 4)}" if sigma > 0.0 else ""
+    ends = (value - room, value + room)
+    if draws is not None:
+        ends = (draws.quantile(0.05), draws.quantile(0.95))
+    elif not sigma > 0.0:
+        return ""
+    places = _places(max(map(abs, ends)), sigma) if sigma > 0.0 else None
+    return " to ".join(_rounded(x, 4) if places is None else _to(x, places + 1) for x in ends)
 
 
 def off(parameter) -> str:
