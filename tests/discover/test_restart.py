@@ -68,7 +68,7 @@ def test_starts_are_the_best_trials_of_each_place(stuck, monkeypatch):
     for k, component in enumerate(one.hypothesis.components):
         trials = restart._trials(forward, one, k, setup)
         assert component.effect.places and len(trials) == restart.FOLLOWED
-        places = restart.put(one, k, trials)[2]
+        places = restart.put(one.hypothesis, k, trials)[2]
         assert len(set(places[:, k])) == len(trials)
         assert set(places[:, 1 - k]) == {one.hypothesis.components[1 - k].place}
 

@@ -2,7 +2,9 @@
 
 A gap at one contact does nearly what a wider one does at the next, and few scalars may not tell the beads
 of half a chain apart. Each place that may be is fitted from its neighbour's fit, on and on while one is
-probable; what it weighs is its evidence (`evidence`), places being equally likely before.
+probable; what it weighs is its evidence (`evidence`), places being equally likely before. In a set the
+strengths of an effect that has several may stand for one another as well (`strengths`); those of one effect
+alone are weighed where it is fitted.
 """
 
 from collections.abc import Iterable, Sequence
@@ -10,11 +12,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from sonicvacuum.discover import policy
 from sonicvacuum.discover.fit import evidence, places
 from sonicvacuum.discover.fit.refit import Fit, fit
 from sonicvacuum.discover.judge.rivals import LEAST, Rival
 from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.search import strengths
 from sonicvacuum.discover.search.starts import setup_of
 from sonicvacuum.effects import Effect, Setup
 from sonicvacuum.gauges import Gauge
@@ -29,8 +33,10 @@ SURE = 0.95
 
 
 def spread(forward: Forward, told: Fit, setup: Setup) -> list[Rival]:
-    """What is told, first, and the same effects with one of them elsewhere; their shares sum to 1."""
-    fits = [told]
+    """What is told, first, and the same effects with one of them elsewhere, or of several with another of its
+    strengths; their shares sum to 1.
+    """
+    fits = [told, *(strengths.others(forward, told, setup) if _of_several(told, setup) else ())]
     for k, component in enumerate(told.hypothesis.components):
         if component.effect.places:
             fits += _elsewhere(forward, told, setup, k)
@@ -40,13 +46,21 @@ def spread(forward: Forward, told: Fit, setup: Setup) -> list[Rival]:
 
 
 def among(rivals: Sequence[Rival], forward: Forward, told: Fit) -> list[Rival]:
-    """Rivals, what is told standing once for each of the places where its effects may sit."""
-    if not any(c.effect.places for c in told.hypothesis.components):
+    """Rivals, what is told standing once for each of the places where its effects may sit, and of the
+    strengths that one may have.
+    """
+    setup = setup_of(forward)
+    if not (any(c.effect.places for c in told.hypothesis.components) or _of_several(told, setup)):
         return list(rivals)
     others = [r for r in rivals if not same(r.fit, told)]
     own = sum(r.probability for r in rivals if same(r.fit, told))
-    sits = spread(forward, told, setup_of(forward))
+    sits = spread(forward, told, setup)
     return [*(replace(r, probability=r.probability * (own or 1.0)) for r in sits), *others]
+
+
+def _of_several(told, setup):
+    """Whether strengths may stand for one another in a set."""
+    return len(told.hypothesis.components) > 1 and strengths.several(told, setup)
 
 
 def same(one: Fit, other: Fit) -> bool:
@@ -83,6 +97,32 @@ def unsure(rivals: Iterable[Rival], told: Fit, gauges: Sequence[Gauge]) -> list[
             where = "gauge" if effect.places == "sensor" else effect.places
             lines.append(f"{effect.id} sits at {where} {' or '.join(likely)}")
     return lines
+
+
+def instead(rivals: Iterable[Rival], told: Fit) -> list[str]:
+    """What is said of a set of which another strength of an effect explains the data as well."""
+    rivals = [r for r in rivals if set(r.fit.hypothesis.ids) == set(told.hypothesis.ids)]
+    if len(told.hypothesis.components) < 2:
+        return []
+    total, lines = sum(r.probability for r in rivals), []
+    for r in rivals:
+        for one, other in zip(_values(told), _values(r.fit), strict=True):
+            if one[1].keys() != other[1].keys() and r.probability > policy.TOLD * total:
+                share = r.probability / total
+                lines.append(
+                    f"{one[0]}: {_words(other)} instead of {_words(one)}, with probability {share:.2f}"
+                )
+    return lines
+
+
+def _values(one):
+    """Each effect and its free parameters, in the order of the names."""
+    values, free = one.hypothesis.values(one.u), {c.effect.id: c.free for c in one.hypothesis.components}
+    return [(k, {f.parameter.name: values[k][f.parameter.name] for f in free[k]}) for k in sorted(free)]
+
+
+def _words(effect):
+    return " and ".join(f"{name} {value:.3g}" for name, value in effect[1].items())
 
 
 def where_open(rivals: Iterable[Rival], told: Fit) -> list[Rival]:

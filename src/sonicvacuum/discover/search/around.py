@@ -55,7 +55,9 @@ def beside(forward: Forward, null: Fit, one: Fit, other: Fit, setup: Setup) -> F
     trials = secants.one_a_place(secants.tried(forward, null, component, setup, TRIALS, sizes, near))
     if not trials:
         return one
-    better = fit(forward, one.hypothesis, *restart.put(one, 0, trials[:FOLLOWED]), FOLLOWED, ITERATIONS)
+    better = fit(
+        forward, one.hypothesis, *restart.put(one.hypothesis, 0, trials[:FOLLOWED]), FOLLOWED, ITERATIONS
+    )
     return better if better.objective < one.objective - places.WORTH else one
 
 
@@ -65,7 +67,7 @@ def _refined(forward, one, k, setup):
         trials = _trials(forward, one, k, setup)
         if not trials:
             break
-        better = fit(forward, one.hypothesis, *restart.put(one, k, trials), FOLLOWED, ITERATIONS)
+        better = fit(forward, one.hypothesis, *restart.put(one.hypothesis, k, trials), FOLLOWED, ITERATIONS)
         if not better.objective < one.objective - places.WORTH:
             break
         one = places.settled(forward, better, setup)

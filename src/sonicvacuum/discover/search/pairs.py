@@ -18,7 +18,7 @@ from sonicvacuum.discover.fit.refit import Fit, finished, fit, polish
 from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, of_one_strength, variants
-from sonicvacuum.discover.search import around, directions, restart, screen, secants
+from sonicvacuum.discover.search import around, directions, restart, screen, secants, strengths
 from sonicvacuum.discover.search.planes import Start, linear, variant
 from sonicvacuum.discover.search.starts import setup_of, starts_of
 from sonicvacuum.effects import Setup
@@ -58,6 +58,7 @@ class Pairs:
         started = [c for c in candidates[:STARTED] if c.gain > 0.0]
         self.asked = [let_go(s) for c in started for s in beside(forward, null, c.fit, self.setup)]
         self.found: dict[frozenset, Combination] = {}
+        self.likeliest: dict[frozenset, Fit] = {}
         self.tried: set[tuple] = set()
 
     @property
@@ -72,6 +73,7 @@ class Pairs:
         self._exchange()
         self._unbound()
         self._refine()
+        self._with_other_strengths()
         return self.ranked
 
     def again(self) -> list[Combination]:
@@ -92,6 +94,7 @@ class Pairs:
             if self.ranked[0].log_bayes < leading[0].log_bayes + WORTH:
                 break
             self._exchange()
+        self._with_other_strengths()
         return self.ranked
 
     def _gross(self) -> bool:
@@ -127,11 +130,23 @@ class Pairs:
 
     def _refine(self):
         """Look for narrow minima of effects with a place in the leading pairs, see `around`."""
-        leading = self.ranked[:REFINED]
-        near = [p.fit for p in leading if places.placed(p.fit) and p.log_bayes > leading[0].log_bayes - NEAR]
+        near = [one for one in self._near() if places.placed(one)]
         refined = partial(around.refined, setup=self.setup)
         for one in abreast.each(self.forward, refined, near, "places of pairs"):
             self._note(one)
+
+    def _with_other_strengths(self):
+        """The likeliest strengths of effects with several in the leading pairs, see `strengths`."""
+        for one in self._near():
+            key = frozenset(one.hypothesis.ids)
+            if strengths.several(one, self.setup) and self.likeliest.get(key) is not one:
+                self.likeliest[key] = strengths.settled(self.forward, self.null, one, self.setup)
+                self.found[key] = combination(self.null, self.likeliest[key], self.setup)
+
+    def _near(self):
+        """Fits of the leading pairs that are not far behind the best one."""
+        leading = self.ranked[:REFINED]
+        return [p.fit for p in leading if p.log_bayes > leading[0].log_bayes - NEAR]
 
     def _refit(self, starts: list[Start]):
         """Fit pairs and note them."""

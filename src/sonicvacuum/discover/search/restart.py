@@ -14,7 +14,7 @@ from sonicvacuum.discover.fit.evidence import Candidate, Combination
 from sonicvacuum.discover.fit.normal import linearise
 from sonicvacuum.discover.fit.refit import Fit, fit, polish
 from sonicvacuum.discover.model.forward import Forward
-from sonicvacuum.discover.model.hypothesis import of_one_strength, without
+from sonicvacuum.discover.model.hypothesis import Hypothesis, of_one_strength, without
 from sonicvacuum.discover.search import secants
 from sonicvacuum.discover.search.secants import Secant
 from sonicvacuum.effects import Setup
@@ -32,7 +32,7 @@ def restarted(forward: Forward, one: Fit, setup: Setup) -> Fit:
     for k in range(len(one.hypothesis.components)):
         trials = _trials(forward, one, k, setup)
         if trials:
-            found.append(fit(forward, one.hypothesis, *put(one, k, trials), FOLLOWED, ITERATIONS))
+            found.append(fit(forward, one.hypothesis, *put(one.hypothesis, k, trials), FOLLOWED, ITERATIONS))
     return min(found, key=lambda f: f.objective)
 
 
@@ -49,14 +49,16 @@ def _trials(forward, one, k, setup):
     return (secants.one_a_place(trials) if component.effect.places else trials)[:FOLLOWED]
 
 
-def put(one: Fit, k: int, trials: Sequence[Secant]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def put(
+    hypothesis: Hypothesis, k: int, trials: Sequence[Secant]
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """(L, p) coordinates, (L, q) nuisances and (L, effects) places of a set with effect k as L trials put it,
     the others as they follow.
     """
-    u = np.array([np.insert(t.beside, one.hypothesis.columns[k].start, t.u) for t in trials])
-    places = np.tile([c.place or 0 for c in one.hypothesis.components], (len(trials), 1))
+    u = np.array([np.insert(t.beside, hypothesis.columns[k].start, t.u) for t in trials])
+    places = np.tile([c.place or 0 for c in hypothesis.components], (len(trials), 1))
     places[:, k] = [t.place or 0 for t in trials]
-    return one.hypothesis.inside(u), np.array([t.nu for t in trials]), places
+    return hypothesis.inside(u), np.array([t.nu for t in trials]), places
 
 
 def moved(forward: Forward, one: Fit, iterations: int = ITERATIONS) -> Fit:

@@ -21,7 +21,7 @@ from sonicvacuum.discover.fit.evidence import Combination
 from sonicvacuum.discover.fit.refit import Fit, finished
 from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.forward import Forward
-from sonicvacuum.discover.search import around, pairs, planes, prospects, restart, secants
+from sonicvacuum.discover.search import around, pairs, planes, prospects, restart, secants, strengths
 from sonicvacuum.discover.search.grown import Grown
 from sonicvacuum.discover.search.once import Once
 from sonicvacuum.effects import Setup
@@ -283,10 +283,9 @@ class Turns:
         least = min((one.objective for one in found), default=np.inf)
         found = self._refined(found, [one.objective < least + pairs.BEHIND for one in found])
         for one in sorted(found, key=self._evidence, reverse=True):
-            one = finished(self.forward, one)
-            if places.placed(one):
-                one = places.settled(self.forward, one, self.setup)
-                self._noted(one)
+            one = places.settled(self.forward, finished(self.forward, one), self.setup)
+            one = strengths.settled(self.forward, self.null, one, self.setup)
+            self._noted(one)
             yield one
 
     def _exchanged(self, fit):
