@@ -149,6 +149,27 @@ def test_no_valley_leads_beyond_the_bounds(two, room):
     assert np.isfinite(found.u).all()
 
 
+def test_draws_reach_the_bound_that_cuts_a_valley_off(two):
+    """Against sums over a fine grid within the bounds: up to there all is as probable as the misfit says."""
+    bound = two.coordinates[1].high
+    middle = np.array([-2.0, bound - 0.4])
+    forward = Valley(middle)
+    fit = forward.fit(two, middle)
+    columns = forward.columns(two, fit.u[None], fit.nu[None])
+    found = ridge.valley(forward, two, fit.normal, broad.covariance(fit.normal), columns)
+    assert bound - found.u[-1, 1] < ridge.NO_STEP * ridge.LONGEST
+    along, across = np.meshgrid(np.linspace(-4.0, 4.0, 2001) * WIDE, np.linspace(-5.0, 5.0, 201) * NARROW)
+    other = 0.5 * (along + across + BEND * along**2)
+    weight = np.exp(-0.5 * (along**2 / WIDE**2 / 1.09 + across**2 / NARROW**2)) * (other < 0.4)
+    order = np.argsort(other, axis=None)
+    below = np.cumsum(weight.ravel()[order]) / weight.sum()
+    drawn = posterior.posterior(forward, fit)[1]
+    told = [two.coordinates[1].inverse(drawn.quantile(q)) - middle[1] for q in (0.5, 0.975)]
+    wide = np.sqrt((weight * other**2).sum() / weight.sum())
+    # Draws worth a hundred equal ones err by an eighth of the spread in the median, and by less at a bound.
+    assert told == pytest.approx(np.interp([0.5, 0.975], below, other.ravel()[order]), abs=0.25 * wide)
+
+
 def test_draws_along_a_bent_valley_have_its_moments(two):
     """Against sums over a fine grid of the posterior itself."""
     middle = np.array([-2.0, 0.5])

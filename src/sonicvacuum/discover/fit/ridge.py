@@ -25,6 +25,8 @@ FIRST, LONGEST = 0.5, 0.5
 # The shortest step, of the first one; how often a step is cut once the valley has shown: χ² that jumps, as a
 # count does, or steep ends are met there. The least variance of a coordinate, where slopes say none.
 SHORTEST, CUTS, LEAST = 2e-3, 2, 1e-24
+# The valley ends at a bound where less than this share of a step is left to it.
+NO_STEP = 0.05
 # Finite differences across it: in standard errors of a coordinate known by itself, none longer.
 ACROSS, FARTHEST = 1.0, 0.05
 
@@ -147,14 +149,20 @@ class _Walk:
         return points[1:]
 
     def _beyond(self, side, step):
-        """The next point of a side; None beyond the bounds, or where nothing can be simulated."""
+        """The next point of a side, at a bound where the step would leave it; None where the last one lies
+        there, or nothing can be simulated.
+        """
         last = side[-1]
         u, nu = last.u + step * self.axis, last.nu
         if len(side) > 1:
             share = step / (last.t - side[-2].t)
             u, nu = last.u + share * (last.u - side[-2].u), last.nu + share * (last.nu - side[-2].nu)
-        if np.any(u != self.hypothesis.inside(u)):
-            return None
+        inside = self.hypothesis.inside(u)
+        if np.any(out := u != inside):
+            share = float(((inside - last.u)[out] / (u - last.u)[out]).min())
+            if share < NO_STEP:
+                return None
+            u, nu = last.u + share * (u - last.u), last.nu + share * (nu - last.nu)
         return self.settled(u, nu)
 
     def settled(self, u: np.ndarray, nu: np.ndarray) -> _Point | None:
