@@ -148,8 +148,7 @@ def discover(
         next_experiment=proposal,
         reasons=[
             *found.reasons,
-            *(whereabouts.unsure(rivals, counted.final, forward.experiment.gauges) if named else ()),
-            *(whereabouts.instead(rivals, counted.final) if named else ()),
+            *(whereabouts.doubts(rivals, counted.final, forward.experiment.gauges) if named else ()),
             *_taken_as_stated(found, records),
             *(law.reasons(told) if free else ()),
             *verdict.corrections(outcome.findings),

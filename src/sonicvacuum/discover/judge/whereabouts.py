@@ -86,6 +86,11 @@ def of_each(rivals: Iterable[Rival], told: Fit) -> list[tuple[Effect, np.ndarray
     return result
 
 
+def doubts(rivals: Sequence[Rival], told: Fit, gauges: Sequence[Gauge]) -> list[str]:
+    """What is said of both: `unsure` and `instead`."""
+    return [*unsure(rivals, told, gauges), *instead(rivals, told)]
+
+
 def unsure(rivals: Iterable[Rival], told: Fit, gauges: Sequence[Gauge]) -> list[str]:
     """What is said of effects whose place the data leave open; a gauge by its name."""
     lines = []
