@@ -38,9 +38,17 @@ def of_weights(weights: Mapping[str, float], found: Iterable[Combination]) -> li
 def of_odds(
     odds: Mapping[str, float], null: Fit, singles: Iterable[Candidate], sets: Iterable[Combination]
 ) -> list[Rival]:
-    """Rivals of explanations with probabilities; those with something unknown are left aside."""
+    """Rivals of explanations with probabilities; effects with something unknown beside them are as they are
+    fitted without it, `unknown` alone is left aside.
+    """
     fits = {explanations.NONE: [(1.0, null)], **{c.effect: c.ways for c in singles}}
-    return _probable(odds, fits | {explanations.key(c.effects): [(1.0, c.fit)] for c in sets})
+    fits |= {explanations.key(c.effects): [(1.0, c.fit)] for c in sets}
+    whole: dict[str, float] = {}
+    for name, p in odds.items():
+        known = [one for one in explanations.effects(name) if one != explanations.UNKNOWN]
+        if name != explanations.UNKNOWN:
+            whole[explanations.key(known)] = whole.get(explanations.key(known), 0.0) + p
+    return _probable(whole, fits)
 
 
 def _probable(odds, fits):
