@@ -64,11 +64,12 @@ def test_points_that_run_away_do_not_bend_a_posterior(monkeypatch):
     away = np.linspace(-2.0, 2.0, 41)[:, None]
     point = np.concatenate([away, np.zeros_like(away)], axis=1)
 
-    def misfit(forward, fit, at):
+    def misfit(around, at):
         """The nuisance's best value is 0.3 of the square of what is held; no numbers from 1.5 on."""
         slope = 0.3 * np.square(at[:, 0]) - at[:, 1]
         return None, np.stack([np.zeros_like(slope), np.where(at[:, 0] > 1.5, np.nan, slope)], axis=1)
 
-    monkeypatch.setattr(posterior, "_misfit", misfit)
-    bent = posterior._bent(None, None, point, away, np.array([1]), np.eye(1))
-    assert bent[:, 0] == pytest.approx(0.3 * np.square(away[:, 0]), abs=1e-6)  # a quadratic is what it fits
+    monkeypatch.setattr(posterior.Around, "misfit", misfit)
+    monkeypatch.setattr(posterior.Around, "inner", np.eye(1))
+    bent = posterior.Around(None, SimpleNamespace(u=np.zeros(1))).bent(point, away)
+    assert bent[:, 1] == pytest.approx(0.3 * np.square(away[:, 0]), abs=1e-6)  # a quadratic is what it fits

@@ -1,6 +1,7 @@
 """Draws of the posterior: against what is known in closed form, and against fits with a parameter held."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -75,13 +76,13 @@ def test_the_posterior_is_that_of_fits_with_the_parameter_held(verdict):
     """Nuisances followed to their minimum at each value, which takes six steps more."""
     forward, fit = verdict.found.forward, verdict.found.final
     values = fit.u + np.array([-3.0, -1.5, 0.0, 1.5, 3.0])[:, None] * fit.sigma
-    quick = posterior.log_posterior(forward, fit, values, np.array([0]))
+    quick = posterior.log_posterior(forward, fit, values)
     hessian = fit.normal.total()[1][0]
     inner = np.linalg.inv(hessian[1:, 1:])
     point = np.concatenate([values, np.tile(fit.nu, (5, 1))], axis=1)
     for _ in range(6):
-        point[:, 1:] += posterior._misfit(forward, fit, point)[1][:, 1:] @ inner
-    slow = -0.5 * posterior._misfit(forward, fit, point)[0]
+        point[:, 1:] += posterior.Around(forward, fit).misfit(point)[1][:, 1:] @ inner
+    slow = -0.5 * posterior.Around(forward, fit).misfit(point)[0]
     # In natural logarithms: a tenth of what one standard error makes.
     assert quick - quick[2] == pytest.approx(slow - slow[2], abs=0.05)
 
@@ -89,9 +90,9 @@ def test_the_posterior_is_that_of_fits_with_the_parameter_held(verdict):
 def test_draws_of_a_record_of_very_many_runs_go_one_at_a_time(verdict, monkeypatch):
     forward, fit = verdict.found.forward, verdict.found.final
     point = np.tile(np.concatenate([fit.u, fit.nu]), (3, 1))
-    whole = posterior._misfit(forward, fit, point)
+    whole = posterior.Around(forward, fit).misfit(point)
     monkeypatch.setattr(posterior, "CHUNK", 1)
-    for one, other in zip(whole, posterior._misfit(forward, fit, point), strict=True):
+    for one, other in zip(whole, posterior.Around(forward, fit).misfit(point), strict=True):
         # Last digits of chains may depend on those beside them.
         np.testing.assert_allclose(one, other, rtol=1e-8, atol=1e-5)
 
@@ -100,7 +101,7 @@ def test_nothing_is_better_than_the_fit_however_far_from_it(verdict):
     """A step of Gauss and Newton with the slopes of the fit, taken far away, may promise anything."""
     forward, fit = verdict.found.forward, verdict.found.final
     values = fit.u + np.linspace(-3.0, 3.0, 25)[:, None]
-    found = posterior.log_posterior(forward, fit, values, np.array([0]))
+    found = posterior.log_posterior(forward, fit, values)
     assert found.max() == pytest.approx(-0.5 * fit.objective, abs=0.05)  # the fit's own settling
     assert found.argmax() == 12
     assert found.max() <= -0.5 * fit.objective
@@ -147,12 +148,29 @@ def test_where_draws_are_not_trusted_the_profile_is_told(verdict, monkeypatch):
         assert one.quantile(share) == pytest.approx(drawn.quantile(share), abs=0.2 * error)
 
 
+def test_more_steps_are_taken_where_one_promises_too_much(monkeypatch):
+    """One datum 2 (nu - d), which the fit takes for nu - d: a step from 0 promises 2 d² of 4 d², of which
+    3.2 d² can be had; the next one would go too far.
+    """
+    d = np.array([0.01, 1.0, 3.0])
+
+    def misfit(around, point):
+        left = 2.0 * (d[point[:, 0].astype(int)] - point[:, 1])
+        return left**2 + point[:, 1] ** 2, np.stack([0.0 * left, left - point[:, 1]], axis=1)
+
+    monkeypatch.setattr(posterior.Around, "misfit", misfit)
+    monkeypatch.setattr(posterior.Around, "inner", np.array([[0.5]]))
+    around = posterior.Around(None, SimpleNamespace(u=np.zeros(1)))
+    found = -2.0 * around.at_best(np.array([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]), 0.0)
+    assert found == pytest.approx([2.0 * d[0] ** 2, d[1] ** 2, d[2] ** 2])
+
+
 def test_a_profile_that_does_not_hold_the_fit_is_not_believed(verdict, monkeypatch):
     """Far from the data its nuisances may miss their best: a rate of 668 1/s had 90 % from 523 to 651."""
     fit = verdict.found.final
     monkeypatch.setattr(posterior, "TRUSTED", -np.inf)
-    steep = 10.0 / fit.sigma[0]
-    monkeypatch.setattr(posterior, "log_posterior", lambda f, o, values, held: steep * values[:, 0])
+    at = fit.u[0] + np.linspace(0.0, 5.0, 6) * fit.sigma[0]
+    monkeypatch.setattr(posterior.ridge, "profiles", lambda *_: [(at, np.linspace(0.0, 25.0, 6))])
     (one,) = posterior.posterior(verdict.found.forward, fit)
     assert one.how == draws.LINEAR
     value = verdict.verdict.parameters["kuwabara-kono"]["time_us"]
@@ -175,7 +193,7 @@ def test_a_point_that_its_nuisances_exclude_is_not_simulated(verdict, monkeypatc
     point[1, -1] = 650.0  # standard errors of a modulus: a hundredth of it each
     asked, sampled = [], forward.sampled
     monkeypatch.setattr(forward, "sampled", lambda h, u, nu: asked.append(len(u)) or sampled(h, u, nu))
-    objective, gradient = posterior._misfit(forward, fit, point)
+    objective, gradient = posterior.Around(forward, fit).misfit(point)
     assert sum(asked) == 2
     assert np.isfinite(objective).tolist() == [True, False, True]
     assert np.isfinite(gradient).all(axis=1).tolist() == [True, False, True]

@@ -4,6 +4,7 @@ that differences of short steps take for slopes.
 
 import numpy as np
 import pytest
+from scipy.optimize import minimize_scalar
 
 from sonicvacuum.discover import posterior
 from sonicvacuum.discover.fit import broad, ridge
@@ -134,6 +135,31 @@ def test_a_step_that_goes_too_far_is_tried_once_more_and_shorter(two):
     assert before == pytest.approx(9.0 * np.arctan(1.7) ** 2, rel=1e-9)  # 9.6
     # A full step leads to 3.0 widths on the other side, 14; a quarter of it to half a width.
     assert walk.settled(aside, np.zeros(forward.layout.size)).objective < 0.05 * before
+
+
+def test_profiles_across_a_bent_valley_are_those_of_its_bottom(two, monkeypatch):
+    """Against minima found one by one; with the slopes of the fit alone nothing would be left of them."""
+    middle = np.array([-2.0, 0.5])
+    forward = Valley(middle)
+    fit = forward.fit(two, middle)
+    monkeypatch.setattr(posterior, "TRUSTED", -np.inf)
+    for k, drawn in enumerate(posterior.posterior(forward, fit)):
+        assert drawn.how == "profile"
+        u = np.array([two.coordinates[k].inverse(x) for x in drawn.value]) - middle[k]
+        wanted = np.exp(-0.5 * np.array([lowest(k, x) for x in u]))
+        below, told = np.cumsum(wanted) / wanted.sum(), np.cumsum(drawn.weight)
+        # Rounded off between points that lie up to 1.5 errors apart.
+        assert told == pytest.approx(below, abs=0.02)
+
+
+def lowest(k, held):
+    """Least χ² of the valley with one coordinate held, its nuisance at its best."""
+
+    def misfit(other):
+        a, b = (held, other) if k == 0 else (other, held)
+        return (a + b) ** 2 / WIDE**2 / 1.09 + (b - a - BEND * (a + b) ** 2) ** 2 / NARROW**2
+
+    return minimize_scalar(misfit, bracket=(held - 0.1, held + 0.1), tol=1e-10).fun
 
 
 @pytest.mark.parametrize("room", [0.0, 0.003, 0.3])

@@ -2,21 +2,23 @@
 
 Draws come from the Gaussian of the fit, its tails widened (Student's t), and every one of them is simulated,
 all in one batch. At each the nuisances take their best values (a quadratic of the parameters, then a step of
-Gauss and Newton with the slopes of the fit), and are integrated over as if they were Gaussian there (Tierney
-& Kadane, J. Am. Stat. Assoc. 81, 82, 1986). The weight of a draw is what the data make of it, over the chance
-to draw it; its prior is flat in the coordinates of the search. An effect of several parameters, of which one
-may nearly replace the other, leaves a valley that no Gaussian fills: draws come from along it
-(`fit.ridge`, `proposals`). Where few draws carry the weight (`draws.pareto_k`), the profile of each parameter
-is told instead: all else at its best, in the same way. Far from the data that best may be missed: a step that
-promises less than the fit leaves is not believed, nor is a profile whose 90 % do not hold the fit itself;
-there the Gaussian is told.
+Gauss and Newton with the slopes of the fit, more where these promise much), and are integrated over as if
+they were Gaussian there (Tierney & Kadane, J. Am. Stat. Assoc. 81, 82, 1986). The weight of a draw is what
+the data make of it, over the chance to draw it; its prior is flat in the coordinates of the search. An effect
+of several parameters, of which one may nearly replace the other, leaves a valley that no Gaussian fills:
+draws come from along it (`fit.ridge`, `proposals`). Where few draws carry the weight (`draws.pareto_k`), the
+profile of each parameter is told instead: all else at its best, with slopes of its own there
+(`ridge.profiles`). Far from the data that best may be missed: a step that promises less than the fit leaves
+is not believed, nor is a profile whose 90 % do not hold the fit itself; there the Gaussian is told.
 """
 
-import math
 from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
 from itertools import chain
 
 import numpy as np
+import scipy
 
 from sonicvacuum.discover import proposals
 from sonicvacuum.discover.draws import AVERAGED, LINEAR, PLACES, PROFILE, SAMPLED, TRUSTED, Draws, pareto_k
@@ -31,7 +33,7 @@ from sonicvacuum.discover.verdict import named_effects
 
 # Draws, and their seed; SPARE times as many are proposed, for those that lie beyond the bounds.
 DRAWS, SEED, SPARE = 200, 20061017, 16
-# A profile reaches so many standard errors to either side, by so many values.
+# A profile is told by so many values; that of a Gaussian reaches so many standard errors to either side.
 REACH, VALUES = 5.0, 61
 # A batch of draws takes as long as so many calls of the predictor, about.
 BATCH = 10
@@ -39,6 +41,8 @@ BATCH = 10
 TAIL = 0.05
 # In χ², what a step may promise below the fit: that has settled no better.
 SETTLED = 1.0
+# What a step may promise, in χ², and be believed without being taken.
+NEAR = 0.2
 # So many of the draws for each coordinate are followed by so many steps.
 FEW, STEPS = 12, 3
 # What rivals make of a parameter is told where it adds such a share of its error.
@@ -84,7 +88,7 @@ def _parameters(forward, fit, found):
     if pareto_k(weight) <= TRUSTED:
         drawn = [(SAMPLED, u[:, k], weight) for k in range(len(fit.u))]
     else:
-        drawn = [_profile(forward, fit, k) for k in range(len(fit.u))]
+        drawn = _profiles(forward, fit)
     return _told(fit, _averaged(fit, drawn, found))
 
 
@@ -110,7 +114,7 @@ def _inside(fit, u, count=DRAWS):
 def _straight(forward, fit):
     """(n, p) draws from the Gaussian of a fit, and (n,) logarithms of their weights."""
     u, log_proposal = proposed(fit)
-    return u, log_posterior(forward, fit, u, np.arange(len(fit.u))) - log_proposal
+    return u, log_posterior(forward, fit, u) - log_proposal
 
 
 def _valley(forward, fit):
@@ -122,13 +126,10 @@ def _valley(forward, fit):
 
 def _along(forward, fit, found):
     """The same from along its valley."""
-    p = len(fit.u)
     u, nu, log_proposal = proposals.along(found, SPARE * DRAWS, SEED)
     inside = _inside(fit, u)
-    free = p + np.arange(len(fit.nu))
-    inner = np.linalg.pinv(fit.normal.total()[1][0][np.ix_(free, free)], hermitian=True)
     floor = min(fit.objective, float(found.objective.min()))
-    value = _at_best(forward, fit, np.concatenate([u, nu], axis=1)[inside], free, inner, floor)
+    value = Around(forward, fit).at_best(np.concatenate([u, nu], axis=1)[inside], floor)
     return u[inside], value - log_proposal[inside]
 
 
@@ -148,89 +149,133 @@ def _covariance(fit):
     return own * np.outer(less, less) + 1e-12 * np.diag(np.square(less * sigma)) + 1e-24 * np.eye(p)
 
 
-def log_posterior(forward: Forward, fit: Fit, values: np.ndarray, held: np.ndarray) -> np.ndarray:
-    """(n,) logarithm, up to a constant, at (n, h) values of the coordinates `held`; all else at its best.
+def log_posterior(forward: Forward, fit: Fit, u: np.ndarray) -> np.ndarray:
+    """(n,) logarithm, up to a constant, at (n, p) coordinates; nuisances at their best.
 
     −inf where nothing can be simulated.
     """
-    free = np.setdiff1d(np.arange(len(fit.u) + len(fit.nu)), held)
-    _, hessian = fit.normal.total()
-    inner = np.linalg.pinv(hessian[0][np.ix_(free, free)], hermitian=True)
-    away = values - fit.u[held]
-    point = np.tile(np.concatenate([fit.u, fit.nu]), (len(values), 1))
-    point[:, held] = values
-    point[:, free] -= away @ (inner @ hessian[0][np.ix_(free, held)]).T
-    point[:, free] += _bent(forward, fit, point, away, free, inner)
-    return _at_best(forward, fit, point, free, inner, fit.objective)
+    around, p = Around(forward, fit), len(fit.u)
+    away = u - fit.u
+    hessian = fit.normal.total()[1][0]
+    point = np.concatenate([u, fit.nu - away @ (around.inner @ hessian[p:, :p]).T], axis=1)
+    return around.at_best(around.bent(point, away), fit.objective)
 
 
-def _at_best(forward, fit, point, free, inner, floor):
-    """(n,) logarithm of the posterior at (n, p + q) points, `free` by one step more at their best.
+@dataclass(frozen=True)
+class Around:
+    """The misfit around a fit, and its nuisances at their best, with the slopes of the fit."""
 
-    Nothing is better than `floor`: steps that promise so overreach, and what they start from is counted.
-    """
-    objective, gradient = _misfit(forward, fit, point)
-    drop = np.einsum("ln,nm,lm->l", gradient[:, free], inner, gradient[:, free])
-    left = np.where(objective - drop < floor - SETTLED, objective, objective - drop)
-    value = -0.5 * np.maximum(left, floor)
-    return np.where(np.isfinite(value), value, -np.inf)
+    forward: Forward
+    fit: Fit
+
+    @cached_property
+    def columns(self):
+        """Of the fit, for each run (`Forward.columns`)."""
+        return self.forward.columns(self.fit.hypothesis, self.fit.u[None], self.fit.nu[None])
+
+    @cached_property
+    def inner(self):
+        """(q, q) covariance of the nuisances, coordinates held."""
+        p = len(self.fit.u)
+        return np.linalg.pinv(self.fit.normal.total()[1][0][p:, p:], hermitian=True)
+
+    def at_best(self, point, floor):
+        """(n,) logarithm of the posterior at (n, p + q) points, nuisances at their best: steps are taken from
+        those that promise much, and what is promised at the last is believed, unless it has been tried.
+
+        Nothing is better than `floor`: steps that promise so overreach, and what they start from is counted.
+        """
+        point, p = point.copy(), len(self.fit.u)
+        objective, gradient = self.misfit(point)
+        promise = self._promise(gradient)
+        going = np.flatnonzero(np.isfinite(objective) & (promise > NEAR))
+        for _ in range(STEPS):
+            if not len(going):
+                break
+            further = point[going]
+            further[:, p:] += gradient[going, p:] @ self.inner
+            there, slopes = self.misfit(further)
+            lower = there < objective[going]
+            promise[going[~lower]] = 0.0
+            going = going[lower]
+            point[going], objective[going], gradient[going] = further[lower], there[lower], slopes[lower]
+            promise[going] = self._promise(gradient[going])
+            going = going[promise[going] > NEAR]
+        left = np.where(objective - promise < floor - SETTLED, objective, objective - promise)
+        value = -0.5 * np.maximum(left, floor)
+        return np.where(np.isfinite(value), value, -np.inf)
+
+    def _promise(self, gradient):
+        """(n,) by how much a step of Gauss and Newton lowers χ², by its own account."""
+        own = gradient[:, len(self.fit.u) :]
+        return np.einsum("ln,nm,lm->l", own, self.inner, own)
+
+    def bent(self, point, away):
+        """Points with nuisances off the linearised ones by a quadratic of (n, p) `away`, which is nothing at
+        the fit, through a few points that are followed to their minima.
+        """
+        p = len(self.fit.u)
+        few = np.unique(np.linspace(0, len(point) - 1, FEW * p).astype(int))
+        best, sound = point[few], np.ones(len(few), dtype=bool)
+        for _ in range(STEPS):
+            step = self.misfit(best)[1][:, p:] @ self.inner
+            sound &= np.isfinite(step).all(axis=1)
+            best[sound, p:] += step[sound]
+        away = away / np.maximum(np.abs(away).max(axis=0), 1e-300)
+        basis = np.concatenate([away, np.square(away)], axis=1)
+        off = basis @ np.linalg.lstsq(basis[few[sound]], (best - point[few])[sound, p:], rcond=1e-9)[0]
+        return np.concatenate([point[:, :p], point[:, p:] + off], axis=1)
+
+    def misfit(self, point):
+        """(n,) χ² and the penalty of the nuisances, and (n, p + q) minus half its slopes at (n, p + q)
+        points, a batch at a time; infinite and no numbers where the penalty alone excludes it.
+        """
+        p, fit, forward, columns = len(self.fit.u), self.fit, self.forward, self.columns
+        low, high = _bounds(fit)
+        u, nu = point[:, :p].clip(low, high), point[:, p:]
+        objective, gradient = np.square(nu).sum(axis=1), np.concatenate([np.zeros_like(u), -nu], axis=1)
+        possible = np.flatnonzero(objective < fit.objective + NOTHING)
+        objective[np.setdiff1d(np.arange(len(u)), possible)] = np.inf
+        gradient[~np.isfinite(objective)] = np.nan
+
+        def seen(branch, part):
+            misfit, slopes = np.zeros(len(part)), np.zeros((len(part), gradient.shape[1]))
+            for run, value in enumerate(branch.sampled(fit.hypothesis, u[part], nu[part])):
+                left = branch.data(run) - value
+                misfit += np.square(left).sum(axis=1)
+                own = np.concatenate([np.arange(p), p + branch.local(run)])
+                slopes[:, own] += left @ columns[run][0, 1:].T
+            return misfit, slopes
+
+        # Of a record of very many runs one draw at a time.
+        batches = min(len(possible), -(-len(possible) * forward.layout.runs // CHUNK))
+        parts = np.array_split(possible, batches) if batches else []
+        for part, (misfit, slopes) in zip(
+            parts, abreast.each(forward, seen, parts, calls=BATCH), strict=True
+        ):
+            objective[part] += misfit
+            gradient[part] += slopes
+        return objective, gradient
 
 
-def _bent(forward, fit, point, away, free, inner):
-    """(n, free) by how much the best values of all else lie off the linearised ones: a quadratic of (n, h)
-    what is held, nothing at the fit, through a few points that are followed to their minima.
-    """
-    few = np.unique(np.linspace(0, len(point) - 1, FEW * away.shape[1]).astype(int))
-    best, sound = point[few], np.ones(len(few), dtype=bool)
-    for _ in range(STEPS):
-        step = _misfit(forward, fit, best)[1][:, free] @ inner
-        sound &= np.isfinite(step).all(axis=1)
-        best[np.ix_(sound, free)] += step[sound]
-    away = away / np.maximum(np.abs(away).max(axis=0), 1e-300)
-    basis = np.concatenate([away, np.square(away)], axis=1)
-    return basis @ np.linalg.lstsq(basis[few[sound]], (best - point[few])[sound][:, free], rcond=1e-9)[0]
-
-
-def _misfit(forward, fit, point):
-    """(n,) χ² and the penalty of the nuisances, and (n, p + q) minus half its slopes, with the columns of the
-    fit, at (n, p + q) points, a batch at a time; infinite and no numbers where the penalty alone excludes it.
-    """
-    p = len(fit.u)
-    low, high = _bounds(fit)
-    u, nu = point[:, :p].clip(low, high), point[:, p:]
+def _profiles(forward, fit):
+    """How each coordinate is told, its values and their weights."""
     columns = forward.columns(fit.hypothesis, fit.u[None], fit.nu[None])
-    objective, gradient = np.square(nu).sum(axis=1), np.concatenate([np.zeros_like(u), -nu], axis=1)
-    possible = np.flatnonzero(objective < fit.objective + NOTHING)
-    objective[np.setdiff1d(np.arange(len(u)), possible)] = np.inf
-    gradient[~np.isfinite(objective)] = np.nan
-
-    def seen(branch, part):
-        misfit, slopes = np.zeros(len(part)), np.zeros((len(part), gradient.shape[1]))
-        for run, value in enumerate(branch.sampled(fit.hypothesis, u[part], nu[part])):
-            left = branch.data(run) - value
-            misfit += np.square(left).sum(axis=1)
-            own = np.concatenate([np.arange(p), p + branch.local(run)])
-            slopes[:, own] += left @ columns[run][0, 1:].T
-        return misfit, slopes
-
-    # Of a record of very many runs one draw at a time.
-    batches = min(len(possible), -(-len(possible) * forward.layout.runs // CHUNK))
-    parts = np.array_split(possible, batches) if batches else []
-    for part, (misfit, slopes) in zip(parts, abreast.each(forward, seen, parts, calls=BATCH), strict=True):
-        objective[part] += misfit
-        gradient[part] += slopes
-    return objective, gradient
+    sigma = np.sqrt(np.diag(_covariance(fit)))
+    found = ridge.profiles(forward, fit.hypothesis, fit.normal, sigma, columns)
+    return [_profile(fit, k, sigma[k], *one) for k, one in enumerate(found)]
 
 
-def _profile(forward, fit, k):
-    """How one coordinate is told, its values and their weights."""
+def _profile(fit, k, sigma, at, objective):
+    """The same of one, from places along its profile and χ² there."""
     low, high = _bounds(fit)
-    sigma = math.sqrt(_covariance(fit)[k, k])
+    if len(at) > 1:
+        u = np.linspace(at[0], at[-1], VALUES)
+        weight = _normalised(-0.5 * scipy.interpolate.PchipInterpolator(at, objective)(u))
+        below = float(weight[u < fit.u[k]].sum())
+        if TAIL < below < 1.0 - TAIL or fit.at_bound()[k]:
+            return PROFILE, u, weight
     u = np.linspace(max(low[k], fit.u[k] - REACH * sigma), min(high[k], fit.u[k] + REACH * sigma), VALUES)
-    weight = _normalised(log_posterior(forward, fit, u[:, None], np.array([k])))
-    below = float(weight[u < fit.u[k]].sum())
-    if TAIL < below < 1.0 - TAIL or fit.at_bound()[k]:
-        return PROFILE, u, weight
     return LINEAR, u, _normalised(-0.5 * np.square((u - fit.u[k]) / sigma))
 
 

@@ -2,7 +2,8 @@
 
 From a fit, both ways along the longest axis of its errors, in steps that grow while the misfit hardly does.
 Each starts where the last two point to, and everything but the place along the axis goes to its best by a
-few steps of Gauss and Newton, slopes to the nuisances that take simulations held.
+few steps of Gauss and Newton, slopes to the nuisances that take simulations held. Along a coordinate in place
+of that axis the same walk is the coordinate's profile.
 """
 
 from dataclasses import dataclass, replace
@@ -74,9 +75,7 @@ def valley(
     """
     longest = principal_axes(covariance)[-1]
     length = float(np.linalg.norm(longest))
-    axis = longest / length
-    across = np.linalg.svd(axis[None])[2][1:].T
-    walk = _Walk(forward, hypothesis, axis, across, columns, now.u[0], _steps(now.free, columns))
+    walk = _walk(forward, hypothesis, longest / length, now, columns)
     start = walk.settled(now.u[0], now.nu[0])
     if start is None:
         return None
@@ -87,7 +86,30 @@ def valley(
     before, behind = abreast.each(forward, side, (-1.0, 1.0), calls=abreast.VALLEY)
     points = [*reversed(before), start, *behind]
     stacked = (np.array([getattr(p, name) for p in points]) for name in _Point.__annotations__)
-    return Valley(axis, across, *stacked)
+    return Valley(walk.axis, walk.across, *stacked)
+
+
+def profiles(
+    forward: Forward, hypothesis: Hypothesis, now: Normal, error: np.ndarray, columns: list[np.ndarray]
+) -> list[tuple[np.ndarray, np.ndarray]]:
+    """For each coordinate (m,) values, ascending, and (m,) χ² and penalty there, all else at its best; none
+    where the point cannot be simulated, or has no slopes.
+
+    Args:
+        forward, hypothesis, now, columns: as of `valley`, one coordinate being enough.
+        error: (p,) standard errors of the coordinates.
+    """
+
+    def follow(branch, k):
+        walk = _walk(branch, hypothesis, np.eye(now.free)[k], now, columns)
+        start = walk.settled(now.u[0], now.nu[0])
+        if start is None:
+            return np.empty(0), np.empty(0)
+        before, behind = (walk.side(start, sign * min(FIRST * error[k], LONGEST)) for sign in (-1.0, 1.0))
+        points = [*reversed(before), start, *behind]
+        return np.array([p.u[k] for p in points]), np.array([p.objective for p in points])
+
+    return list(abreast.each(forward, follow, range(now.free), calls=abreast.VALLEY))
 
 
 def principal_axes(covariance: np.ndarray) -> np.ndarray:
@@ -115,6 +137,11 @@ class _Point:
     objective: float
     root: np.ndarray
     follow: np.ndarray
+
+
+def _walk(forward, hypothesis, axis, now, columns):
+    across = np.linalg.svd(axis[None])[2][1:].T
+    return _Walk(forward, hypothesis, axis, across, columns, now.u[0], _steps(now.free, columns))
 
 
 @dataclass(frozen=True)
@@ -169,10 +196,12 @@ class _Walk:
         """The best point at the same place along the axis."""
         best, base, move = None, None, None
         for _ in range(STEPS):
-            normal = self._normal(u, nu)
-            if not normal.has_slopes[0] or not np.isfinite(normal.objective[0]):
+            # What its nuisances alone exclude is not simulated: its chain may be one without end.
+            possible = best is None or float(nu @ nu) < best.objective
+            normal = self._normal(u, nu) if possible else None
+            if normal and (not normal.has_slopes[0] or not np.isfinite(normal.objective[0])):
                 break
-            if best is None or normal.objective[0] < best.objective:
+            if normal and (best is None or normal.objective[0] < best.objective):
                 gradient, hessian = normal.total()
                 turn = np.eye(len(u) + len(nu))[:, 1:]
                 turn[: len(u), : len(u) - 1] = self.across
@@ -193,7 +222,7 @@ class _Walk:
     def _point(self, u, nu, objective, matrix, inverse):
         p = self.across.shape[1]
         size, axes = np.linalg.eigh(inverse[:p, :p])
-        root = np.linalg.cholesky((axes * np.maximum(size, LEAST + 1e-12 * size[-1])) @ axes.T)
+        root = np.linalg.cholesky((axes * np.maximum(size, LEAST + 1e-12 * size.max(initial=0.0))) @ axes.T)
         follow = -np.linalg.lstsq(matrix[p:, p:], matrix[p:, :p], rcond=1e-12)[0]
         return _Point(float((u - self.origin) @ self.axis), u, nu, objective, root, follow)
 
