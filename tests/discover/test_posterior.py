@@ -8,7 +8,7 @@ import pytest
 from scipy.special import ndtri
 
 from sonicvacuum.blas import one_thread
-from sonicvacuum.discover import draws, posterior
+from sonicvacuum.discover import draws, posterior, proposals
 from sonicvacuum.discover.draws import Draws
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.verdict import parameters as told_of
@@ -72,6 +72,18 @@ def test_draws_are_of_the_distribution_that_they_claim(verdict):
     assert weight @ z**2 == pytest.approx(1.0, abs=0.02)
 
 
+@pytest.mark.parametrize("seed", range(5))
+def test_draws_of_one_coordinate_tell_the_quantiles_of_what_they_are_weighed_by(seed):
+    scaled, log_density = proposals.student(proposals.even(posterior.OF_ONE, 1, seed))
+    log_weight = -0.5 * scaled[:, 0] ** 2 - log_density
+    weight = np.exp(log_weight - np.logaddexp.reduce(log_weight))
+    one = Draws("a", "b", draws.SAMPLED, scaled[:, 0], weight)
+    assert one.effective > 0.9 * posterior.OF_ONE
+    for share in (0.025, 0.5, 0.975):
+        # The draws' distance: of 96, two or three lie beyond an end.
+        assert one.quantile(share) == pytest.approx(ndtri(share), abs=0.12)
+
+
 def test_the_posterior_is_that_of_fits_with_the_parameter_held(verdict):
     """Nuisances followed to their minimum at each value, which takes six steps more."""
     forward, fit = verdict.found.forward, verdict.found.final
@@ -114,7 +126,7 @@ def test_draws_lie_within_the_bounds_of_the_search(verdict):
     near = replace(own, high=float(fit.u[0] + 0.5 * fit.sigma[0]))
     held = replace(fit, hypothesis=replace(fit.hypothesis, components=(replace(parts, free=(near,)),)))
     u, _ = posterior.proposed(held)
-    assert len(u) == posterior.DRAWS
+    assert len(u) == posterior.OF_ONE
     assert u.max() <= near.high
 
 

@@ -31,8 +31,9 @@ from sonicvacuum.discover.model.forward import CHUNK, Forward
 from sonicvacuum.discover.rounds import Investigation
 from sonicvacuum.discover.verdict import named_effects
 
-# Draws, and their seed; SPARE times as many are proposed, for those that lie beyond the bounds.
-DRAWS, SEED, SPARE = 200, 20061017, 16
+# Draws of several coordinates, those of one, which lie evenly, and their seed; SPARE times as many are
+# proposed, for those that lie beyond the bounds.
+DRAWS, OF_ONE, SEED, SPARE = 200, 96, 20061017, 16
 # A profile is told by so many values; that of a Gaussian reaches so many standard errors to either side.
 REACH, VALUES = 5.0, 61
 # A batch of draws takes as long as so many calls of the predictor, about.
@@ -92,14 +93,19 @@ def _parameters(forward, fit, found):
     return _told(fit, _averaged(fit, drawn, found))
 
 
-def proposed(fit: Fit, count: int = DRAWS, seed: int = SEED) -> tuple[np.ndarray, np.ndarray]:
+def proposed(fit: Fit, count: int | None = None, seed: int = SEED) -> tuple[np.ndarray, np.ndarray]:
     """(n, p) draws within the bounds of the search, and (n,) logarithms of their density, up to a constant.
 
-    At most `count`, fewer only where nearly all of the Gaussian lies beyond the bounds.
+    At most `count` (None: fewer for one coordinate than for several), fewer only where nearly all of the
+    Gaussian lies beyond the bounds.
     """
     p = len(fit.u)
+    count = count or (OF_ONE if p == 1 else DRAWS)
     root = np.linalg.cholesky(_covariance(fit))
-    scaled, log_density = proposals.students(proposals.even(SPARE * count, p + 1, seed))
+    if p == 1:
+        scaled, log_density = proposals.student(proposals.even(SPARE * count, 1, seed))
+    else:
+        scaled, log_density = proposals.students(proposals.even(SPARE * count, p + 1, seed))
     u = fit.u + scaled @ root.T
     inside = _inside(fit, u, count)
     return u[inside], log_density[inside]
