@@ -150,7 +150,7 @@ def _odds(found, decision: Decision, alike, prior, present) -> tuple[dict[str, f
         reasons.append(
             f"{', '.join(stuck)} ended at a bound, even beyond the catalogue's range, and might fit better"
         )
-    reasons += _said(prior, present) + _losses(found, odds, present) + _instead(found, decision.named)
+    reasons += _said(prior, present) + _losses(found, odds, present)
     sure = odds.get(explanations.key(decision.named), 0.0) > 0.5
     other = _with_less(found, decision, prior) if sure or present else ""
     if other:
@@ -174,24 +174,6 @@ def _said(prior, present) -> list[str]:
     told = [f"{', '.join(present)} present, part of every explanation"] * bool(present)
     told += changed + [f"{', '.join(excluded)} excluded"] * bool(excluded)
     return [f"before the data, as the record states: {'; '.join(told)}"] if told else []
-
-
-def _instead(found: list[Candidate], named) -> list[str]:
-    """Other strengths of what is named that explain the data as well, in words."""
-    if len(named) != 1:
-        return []
-    return [
-        f"{c.effect}: {_values(fit_)} instead of {_values(c.fit)}, with probability {share:.2f}"
-        for c in found
-        for share, fit_ in c.ways[1:]
-        if c.effect in named and share > policy.TOLD
-    ]
-
-
-def _values(fit_: Fit) -> str:
-    """The parameters of an effect that is fitted alone."""
-    (values,) = fit_.hypothesis.values(fit_.u).values()
-    return " and ".join(f"{name} {value:.3g}" for name, value in values.items())
 
 
 def _losses(found, odds, present) -> list[str]:

@@ -105,10 +105,8 @@ def unsure(rivals: Iterable[Rival], told: Fit, gauges: Sequence[Gauge]) -> list[
 
 
 def instead(rivals: Iterable[Rival], told: Fit) -> list[str]:
-    """What is said of a set of which another strength of an effect explains the data as well."""
+    """What is said of what is told where another strength of an effect explains the data as well."""
     rivals = [r for r in rivals if set(r.fit.hypothesis.ids) == set(told.hypothesis.ids)]
-    if len(told.hypothesis.components) < 2:
-        return []
     total, lines = sum(r.probability for r in rivals), []
     for r in rivals:
         for one, other in zip(_values(told), _values(r.fit), strict=True):
