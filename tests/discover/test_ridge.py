@@ -2,11 +2,13 @@
 that differences of short steps take for slopes.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 
-from sonicvacuum.discover import posterior
+from sonicvacuum.discover import posterior, proposals
 from sonicvacuum.discover.fit import broad, ridge
 from sonicvacuum.discover.fit.normal import from_slopes
 from sonicvacuum.discover.fit.refit import Fit
@@ -137,19 +139,27 @@ def test_a_step_that_goes_too_far_is_tried_once_more_and_shorter(two):
     assert walk.settled(aside, np.zeros(forward.layout.size)).objective < 0.05 * before
 
 
-def test_profiles_across_a_bent_valley_are_those_of_its_bottom(two, monkeypatch):
+def test_profiles_across_a_bent_valley_are_those_of_its_bottom(two):
     """Against minima found one by one; with the slopes of the fit alone nothing would be left of them."""
     middle = np.array([-2.0, 0.5])
     forward = Valley(middle)
     fit = forward.fit(two, middle)
-    monkeypatch.setattr(posterior, "TRUSTED", -np.inf)
-    for k, drawn in enumerate(posterior.posterior(forward, fit)):
-        assert drawn.how == "profile"
-        u = np.array([two.coordinates[k].inverse(x) for x in drawn.value]) - middle[k]
-        wanted = np.exp(-0.5 * np.array([lowest(k, x) for x in u]))
-        below, told = np.cumsum(wanted) / wanted.sum(), np.cumsum(drawn.weight)
-        # Rounded off between points that lie up to 1.5 errors apart.
-        assert told == pytest.approx(below, abs=0.02)
+    columns = forward.columns(two, fit.u[None], fit.nu[None])
+    for k, (u, objective) in enumerate(ridge.profiles(forward, two, fit.normal, fit.sigma, columns)):
+        assert np.all(np.diff(u) > 0.0) and objective[0] > 20.0 and objective[-1] > 20.0
+        wanted = [lowest(k, x) for x in u - middle[k]]
+        assert objective == pytest.approx(wanted, abs=0.05)  # the settling of each point, far below 1
+
+
+def test_a_profile_ends_at_a_bound(two):
+    middle = np.array([c.high - 0.003 for c in two.coordinates])
+    forward = Valley(middle)
+    fit = forward.fit(two, middle)
+    columns = forward.columns(two, fit.u[None], fit.nu[None])
+    for c, (u, _) in zip(
+        two.coordinates, ridge.profiles(forward, two, fit.normal, fit.sigma, columns), strict=True
+    ):
+        assert u[0] < c.high - 0.1 and u[-1] <= c.high
 
 
 def lowest(k, held):
@@ -216,6 +226,43 @@ def test_draws_along_a_bent_valley_have_its_moments(two):
         # Draws worth a hundred equal ones err by a tenth of the spread, and by 7 % of it.
         assert mean == pytest.approx(truth, abs=0.2 * wide)
         assert spread == pytest.approx(wide, rel=0.15)
+
+
+def test_where_draws_are_not_trusted_the_valley_itself_is_told(two, monkeypatch):
+    """Against sums over a fine grid of the posterior, as above."""
+    middle = np.array([-2.0, 0.5])
+    forward = Valley(middle)
+    fit = forward.fit(two, middle)
+    monkeypatch.setattr(posterior, "TRUSTED", -np.inf)
+    told = posterior.posterior(forward, fit)
+    along, across = np.meshgrid(np.linspace(-4.0, 4.0, 801) * WIDE, np.linspace(-5.0, 5.0, 201) * NARROW)
+    weight = np.exp(-0.5 * (along**2 / WIDE**2 / 1.09 + across**2 / NARROW**2)).ravel()
+    difference = across + BEND * along**2
+    for k, u in enumerate((0.5 * (along - difference).ravel(), 0.5 * (along + difference).ravel())):
+        order, ends = np.argsort(u), [0.05, 0.5, 0.95]
+        wanted = np.interp(ends, np.cumsum(weight[order]) / weight.sum(), u[order])
+        found = [two.coordinates[k].inverse(told[k].quantile(q)) - middle[k] for q in ends]
+        assert told[k].how == "profile"
+        # A tenth of the spread: points of the valley lie up to an error apart, straight between them.
+        assert found == pytest.approx(wanted, abs=0.1 * np.sqrt(weight @ u**2 / weight.sum()))
+
+
+def test_draws_across_a_valley_are_as_wide_as_errors_over_which_predictions_jump(two):
+    """Slopes of short steps made it six times too narrow: a few draws beside it carried all of the weight."""
+    middle = np.array([-2.0, 0.5])
+    forward = Valley(middle)
+    fit = forward.fit(two, middle)
+    columns = forward.columns(two, fit.u[None], fit.nu[None])
+    found = ridge.valley(forward, two, fit.normal, broad.covariance(fit.normal), columns)
+    own = broad.covariance(fit.normal)
+    short = proposals.along(replace(found, root=found.root / 6.0), own, 200, 1)[0]
+    wide = proposals.along(found, own, 200, 1)[0]
+    least = proposals.along(replace(found, root=found.root / 6.0), 1e-6 * own, 200, 1)[0]
+    beside = [
+        np.std(u @ [-1.0, 1.0] - BEND * (u.sum(axis=1) - middle.sum()) ** 2) for u in (short, wide, least)
+    ]
+    assert beside[0] == pytest.approx(beside[1], rel=0.2)  # 200 draws of heavy tails
+    assert beside[2] < 0.5 * beside[1]  # a sixth, and what bends between the points of the valley
 
 
 def test_jumps_are_not_taken_for_slopes(two):

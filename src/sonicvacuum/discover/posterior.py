@@ -6,10 +6,11 @@ Gauss and Newton with the slopes of the fit, more where these promise much), and
 they were Gaussian there (Tierney & Kadane, J. Am. Stat. Assoc. 81, 82, 1986). The weight of a draw is what
 the data make of it, over the chance to draw it; its prior is flat in the coordinates of the search. An effect
 of several parameters, of which one may nearly replace the other, leaves a valley that no Gaussian fills:
-draws come from along it (`fit.ridge`, `proposals`). Where few draws carry the weight (`draws.pareto_k`), the
-profile of each parameter is told instead: all else at its best, with slopes of its own there
-(`ridge.profiles`). Far from the data that best may be missed: a step that promises less than the fit leaves
-is not believed, nor is a profile whose 90 % do not hold the fit itself; there the Gaussian is told.
+draws come from along it (`fit.ridge`, `proposals`). Where few draws carry the weight (`draws.pareto_k`), what
+the points of the valley weigh is told instead, or without one the profile of each parameter: all else at its
+best, with slopes of its own there (`ridge.profiles`). Far from the data that best may be missed: a step that
+promises less than the fit leaves is not believed, nor is a profile whose 90 % do not hold the fit itself;
+there the Gaussian is told.
 """
 
 from collections.abc import Sequence
@@ -88,6 +89,8 @@ def _parameters(forward, fit, found):
     weight = _normalised(log_weight)
     if pareto_k(weight) <= TRUSTED:
         drawn = [(SAMPLED, u[:, k], weight) for k in range(len(fit.u))]
+    elif valley:
+        drawn = [_marginal(fit, valley, k) for k in range(len(fit.u))]
     else:
         drawn = _profiles(forward, fit)
     return _told(fit, _averaged(fit, drawn, found))
@@ -132,7 +135,7 @@ def _valley(forward, fit):
 
 def _along(forward, fit, found):
     """The same from along its valley."""
-    u, nu, log_proposal = proposals.along(found, SPARE * DRAWS, SEED)
+    u, nu, log_proposal = proposals.along(found, _covariance(fit), SPARE * DRAWS, SEED)
     inside = _inside(fit, u)
     floor = min(fit.objective, float(found.objective.min()))
     value = Around(forward, fit).at_best(np.concatenate([u, nu], axis=1)[inside], floor)
@@ -262,6 +265,14 @@ class Around:
             objective[part] += misfit
             gradient[part] += slopes
         return objective, gradient
+
+
+def _marginal(fit, valley, k):
+    """How one coordinate is told, its values within bounds and their weights, by its valley alone."""
+    low, high = _bounds(fit)
+    u, weight = proposals.marginal(valley, _covariance(fit), k, VALUES)
+    weight = np.where((u >= low[k]) & (u <= high[k]), weight, 0.0)
+    return PROFILE, u, weight / weight.sum()
 
 
 def _profiles(forward, fit):

@@ -9,6 +9,8 @@ from sonicvacuum.discover.fit.ridge import Valley
 FREEDOM = 5.0
 # Places along a valley for which its density is worked out, and the power to which that is raised: flatter.
 GRID, FLATTER = 512, 0.8
+# Beside a valley it is Gaussian for so many of its widths.
+FAR = 4.0
 
 
 def even(count: int, dimensions: int, seed: int) -> np.ndarray:
@@ -41,14 +43,17 @@ def student(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return scaled, -0.5 * (FREEDOM + 1.0) * np.log1p(np.square(scaled[:, 0]) / FREEDOM)
 
 
-def along(valley: Valley, count: int, seed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def along(
+    valley: Valley, covariance: np.ndarray, count: int, seed: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """(n, p) coordinates along a valley, (n, q) nuisances as they follow, and (n,) logarithms of the density
     of the coordinates, up to a constant.
 
-    The place along it by the misfit there and the width across, a little flatter; across by Student's t.
+    The place along it by the misfit there and the width across, a little flatter; across by Student's t, as
+    wide at least as a `covariance` (p, p) of the coordinates is beside the valley.
     """
     points = even(count, len(valley.axis) + 1, seed)
-    root, width = _widest(valley)
+    root, width = _widest(valley, covariance)
     grid = np.linspace(valley.t[0], valley.t[-1], GRID)
     lowest = valley.objective.min()
     density = FLATTER * np.interp(grid, valley.t, width - 0.5 * (valley.objective - lowest))
@@ -64,14 +69,34 @@ def along(valley: Valley, count: int, seed: int) -> tuple[np.ndarray, np.ndarray
     return u, nu, np.log(np.interp(t, grid, density)) + log_across - _log_size(root)
 
 
-def _widest(valley):
-    """Roots of the covariance across, of each point and its neighbours the widest, and logarithms of their
-    sizes: where predictions jump, one alone may be far too narrow.
+def marginal(valley: Valley, covariance: np.ndarray, k: int, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """(count,) evenly spaced values of a coordinate along a valley, and (count,) what its points weigh there:
+    by the misfit and the width across, which is that of `along`, in which they are Gaussian.
     """
+    root, width = _widest(valley, covariance)
+    grid = np.linspace(valley.t[0], valley.t[-1], GRID)
+    log = np.interp(grid, valley.t, width - 0.5 * (valley.objective - valley.objective.min()))
+    middle = np.interp(grid, valley.t, valley.u[:, k])
+    wide = np.interp(grid, valley.t, np.linalg.norm(valley.across[k] @ root, axis=1))
+    values = np.linspace((middle - FAR * wide).min(), (middle + FAR * wide).max(), count)
+    # What is narrower than the distance of the values falls to the nearest ones.
+    wide = np.maximum(wide, 0.5 * (values[1] - values[0]))
+    share = np.exp(log - log.max()) / wide
+    return values, np.exp(-0.5 * np.square((values[:, None] - middle) / wide)) @ share
+
+
+def _widest(valley, covariance):
+    """Roots of the covariance across, of each point, its neighbours and what is given the widest, and
+    logarithms of their sizes: where predictions jump, one alone may be far too narrow.
+    """
+    inverse = np.linalg.inv(covariance)
+    given = np.linalg.cholesky(np.linalg.inv(valley.across.T @ inverse @ valley.across))
     size = _log_size(valley.root)
     near = np.clip(np.arange(len(size))[:, None] + [-1, 0, 1], 0, len(size) - 1)
     widest = near[np.arange(len(size)), np.argmax(size[near], axis=1)]
-    return valley.root[widest], size[widest]
+    wider = size[widest] < _log_size(given)
+    root = np.where(wider[:, None, None], given, valley.root[widest])
+    return root, np.where(wider, _log_size(given), size[widest])
 
 
 def _log_size(root):
