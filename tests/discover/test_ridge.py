@@ -162,6 +162,26 @@ def test_a_profile_ends_at_a_bound(two):
         assert u[0] < c.high - 0.1 and u[-1] <= c.high
 
 
+@pytest.mark.parametrize("outward", [True, False])
+def test_what_stands_at_a_bound_is_held_where_a_step_pushes_it_out(two, outward):
+    """Of two coordinates that nearly replace one another and a nuisance; all else goes where it is best then:
+    clipped alone, a fit at a bound had a profile a hundred times too narrow.
+    """
+    middle = np.array([-2.0, 0.5])
+    forward = Valley(middle)
+    fit = forward.fit(two, middle)
+    columns = forward.columns(two, fit.u[None], fit.nu[None])
+    walk = ridge._walk(forward, two, np.eye(2)[0], fit.normal, columns)
+    matrix = np.array([[100.0, 99.0, 3.0], [99.0, 100.0, 5.0], [3.0, 5.0, 2.0]])
+    slope = matrix @ ([-0.3, 0.5, 0.2] if outward else [0.3, -0.5, 0.2])
+    u = two.inside(np.array([0.0, two.coordinates[1].high]))
+    move = walk._step(u, np.eye(3), slope, matrix)
+    free = [0, 2] if outward else [0, 1, 2]
+    wanted = np.zeros(3)
+    wanted[free] = np.linalg.solve(matrix[np.ix_(free, free)], slope[free])
+    assert move == pytest.approx(wanted, abs=1e-6)  # what is held gives way by as little
+
+
 def lowest(k, held):
     """Least χ² of the valley with one coordinate held, its nuisance at its best."""
 

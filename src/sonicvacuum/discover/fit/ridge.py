@@ -28,6 +28,8 @@ FIRST, LONGEST = 0.5, 0.5
 SHORTEST, CUTS, LEAST = 2e-3, 2, 1e-24
 # The valley ends at a bound where less than this share of a step is left to it.
 NO_STEP = 0.05
+# A coordinate so near its bound stands there, and is held by so much.
+AT_BOUND, HELD = 1e-6, 1e9
 # Finite differences across it: in standard errors of a coordinate known by itself, none longer.
 ACROSS, FARTHEST = 1.0, 0.05
 
@@ -76,7 +78,7 @@ def valley(
     longest = principal_axes(covariance)[-1]
     length = float(np.linalg.norm(longest))
     walk = _walk(forward, hypothesis, longest / length, now, columns)
-    start = walk.settled(now.u[0], now.nu[0])
+    start = walk.settled(walk.origin, now.nu[0])
     if start is None:
         return None
 
@@ -102,7 +104,7 @@ def profiles(
 
     def follow(branch, k):
         walk = _walk(branch, hypothesis, np.eye(now.free)[k], now, columns)
-        start = walk.settled(now.u[0], now.nu[0])
+        start = walk.settled(walk.origin, now.nu[0])
         if start is None:
             return np.empty(0), np.empty(0)
         before, behind = (walk.side(start, sign * min(FIRST * error[k], LONGEST)) for sign in (-1.0, 1.0))
@@ -141,7 +143,9 @@ class _Point:
 
 def _walk(forward, hypothesis, axis, now, columns):
     across = np.linalg.svd(axis[None])[2][1:].T
-    return _Walk(forward, hypothesis, axis, across, columns, now.u[0], _steps(now.free, columns))
+    # A fit at a bound may lie beyond it by what its coordinate was rounded.
+    origin = hypothesis.inside(now.u[0])
+    return _Walk(forward, hypothesis, axis, across, columns, origin, _steps(now.free, columns))
 
 
 @dataclass(frozen=True)
@@ -208,16 +212,27 @@ class _Walk:
                 matrix = turn.T @ hessian[0] @ turn
                 inverse = np.linalg.pinv(matrix, hermitian=True)
                 best = self._point(u, nu, float(normal.objective[0]), matrix, inverse)
-                slope = turn.T @ gradient[0]
-                move = inverse @ slope
-                if float(slope @ move) < SETTLED:
+                base, move = (u, nu), self._step(u, turn, turn.T @ gradient[0], matrix)
+                if float(gradient[0] @ move) < SETTLED:
                     break
-                base, move = (u, nu), turn @ move
             else:
                 move = BACK * move
             u = self.hypothesis.inside((base[0] + move[: len(u)])[None])[0]
             nu = base[1] + move[len(u) :]
         return best
+
+    def _step(self, u, turn, slope, matrix):
+        """(p + q,) the step of Gauss and Newton; coordinates that it pushes out of their bounds are held."""
+        held = np.zeros(len(u), dtype=bool)
+        while True:
+            rows = turn[: len(u)][held]
+            move = turn @ (np.linalg.pinv(matrix + HELD * rows.T @ rows, hermitian=True) @ slope)
+            there = u + move[: len(u)]
+            inside = self.hypothesis.inside(there)
+            pushed = (there != inside) & (np.abs(inside - u) < AT_BOUND) & ~held
+            if not pushed.any():
+                return move
+            held |= pushed
 
     def _point(self, u, nu, objective, matrix, inverse):
         p = self.across.shape[1]
