@@ -262,9 +262,17 @@ def test_where_draws_are_not_trusted_the_valley_itself_is_told(two, monkeypatch)
         order, ends = np.argsort(u), [0.05, 0.5, 0.95]
         wanted = np.interp(ends, np.cumsum(weight[order]) / weight.sum(), u[order])
         found = [two.coordinates[k].inverse(told[k].quantile(q)) - middle[k] for q in ends]
-        assert told[k].how == "profile"
+        assert told[k].how == "valley"
         # A tenth of the spread: points of the valley lie up to an error apart, straight between them.
         assert found == pytest.approx(wanted, abs=0.1 * np.sqrt(weight @ u**2 / weight.sum()))
+
+
+def test_the_root_of_a_covariance_that_rounding_made_negative_is_next_to_nothing_there():
+    axes = np.linalg.qr(np.arange(9.0).reshape(3, 3) + np.eye(3))[0]
+    root = ridge.root_of((axes * [1.0, 0.1, -1e-14]) @ axes.T)
+    assert root @ root.T == pytest.approx(
+        (axes * [1.0, 0.1, 0.0]) @ axes.T, abs=1e-11
+    )  # 1e-12 of the largest
 
 
 def test_draws_across_a_valley_are_as_wide_as_errors_over_which_predictions_jump(two):

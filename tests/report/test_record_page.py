@@ -228,7 +228,7 @@ def test_the_posterior_is_drawn_where_the_verdict_has_it(folders):
     assert top == pytest.approx((1.98 - x[0]) / (x[-1] - x[0]), abs=1 / 400)  # a step of the grid
 
 
-@pytest.mark.parametrize("how", [draws.SAMPLED, draws.PROFILE])
+@pytest.mark.parametrize("how", [draws.SAMPLED, draws.VALLEY, draws.PROFILE])
 def test_intervals_are_of_the_draws_and_not_of_the_gaussian(how, tmp_path):
     """Draws of a skewed distribution: exp(-x), whose 90 % interval is -ln 0.95 to -ln 0.05."""
     folder = write(tmp_path / "made", "single")
@@ -243,6 +243,7 @@ def test_intervals_are_of_the_draws_and_not_of_the_gaussian(how, tmp_path):
     text = write_page(folder).read_text(encoding="utf-8")
     assert f"{found[0]:.4f} to {found[1]:.4f}" in text  # a digit more than 1.980 ± 0.060
     assert ("Pareto k" in text) == (how == draws.SAMPLED)
+    assert ("the valley that they leave" in text) == (how == draws.VALLEY)
 
 
 def test_all_significant_comparisons_are_counted_and_not_only_those_kept():

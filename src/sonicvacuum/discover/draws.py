@@ -15,7 +15,8 @@ from sonicvacuum.tables import read_csv, write_csv
 
 FILE = "posterior.csv"
 HEADER = ("effect", "parameter", "how", "value", "weight")
-SAMPLED, PROFILE, LINEAR, AVERAGED = "sampled", "profile", "linearised", "averaged"
+SAMPLED, VALLEY, PROFILE = "sampled", "valley", "profile"
+LINEAR, AVERAGED = "linearised", "averaged"
 PLACES = "places"
 # Above this the weights have tails too heavy for an average over them (Vehtari et al., J. Mach. Learn. Res.
 # 25(72), 2024, section 3).
@@ -30,10 +31,11 @@ class Draws:
 
     Attributes:
         effect, parameter: whose.
-        how: "sampled": draws that all parameters have in common; "profile": a grid of values, each weighed
-            by the best that all else can do there; "linearised": such a grid, weighed by the Gaussian of the
-            fit; "averaged": the values of one of these, once for each explanation that has the parameter, put
-            where that one's fit has it and weighed by its probability; "places": where the effect may sit.
+        how: "sampled": draws that all parameters have in common; "valley": a grid of values, weighed by the
+            misfit along the valley that two parameters leave; "profile": such a grid, each value weighed by
+            the best that all else can do there; "linearised": weighed by the Gaussian of the fit; "averaged":
+            the values of one of these, once for each explanation that has the parameter, put where that one's
+            fit has it and weighed by its probability; "places": where the effect may sit.
         value: (n,) in the unit of the catalogue; beads, contacts, and gauges in the record's order from 0.
         weight: (n,) summing to 1.
     """

@@ -22,7 +22,17 @@ import numpy as np
 import scipy
 
 from sonicvacuum.discover import proposals
-from sonicvacuum.discover.draws import AVERAGED, LINEAR, PLACES, PROFILE, SAMPLED, TRUSTED, Draws, pareto_k
+from sonicvacuum.discover.draws import (
+    AVERAGED,
+    LINEAR,
+    PLACES,
+    PROFILE,
+    SAMPLED,
+    TRUSTED,
+    VALLEY,
+    Draws,
+    pareto_k,
+)
 from sonicvacuum.discover.fit import broad, ridge
 from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.judge import rivals, whereabouts
@@ -272,7 +282,7 @@ def _marginal(fit, valley, k):
     low, high = _bounds(fit)
     u, weight = proposals.marginal(valley, _covariance(fit), k, VALUES)
     weight = np.where((u >= low[k]) & (u <= high[k]), weight, 0.0)
-    return PROFILE, u, weight / weight.sum()
+    return VALLEY, u, weight / weight.sum()
 
 
 def _profiles(forward, fit):

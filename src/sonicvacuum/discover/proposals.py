@@ -3,7 +3,7 @@
 import numpy as np
 import scipy
 
-from sonicvacuum.discover.fit.ridge import Valley
+from sonicvacuum.discover.fit.ridge import Valley, root_of
 
 # Degrees of freedom of Student's t: its tails are heavier than those of any likelihood that ends.
 FREEDOM = 5.0
@@ -89,8 +89,11 @@ def _widest(valley, covariance):
     """Roots of the covariance across, of each point, its neighbours and what is given the widest, and
     logarithms of their sizes: where predictions jump, one alone may be far too narrow.
     """
-    inverse = np.linalg.inv(covariance)
-    given = np.linalg.cholesky(np.linalg.inv(valley.across.T @ inverse @ valley.across))
+    beside = valley.across.T @ covariance
+    along = beside @ valley.axis
+    given = root_of(
+        beside @ valley.across - np.outer(along, along) / (valley.axis @ covariance @ valley.axis)
+    )
     size = _log_size(valley.root)
     near = np.clip(np.arange(len(size))[:, None] + [-1, 0, 1], 0, len(size) - 1)
     widest = near[np.arange(len(size)), np.argmax(size[near], axis=1)]

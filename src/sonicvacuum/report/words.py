@@ -6,7 +6,7 @@ Every sentence is made from `verdict.json`, `model.json` and the tables beside t
 import math
 from collections.abc import Mapping
 
-from sonicvacuum.discover.draws import AVERAGED, LINEAR, PLACES, SAMPLED, pareto_k
+from sonicvacuum.discover.draws import AVERAGED, LINEAR, PLACES, SAMPLED, VALLEY, pareto_k
 from sonicvacuum.discover.judge.explanations import key
 from sonicvacuum.discover.verdict import Next, Verdict
 from sonicvacuum.effects import CATALOGUE, Catalogue
@@ -38,6 +38,11 @@ def drawn(draws) -> str:
     one = next(iter(draws.values()), None)
     if one is None:
         return ""
+    if one.how == VALLEY:
+        return (
+            "Two parameters nearly replace one another, and too few draws carried the weight: the intervals "
+            "are of the valley that they leave, followed from end to end with all else at its best."
+        )
     if one.how != SAMPLED:
         missed = any(d.how == LINEAR for d in draws.values())
         return (

@@ -123,6 +123,12 @@ def principal_axes(covariance: np.ndarray) -> np.ndarray:
     return (error[:, None] * axes * np.sqrt(np.maximum(size, 1e-12))).T
 
 
+def root_of(covariance: np.ndarray) -> np.ndarray:
+    """(n, n) lower triangular, of a covariance; what rounding makes negative is next to nothing."""
+    size, axes = np.linalg.eigh(covariance)
+    return np.linalg.cholesky((axes * np.maximum(size, LEAST + 1e-12 * size.max(initial=0.0))) @ axes.T)
+
+
 def _steps(free, columns):
     """(p,) steps of the coordinates, by their slopes."""
     length = np.sqrt(sum(np.square(c[0, 1 : 1 + free]).sum(axis=1) for c in columns))
@@ -236,8 +242,7 @@ class _Walk:
 
     def _point(self, u, nu, objective, matrix, inverse):
         p = self.across.shape[1]
-        size, axes = np.linalg.eigh(inverse[:p, :p])
-        root = np.linalg.cholesky((axes * np.maximum(size, LEAST + 1e-12 * size.max(initial=0.0))) @ axes.T)
+        root = root_of(inverse[:p, :p])
         follow = -np.linalg.lstsq(matrix[p:, p:], matrix[p:, :p], rcond=1e-12)[0]
         return _Point(float((u - self.origin) @ self.axis), u, nu, objective, root, follow)
 
