@@ -48,14 +48,15 @@ def test_quantiles_of_weighted_draws_are_those_of_what_they_stand_for():
     assert one.error == pytest.approx(1.0, abs=0.006)
 
 
+@pytest.mark.parametrize("how", [draws.SAMPLED, draws.VALLEY, draws.PROFILE])
 @pytest.mark.parametrize(("width", "told"), [(1.2, 1.0), (4.0, 4.0)])
-def test_where_the_posterior_is_much_wider_than_its_gaussian_the_error_is_too(verdict, width, told):
+def test_where_the_posterior_is_much_wider_than_its_gaussian_the_error_is_too(verdict, width, told, how):
     """Along a valley that bends, ± 0.003 stood beside 90 % that reach from -0.054 to +0.003."""
     fit = verdict.found.final
     ((effect, own),) = told_of(fit).items()
     (parameter, gaussian) = next(iter(own.items()))
     values = gaussian.value + width * gaussian.sigma * ndtri((np.arange(2000) + 0.5) / 2000)
-    one = Draws(effect, parameter, draws.SAMPLED, values, np.full(2000, 1.0 / 2000))
+    one = Draws(effect, parameter, how, values, np.full(2000, 1.0 / 2000))
     error = told_of(fit, (), [one])[effect][parameter].sigma
     assert error == pytest.approx(told * gaussian.sigma, rel=0.01)  # 2000 quantiles
 
@@ -88,7 +89,7 @@ def test_the_posterior_is_that_of_fits_with_the_parameter_held(verdict):
     """Nuisances followed to their minimum at each value, which takes six steps more."""
     forward, fit = verdict.found.forward, verdict.found.final
     values = fit.u + np.array([-3.0, -1.5, 0.0, 1.5, 3.0])[:, None] * fit.sigma
-    quick = posterior.log_posterior(forward, fit, values)
+    quick = posterior.Around(forward, fit).log_posterior(values)
     hessian = fit.normal.total()[1][0]
     inner = np.linalg.inv(hessian[1:, 1:])
     point = np.concatenate([values, np.tile(fit.nu, (5, 1))], axis=1)
@@ -113,7 +114,7 @@ def test_nothing_is_better_than_the_fit_however_far_from_it(verdict):
     """A step of Gauss and Newton with the slopes of the fit, taken far away, may promise anything."""
     forward, fit = verdict.found.forward, verdict.found.final
     values = fit.u + np.linspace(-3.0, 3.0, 25)[:, None]
-    found = posterior.log_posterior(forward, fit, values)
+    found = posterior.Around(forward, fit).log_posterior(values)
     assert found.max() == pytest.approx(-0.5 * fit.objective, abs=0.05)  # the fit's own settling
     assert found.argmax() == 12
     assert found.max() <= -0.5 * fit.objective

@@ -94,15 +94,16 @@ def _parameters(forward, fit, found):
     if not len(fit.u):
         return []
     bent = broad.asks(fit.hypothesis) and not fit.at_bound().any()
-    valley = _valley(forward, fit) if bent else None
-    u, log_weight = _along(forward, fit, valley) if valley else _straight(forward, fit)
+    around = Around(forward, fit)
+    valley = _valley(around) if bent else None
+    u, log_weight = _along(around, valley) if valley else _straight(around)
     weight = _normalised(log_weight)
     if pareto_k(weight) <= TRUSTED:
         drawn = [(SAMPLED, u[:, k], weight) for k in range(len(fit.u))]
     elif valley:
         drawn = [_marginal(fit, valley, k) for k in range(len(fit.u))]
     else:
-        drawn = _profiles(forward, fit)
+        drawn = _profiles(around)
     return _told(fit, _averaged(fit, drawn, found))
 
 
@@ -130,25 +131,27 @@ def _inside(fit, u, count=DRAWS):
     return np.flatnonzero(((u >= low) & (u <= high)).all(axis=1))[:count]
 
 
-def _straight(forward, fit):
+def _straight(around):
     """(n, p) draws from the Gaussian of a fit, and (n,) logarithms of their weights."""
-    u, log_proposal = proposed(fit)
-    return u, log_posterior(forward, fit, u) - log_proposal
+    u, log_proposal = proposed(around.fit)
+    return u, around.log_posterior(u) - log_proposal
 
 
-def _valley(forward, fit):
+def _valley(around):
     """The valley of a fit; None where that is too short to draw from."""
-    columns = forward.columns(fit.hypothesis, fit.u[None], fit.nu[None])
-    found = ridge.valley(forward, fit.hypothesis, fit.normal, broad.covariance(fit.normal), columns)
+    fit = around.fit
+    covariance = broad.covariance(fit.normal)
+    found = ridge.valley(around.forward, fit.hypothesis, fit.normal, covariance, around.columns)
     return found if found and len(found.t) >= SHORTEST else None
 
 
-def _along(forward, fit, found):
+def _along(around, found):
     """The same from along its valley."""
+    fit = around.fit
     u, nu, log_proposal = proposals.along(found, _covariance(fit), SPARE * DRAWS, SEED)
     inside = _inside(fit, u)
     floor = min(fit.objective, float(found.objective.min()))
-    value = Around(forward, fit).at_best(np.concatenate([u, nu], axis=1)[inside], floor)
+    value = around.at_best(np.concatenate([u, nu], axis=1)[inside], floor)
     return u[inside], value - log_proposal[inside]
 
 
@@ -168,18 +171,6 @@ def _covariance(fit):
     return own * np.outer(less, less) + 1e-12 * np.diag(np.square(less * sigma)) + 1e-24 * np.eye(p)
 
 
-def log_posterior(forward: Forward, fit: Fit, u: np.ndarray) -> np.ndarray:
-    """(n,) logarithm, up to a constant, at (n, p) coordinates; nuisances at their best.
-
-    −inf where nothing can be simulated.
-    """
-    around, p = Around(forward, fit), len(fit.u)
-    away = u - fit.u
-    hessian = fit.normal.total()[1][0]
-    point = np.concatenate([u, fit.nu - away @ (around.inner @ hessian[p:, :p]).T], axis=1)
-    return around.at_best(around.bent(point, away), fit.objective)
-
-
 @dataclass(frozen=True)
 class Around:
     """The misfit around a fit, and its nuisances at their best, with the slopes of the fit."""
@@ -197,6 +188,17 @@ class Around:
         """(q, q) covariance of the nuisances, coordinates held."""
         p = len(self.fit.u)
         return np.linalg.pinv(self.fit.normal.total()[1][0][p:, p:], hermitian=True)
+
+    def log_posterior(self, u: np.ndarray) -> np.ndarray:
+        """(n,) logarithm, up to a constant, at (n, p) coordinates; nuisances at their best.
+
+        −inf where nothing can be simulated.
+        """
+        fit, p = self.fit, len(self.fit.u)
+        away = u - fit.u
+        hessian = fit.normal.total()[1][0]
+        point = np.concatenate([u, fit.nu - away @ (self.inner @ hessian[p:, :p]).T], axis=1)
+        return self.at_best(self.bent(point, away), fit.objective)
 
     def at_best(self, point, floor):
         """(n,) logarithm of the posterior at (n, p + q) points, nuisances at their best: steps are taken from
@@ -285,11 +287,11 @@ def _marginal(fit, valley, k):
     return VALLEY, u, weight / weight.sum()
 
 
-def _profiles(forward, fit):
+def _profiles(around):
     """How each coordinate is told, its values and their weights."""
-    columns = forward.columns(fit.hypothesis, fit.u[None], fit.nu[None])
+    fit = around.fit
     sigma = np.sqrt(np.diag(_covariance(fit)))
-    found = ridge.profiles(forward, fit.hypothesis, fit.normal, sigma, columns)
+    found = ridge.profiles(around.forward, fit.hypothesis, fit.normal, sigma, around.columns)
     return [_profile(fit, k, sigma[k], *one) for k, one in enumerate(found)]
 
 

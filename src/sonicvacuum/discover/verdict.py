@@ -12,7 +12,7 @@ import msgspec
 import numpy as np
 from msgspec import UNSET, Struct, UnsetType, field
 
-from sonicvacuum.discover.draws import SAMPLED, Draws
+from sonicvacuum.discover.draws import PROFILE, SAMPLED, VALLEY, Draws
 from sonicvacuum.discover.faults.found import Finding
 from sonicvacuum.discover.fit.goodness import Goodness
 from sonicvacuum.discover.fit.heldout import HeldOut
@@ -172,10 +172,10 @@ def parameters(
     """Values and standard errors of the free parameters, with what rivals that have them make of them; of
     beads and contacts the distance of where else the effect may sit, root mean square; 0 of gauges.
 
-    Where many draws of the posterior are much wider than the Gaussian of the fit, as along a valley that
-    bends, their width is the error.
+    Where the posterior is much wider than the Gaussian of the fit, as along a valley that bends, by many
+    draws or by what is told in their place, its width is the error.
     """
-    many = (d for d in drawn if d.how == SAMPLED and d.effective > MANY)
+    many = (d for d in drawn if d.how in (VALLEY, PROFILE) or (d.how == SAMPLED and d.effective > MANY))
     wide = {(d.effect, d.parameter): d.error for d in many}
     off = [share @ np.square(shift) for share, shift in rivals.shifts(fit, found)]
     result, first, sigma = {}, 0, np.sqrt(np.square(fit.sigma) + off)

@@ -45,9 +45,9 @@ def of_odds(
     fits |= {explanations.key(c.effects): [(1.0, c.fit)] for c in sets}
     whole: dict[str, float] = {}
     for name, p in odds.items():
-        known = [one for one in explanations.effects(name) if one != explanations.UNKNOWN]
         if name != explanations.UNKNOWN:
-            whole[explanations.key(known)] = whole.get(explanations.key(known), 0.0) + p
+            known = explanations.key(e for e in explanations.effects(name) if e != explanations.UNKNOWN)
+            whole[known] = whole.get(known, 0.0) + p
     return _probable(whole, fits)
 
 
