@@ -1,6 +1,9 @@
 """Draws of the posterior: against what is known in closed form, and against fits with a parameter held."""
 
+import importlib.util
+import sys
 from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -210,3 +213,27 @@ def test_a_point_that_its_nuisances_exclude_is_not_simulated(verdict, monkeypatc
     assert sum(asked) == 2
     assert np.isfinite(objective).tolist() == [True, False, True]
     assert np.isfinite(gradient).all(axis=1).tolist() == [True, False, True]
+
+
+def test_nested_sampling_is_given_the_posterior_beside_the_nominal_model(verdict, monkeypatch):
+    """With a stand-in for the sampler: at the fit half of what it gains, beyond the bounds nothing."""
+    found, asked = verdict.found, {}
+
+    class Sampler:
+        def __init__(self, likelihood, prior, dimensions, **options):
+            fit = found.final
+            asked["values"] = [likelihood(u) for u in (fit.u, fit.u + 1e3)]
+            self.results = SimpleNamespace(logz=[1.5], logzerr=[0.1], ncall=[2, 3])
+
+        def run_nested(self, **options):
+            pass
+
+    monkeypatch.setitem(sys.modules, "dynesty", SimpleNamespace(NestedSampler=Sampler))
+    script = Path(__file__).parents[2] / "workflow/bench/nested.py"
+    spec = importlib.util.spec_from_file_location("nested", script)
+    nested = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(nested)
+    assert nested.sampled(found.forward, found.null, found.final, 100.0) == (1.5, 0.1, 5)
+    gain = found.null.objective - found.final.objective
+    assert asked["values"][0] == pytest.approx(0.5 * gain, abs=0.05)  # the fit's own settling
+    assert asked["values"][1] == -1e10

@@ -22,7 +22,7 @@ from sonicvacuum.blas import one_thread
 from sonicvacuum.discover import session
 from sonicvacuum.discover.draws import pareto_k
 from sonicvacuum.discover.fit.evidence import STRONG, WEAK, log_bayes
-from sonicvacuum.discover.posterior import log_posterior, proposed
+from sonicvacuum.discover.posterior import Around, proposed
 from sonicvacuum.tables import write_csv
 
 LIVE, SEED = 80, 20061018
@@ -74,12 +74,12 @@ def sampled(forward, null, one, gain: float, live: int = LIVE) -> tuple[float, f
     """
     from dynesty import NestedSampler  # in the environment of `make bench` only
 
-    prior, held = Prior(one, gain), np.arange(len(one.u))
+    prior, around = Prior(one, gain), Around(forward, one)
     low, high = np.array([(c.low, c.high) for c in one.hypothesis.coordinates]).T
 
     def gained(u):
         inside = np.all((u >= np.minimum(low, one.u)) & (u <= np.maximum(high, one.u)))
-        value = log_posterior(forward, one, u[None], held)[0] if inside else -np.inf
+        value = around.log_posterior(u[None])[0] if inside else -np.inf
         return max(float(value + 0.5 * null.objective), -1e10)
 
     state = np.random.Generator(np.random.PCG64(np.random.SeedSequence(SEED)))
@@ -106,7 +106,7 @@ def rows(folder: Path, live: int = LIVE, most: int = MOST):
         laplace = log_bayes(c.fit, c.gain)
         value, error, calls = sampled(found.forward, found.null, c.fit, c.gain, live)
         u, density = proposed(c.fit)
-        weight = log_posterior(found.forward, c.fit, u, np.arange(len(c.fit.u))) - density
+        weight = Around(found.forward, c.fit).log_posterior(u) - density
         k = pareto_k(np.exp(weight - weight.max()))
         spent = time.process_time() - begun
         numbers = (f"{x:.4g}" for x in (laplace, value, error))
