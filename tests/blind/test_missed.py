@@ -45,6 +45,19 @@ def test_an_effect_behind_one_at_a_bead_is_fitted():
     assert session.discover(record, limits=False).verdict.named == ["guide-friction"]
 
 
+def test_a_preload_behind_what_slopes_promise_is_fitted():
+    """Slopes promise 5 of a preload of 1.2 mN on beads that bear their own weight, and 32 of a gauge that
+    droops, which was named with a law of damping beside it: the preload gains 65 in χ².
+    """
+    record, truth = hide(
+        Spec("preload", "single", "one-speed", "white", ("static-preload",), 10.0, 33_744_973, 3703)
+    )
+    found = session.discover(record, limits=False).verdict
+    assert found.named == ["static-preload"]
+    own, (hidden,) = found.parameters["static-preload"]["force_N"], truth["hidden"]
+    assert abs(own.value - hidden["parameters"]["force_N"]) < 3.0 * own.sigma  # 0.6 with this seed
+
+
 @pytest.mark.long
 def test_two_laws_of_damping_that_hide_behind_one_are_both_named():
     """One of them leaves nothing that passes for a misfit, and both together are four times as likely."""

@@ -64,6 +64,8 @@ class Parameter:
             once), so that slopes are taken from there on; 0 where it sets in smoothly.
         tried_at_once: whether slopes at off mislead, so that finite values are tried as well; so it always is
             for effects at one bead or contact.
+        bends: whether slopes at off tell little of finite values: where contacts bear next to nothing,
+            a wave's speed goes as the sixth root of what they bear.
         linear: whether a positive parameter that is off at 0 is searched evenly, not by its logarithm.
         known: value, and its relative standard error, that a record states: where the effect acts the value
             lies within two of them. None: anything between low and high.
@@ -83,6 +85,7 @@ class Parameter:
     acts_like: str | None = None
     least_strength: float = 0.0
     tried_at_once: bool = False
+    bends: bool = False
     linear: bool = False
     known: tuple[float, float] | None = None
     electronic: bool = False

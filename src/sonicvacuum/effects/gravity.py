@@ -43,6 +43,7 @@ EFFECT = Effect(
             0.0,
             # A finite difference at the upright chain may step a little beyond it.
             1.1,
+            bends=True,
             linear=True,
         ),
     ),

@@ -20,7 +20,16 @@ EFFECT = Effect(
     reference="Daraio, Nesterenko, Herbold & Jin, Phys. Rev. E 73, 026610 (2006)",
     parameters=(
         Parameter(
-            "force_N", "N", 0.0, 1e-4, 100.0, "log-uniform", 0.1, "preload besides the recorded one", 0.0
+            "force_N",
+            "N",
+            0.0,
+            1e-4,
+            100.0,
+            "log-uniform",
+            0.1,
+            "preload besides the recorded one",
+            0.0,
+            bends=True,
         ),
     ),
     signature="weak pulses travel faster (sound speed as F0^{1/6}), amplitudes grow a little, the "

@@ -31,7 +31,7 @@ GAINS, LEAVES, PROMISING = 50.0, 0.5, 0.3
 # refitted while slopes can be trusted.
 HOPELESS, ERR = 20.0, 0.2
 # That share where all that were refitted leave much, or slopes did not foresee what the best one gains; of
-# one at a bead or contact they often do not, which says less of others.
+# one at a bead or contact they often do not, which says less of others. And of effects whose slopes bend.
 ERR_FAR, ERR_PLACED = 0.75, 0.5
 # A nominal fit whose nuisances stand so many standard errors off does the work of what is missing with them.
 STRAINED = 5.0
@@ -87,9 +87,8 @@ def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
 
     while left:
         # Places and strengths may not keep what slopes promise: others are measured against what was found.
-        enough = -np.inf if loose else max((1.0 - err) * best_gain - HOPELESS, 0.5)
         always = [e for e in left if secants.applies(e) and largest > CLEAR]
-        chosen = [e for e in left if e in always or gains.get(e.id, 0.0 if loose else -np.inf) > enough]
+        chosen = left if loose else [e for e in left if e in always or _promises(e, gains, err, best_gain)]
         found += abreast.each(forward, follow, chosen, "single effects")
         left = [e for e in left if e not in chosen]
         leading = max((c for c in found if c is not None), key=lambda c: c.gain, default=None)
@@ -105,6 +104,12 @@ def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
             break
     found = _all_over(forward, null, scores, [c for c in found if c is not None], left, setup)
     return ranked(found, forward.experiment.prior_odds)
+
+
+def _promises(effect: Effect, gains: dict[str, float], err: float, best: float) -> bool:
+    """Whether slopes, which err by a share, promise as much of an effect as may come up to the best one."""
+    share = max(err, ERR_FAR) if any(p.bends for p in effect.parameters) else err
+    return gains.get(effect.id, -np.inf) > max((1.0 - share) * best - HOPELESS, 0.5)
 
 
 def _unforeseen(leading: Candidate | None, gains: dict[str, float]) -> bool:
