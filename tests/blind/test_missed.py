@@ -99,6 +99,21 @@ def test_one_effect_is_found_for_which_two_others_had_made_up():
 
 
 @pytest.mark.long
+def test_three_strong_effects_of_which_no_pair_stands_out():
+    """Every pair leaves nine times the noise and more, and only the gauge's gain stands out of them; beside
+    gain and damping slopes promise nine tenths of the rest of gravity. Another law of damping leaves as much
+    as the one that is hidden (36.8 in χ², and 40.5).
+    """
+    three = ("gravity", "sensor-gain", "hunt-crossley")
+    record, _ = hide(Spec("full-2120", "set", "scalars", "white", three, 20.0, 33_744_973, 2120))
+    found = session.discover(record, limits=False).verdict
+    assert {"gravity", "sensor-gain"} < set(found.named)
+    assert len(found.named) == 3
+    assert "unknown" not in found.named
+    assert found.probabilities["gravity + hunt-crossley + sensor-gain"] > 0.1  # 0.33; 0.59 what is named
+
+
+@pytest.mark.long
 def test_the_interval_of_a_contact_that_relaxes_slowly_holds_its_truth():
     """Strength and time of it are nearly one number; slopes of short steps put both 20 errors off."""
     record, truth = hide(cases("again")[1399])

@@ -176,7 +176,11 @@ class Case:
     def _set(self, needed, most, shape, alarms, start: Fit, seen: Left, tried) -> Decision:
         """Effects added and taken away; what is found is kept, and said beside what is left."""
         nearest = min([start, *(c.fit for c in tried)], key=lambda f: f.objective)
-        if self.known is not None and gross.gross(self.forward, nearest, self.known):
+        large = self.known is not None and gross.gross(self.forward, nearest, self.known)
+        of_three = gross.of_three(self.forward, self.null, tried, self.setup) if large else None
+        if of_three is not None:
+            start = of_three
+        elif large:
             found = [pairs.combination(self.null, c.fit, self.setup) for c in self.found]
             prior = self.forward.experiment.prior_odds
             standing = gross.standing_out(self.forward, self.null, [*found, *tried], self.setup, prior)

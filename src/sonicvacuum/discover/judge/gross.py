@@ -30,6 +30,9 @@ from sonicvacuum.effects import Setup
 TRIED = 3
 # Single effects, by what they leave, that are tried beside the best one.
 LEADING = 6
+# A third effect is fitted beside a pair where slopes promise that it takes away this share of what the pair
+# leaves beyond noise.
+THIRD = 0.5
 # Explanations, by what they leave, that are fitted once more from all over what is hardly known, so many
 # times unless little changes: effects that have grown find other minima. Of nine records of real chains the
 # best explanation stood eleventh in one before that.
@@ -105,6 +108,28 @@ def standing_out(
         if not more:
             return first
         found = [*found, *_at_their_best(forward, null, more)]
+
+
+def of_three(forward: Forward, null: Fit, found: Iterable[Combination], setup: Setup) -> Fit | None:
+    """The best fit of one of the leading pairs and a third effect, if it leaves no gross misfit; None where
+    it does, slopes promise nothing of the kind, or what is hardly known may do what an effect does.
+
+    Which two of three strong effects go together best while the third is missing is chance, so that often
+    none of the two stands out.
+    """
+    if wide.wide(forward):
+        return None
+    of_two = sorted((c for c in found if len(c.effects) == 2), key=lambda c: c.fit.objective)[:LEADING]
+
+    def promising(branch, pair):
+        least = pair.gain + THIRD * (pair.fit.objective - enough.data(forward))
+        return [s for s in pairs.beside(branch, null, pair.fit, setup) if s.gain > least]
+
+    starts = [s for own in abreast.each(forward, promising, of_two) for s in own]
+    best = {s.effects: s for s in sorted(starts, key=lambda s: s.gain)}
+    chosen = sorted(best.values(), key=lambda s: -s.gain)[:TRIED]
+    one = min(pairs.followed(forward, chosen), key=lambda f: f.objective, default=None)
+    return None if one is None or gross(forward, one) else one
 
 
 def _beside_much(prior: Mapping[str, float], setup: Setup) -> dict[str, float]:
