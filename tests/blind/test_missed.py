@@ -114,6 +114,21 @@ def test_three_strong_effects_of_which_no_pair_stands_out():
 
 
 @pytest.mark.long
+def test_two_effects_that_only_together_explain_what_one_leaves():
+    """Beside the low-pass a law of damping gains 22 in χ², too little to be told from anything else; a weight
+    along the chain gains 15 there, friction nothing, and both together 69.
+    """
+    three = ("guide-friction", "gravity", "sensor-lowpass")
+    record, truth = hide(Spec("full-2818", "set", "varied", "white", three, 20.0, 33_744_973, 2818))
+    found = session.discover(record, limits=False).verdict
+    assert set(found.named) == set(three)
+    for hidden in truth["hidden"]:
+        ((name, value),) = hidden["parameters"].items()
+        own = found.parameters[hidden["id"]][name]
+        assert abs(own.value - value) < 3.0 * own.sigma
+
+
+@pytest.mark.long
 def test_the_interval_of_a_contact_that_relaxes_slowly_holds_its_truth():
     """Strength and time of it are nearly one number; slopes of short steps put both 20 errors off."""
     record, truth = hide(cases("again")[1399])

@@ -148,12 +148,12 @@ class Case:
             if not after.failed:
                 alarms["pair"] = after.p
                 singles = [pairs.combination(self.null, c.fit, self.setup) for c in self.found]
-                return self._whole(pair, singles, alarms, after, tried), pair.fit, after
+                return self._whole(pair, singles, alarms, after, tried, most), pair.fit, after
             if start is best.fit:
                 start, lowest = pair.fit, after
         return None, start, lowest
 
-    def _whole(self, found: Combination, others, alarms, after: Left, tried) -> Decision:
+    def _whole(self, found: Combination, others, alarms, after: Left, tried, most) -> Decision:
         """A set that leaves nothing is named; less of it and something unknown, where its last effect earns
         so little that something outside the catalogue may as well be there.
         """
@@ -166,12 +166,31 @@ class Case:
         if part is None or found.log_bayes - part.log_bayes - seen.size.log_odds > policy.FURTHER:
             reason = f"{count} nothing significant"
             return Decision(list(found.effects), found.fit, alarms, [reason], after.p, tried)
+        more = self._two_more(part, seen, most)
+        if more is not None:
+            reason = f"{len(more.effects)} effects together leave nothing significant"
+            p = left(self.forward, more.fit, self.known).p
+            return Decision(list(more.effects), more.fit, {**alarms, "set": p}, [reason], p, [*tried, more])
         (further,) = names - set(part.effects)
         reason = (
             f"{seen.where} is left, which {further} would explain, too little to tell it from anything else"
         )
         named, beside = [*part.effects, UNKNOWN], {explanations.key(part.effects): 0.0}
         return Decision(named, part.fit, alarms, [reason], seen.p, tried, beside=beside)
+
+    def _two_more(self, part: Combination, seen: Left, most) -> Combination | None:
+        """A set with two effects more than one beside which a single one earns little: where slopes promise
+        that only both together explain what is left, and they leave nothing; None without any.
+        """
+        if len(part.effects) + 2 > policy.MOST_EFFECTS:
+            return None
+        starts = planes.linear(pairs.screened(self.forward, part.fit, self.setup), self.setup, ASKED)
+        fits = pairs.followed(self.forward, starts)
+        found = [pairs.combination(self.null, one, self.setup) for one in fits]
+        best = max(found, key=lambda c: c.log_bayes, default=part)
+        worth = best.log_bayes - part.log_bayes - seen.size.log_odds > policy.FURTHER
+        behind = short(best.gain, most)
+        return best if worth and not left(self.forward, best.fit, self.known, behind=behind).failed else None
 
     def _set(self, needed, most, shape, alarms, start: Fit, seen: Left, tried) -> Decision:
         """Effects added and taken away; what is found is kept, and said beside what is left."""
@@ -214,7 +233,7 @@ class Case:
             own = pairs.combination(self.null, final, self.setup)
             tried = explanations.together(tried, others, own)
             if not after.failed:
-                return self._whole(own, others, alarms, after, tried)
+                return self._whole(own, others, alarms, after, tried, most)
         if effects and not after.failed:
             return Decision(
                 effects, final, alarms, [f"{effects[0]} leaves nothing significant"], after.p, tried
@@ -242,7 +261,7 @@ class Case:
         final, after = self._rivalled(turns, best.fit, after, most)
         best = pairs.combination(self.null, final, self.setup)
         ranked = explanations.together(tried, grown.tried.values(), best)
-        return self._whole(best, grown.tried.values(), {**alarms, "set": after.p}, after, ranked)
+        return self._whole(best, grown.tried.values(), {**alarms, "set": after.p}, after, ranked, most)
 
     def _rivalled(self, turns: several.Turns, final: Fit, after: Left, most) -> tuple[Fit, Left]:
         """A set that leaves nothing, or a likelier one like it that does so too, and what it leaves; those
