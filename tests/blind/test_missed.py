@@ -55,7 +55,7 @@ def test_a_preload_behind_what_slopes_promise_is_fitted():
     found = session.discover(record, limits=False).verdict
     assert found.named == ["static-preload"]
     own, (hidden,) = found.parameters["static-preload"]["force_N"], truth["hidden"]
-    assert abs(own.value - hidden["parameters"]["force_N"]) < 3.0 * own.sigma  # 0.6 with this seed
+    assert abs(own.value - hidden["parameters"]["force_N"]) < 3.0 * own.sigma  # 1.4 with this seed
 
 
 @pytest.mark.long
@@ -116,7 +116,7 @@ def test_three_strong_effects_of_which_no_pair_stands_out():
 @pytest.mark.long
 def test_two_effects_that_only_together_explain_what_one_leaves():
     """Beside the low-pass a law of damping gains 22 in χ², too little to be told from anything else; a weight
-    along the chain gains 15 there, friction nothing, and both together 69.
+    along the chain gains 5 there, friction 1, and both together 69.
     """
     three = ("guide-friction", "gravity", "sensor-lowpass")
     record, truth = hide(Spec("full-2818", "set", "varied", "white", three, 20.0, 33_744_973, 2818))
@@ -125,7 +125,7 @@ def test_two_effects_that_only_together_explain_what_one_leaves():
     for hidden in truth["hidden"]:
         ((name, value),) = hidden["parameters"].items()
         own = found.parameters[hidden["id"]][name]
-        assert abs(own.value - value) < 3.0 * own.sigma
+        assert abs(own.value - value) < 3.0 * own.sigma  # with this seed 0.1, 0.5 and 0.4
 
 
 @pytest.mark.long
