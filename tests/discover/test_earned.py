@@ -16,14 +16,15 @@ def found(effects, log_bayes):
     return Combination(tuple(effects.split(" ")), effects, 100.0, log_bayes)
 
 
-def decided(monkeypatch, whole, others, smooth=0.0):
+def decided(monkeypatch, whole, others, smooth=0.0, more=None):
     seen = SimpleNamespace(size=SimpleNamespace(log_odds=smooth), where=LEFT.where, p=LEFT.p)
     monkeypatch.setattr(decision, "left", lambda forward, fit, known: seen)
     monkeypatch.setattr(
         decision.abreast, "each", lambda forward, work, sets: [work(forward, s) for s in sets]
     )
+    monkeypatch.setattr(decision.Case, "_two_more", lambda case, part, seen, most: more)
     case = decision.Case(None, None, None, [], None, None)
-    return case._whole(whole, others, {}, NOTHING, [])
+    return case._whole(whole, others, {}, NOTHING, [], 0.0)
 
 
 @pytest.mark.parametrize(
@@ -54,3 +55,13 @@ def test_only_what_has_one_effect_less_is_held_against_a_set(monkeypatch):
     others = [found("tsuji", 49.0), found("gravity tsuji", 20.0), found("gravity sensor-gain", 49.0)]
     assert decided(monkeypatch, three, others).named == ["gravity", "mass-defect", "tsuji"]
     assert decided(monkeypatch, three, []).named == ["gravity", "mass-defect", "tsuji"]
+
+
+def test_two_more_that_only_together_explain_what_is_left_are_named(monkeypatch):
+    """Asked only where one more earns too little."""
+    pair, two = found("gravity tsuji", 50.0), found("tsuji mass-defect sensor-gain", 80.0)
+    for gained, named in ((0.9, list(two.effects)), (1.1, ["gravity", "tsuji"])):
+        others = [found("tsuji", 50.0 - gained * policy.FURTHER)]
+        one = decided(monkeypatch, pair, others, more=two)
+        assert one.named == named
+        assert (two in one.combinations) == (named == list(two.effects))

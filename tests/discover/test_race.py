@@ -10,6 +10,7 @@ from sonicvacuum.discover.fit import wide
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.problem import experiment
 from sonicvacuum.discover.search import directions, screen, singles
+from sonicvacuum.effects import CATALOGUE
 
 DRAG = ("viscous-drag", {"rate_per_s": 900.0})
 GAIN = ("sensor-gain", {"gain_ratio": 1.5, "sensor": 1})
@@ -97,7 +98,7 @@ def test_what_slopes_did_not_foresee_asks_the_others_too(monkeypatch, gained, pl
         fit = SimpleNamespace(hypothesis=SimpleNamespace(components=[component]))
         return SimpleNamespace(effect=effect.id, gain=gained, fit=fit)
 
-    catalogue = SimpleNamespace(candidates=lambda setup, excluded: [SimpleNamespace(id=n) for n in names])
+    catalogue = SimpleNamespace(candidates=lambda setup, excluded: [CATALOGUE.effect(n) for n in names])
     monkeypatch.setattr(singles, "setup_of", lambda forward: SimpleNamespace(catalogue=catalogue))
     monkeypatch.setattr(singles, "_strained", lambda forward, null: False)
     monkeypatch.setattr(singles.wide, "leaves_much", lambda forward, objective: False)
@@ -117,3 +118,21 @@ def test_what_slopes_did_not_foresee_asks_the_others_too(monkeypatch, gained, pl
     forward = SimpleNamespace(experiment=SimpleNamespace(runs=[run], excluded=(), prior_odds={}))
     singles.fit_all(forward, SimpleNamespace(objective=1000.0), scores)
     assert asked == followed
+
+
+@pytest.mark.parametrize(
+    ("effect", "promised", "best", "asked"),
+    [
+        # A fifth is what slopes err by, and three quarters where contacts may bear next to nothing.
+        ("sensor-lowpass", 5.5, 32.5, False),
+        ("static-preload", 5.5, 32.5, True),
+        ("gravity", 5.5, 32.5, True),
+        ("static-preload", 20.0, 163.0, False),
+        ("static-preload", 22.0, 163.0, True),
+        # What slopes promise nothing of is not asked.
+        ("static-preload", 0.0, 32.5, False),
+    ],
+)
+def test_what_bends_is_asked_further_behind(effect, promised, best, asked):
+    gains = {effect: promised} if promised else {}
+    assert singles._promises(CATALOGUE.effect(effect), gains, singles.ERR, best) is asked
