@@ -22,7 +22,7 @@ def decided(monkeypatch, whole, others, smooth=0.0, more=None):
     monkeypatch.setattr(
         decision.abreast, "each", lambda forward, work, sets: [work(forward, s) for s in sets]
     )
-    monkeypatch.setattr(decision.Case, "_two_more", lambda case, part, seen, most: more)
+    monkeypatch.setattr(decision.Case, "_two_more", lambda case, part, seen, most: more and (more, 0.3))
     case = decision.Case(None, None, None, [], None, None)
     return case._whole(whole, others, {}, NOTHING, [], 0.0)
 
@@ -63,5 +63,5 @@ def test_two_more_that_only_together_explain_what_is_left_are_named(monkeypatch)
     for gained, named in ((0.9, list(two.effects)), (1.1, ["gravity", "tsuji"])):
         others = [found("tsuji", 50.0 - gained * policy.FURTHER)]
         one = decided(monkeypatch, pair, others, more=two)
-        assert one.named == named
+        assert (one.named, one.left) == (named, 0.3 if named == list(two.effects) else NOTHING.p)
         assert (two in one.combinations) == (named == list(two.effects))

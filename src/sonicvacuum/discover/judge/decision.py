@@ -166,10 +166,10 @@ class Case:
         if part is None or found.log_bayes - part.log_bayes - seen.size.log_odds > policy.FURTHER:
             reason = f"{count} nothing significant"
             return Decision(list(found.effects), found.fit, alarms, [reason], after.p, tried)
-        more = self._two_more(part, seen, most)
-        if more is not None:
+        two_more = self._two_more(part, seen, most)
+        if two_more is not None:
+            more, p = two_more
             reason = f"{len(more.effects)} effects together leave nothing significant"
-            p = left(self.forward, more.fit, self.known).p
             return Decision(list(more.effects), more.fit, {**alarms, "set": p}, [reason], p, [*tried, more])
         (further,) = names - set(part.effects)
         reason = (
@@ -178,9 +178,10 @@ class Case:
         named, beside = [*part.effects, UNKNOWN], {explanations.key(part.effects): 0.0}
         return Decision(named, part.fit, alarms, [reason], seen.p, tried, beside=beside)
 
-    def _two_more(self, part: Combination, seen: Left, most) -> Combination | None:
-        """A set with two effects more than one beside which a single one earns little: where slopes promise
-        that only both together explain what is left, and they leave nothing; None without any.
+    def _two_more(self, part: Combination, seen: Left, most) -> tuple[Combination, float] | None:
+        """A set with two effects more than one beside which a single one earns little, and the p-value of
+        what it leaves: where slopes promise that only both together explain what is left, and they leave
+        nothing; None without any.
         """
         if len(part.effects) + 2 > policy.MOST_EFFECTS:
             return None
@@ -188,9 +189,10 @@ class Case:
         fits = pairs.followed(self.forward, starts)
         found = [pairs.combination(self.null, one, self.setup) for one in fits]
         best = max(found, key=lambda c: c.log_bayes, default=part)
-        worth = best.log_bayes - part.log_bayes - seen.size.log_odds > policy.FURTHER
-        behind = short(best.gain, most)
-        return best if worth and not left(self.forward, best.fit, self.known, behind=behind).failed else None
+        if best.log_bayes - part.log_bayes - seen.size.log_odds <= policy.FURTHER:
+            return None
+        after = left(self.forward, best.fit, self.known, behind=short(best.gain, most))
+        return None if after.failed else (best, after.p)
 
     def _set(self, needed, most, shape, alarms, start: Fit, seen: Left, tried) -> Decision:
         """Effects added and taken away; what is found is kept, and said beside what is left."""
