@@ -12,7 +12,7 @@ from made_records import BEADS, SIGMA, made
 from made_slips import altered
 
 from sonicvacuum.discover import session
-from sonicvacuum.discover.faults import changes, policy
+from sonicvacuum.discover.faults import changes, policy, starts
 from sonicvacuum.discover.faults.competition import Search
 from sonicvacuum.discover.faults.found import Bench
 from sonicvacuum.discover.faults.judged import Judged, Model, excess, obvious, suspicious
@@ -260,3 +260,40 @@ def test_a_slip_that_leaves_a_misfit_is_held_against_every_effect_alone(monkeypa
         assert obvious(judged, model)
         assert one._matched(judged, model) is held
     assert one._matching == {"sensor-gain"}
+
+
+@pytest.mark.parametrize(
+    ("change", "fault", "value"),
+    [
+        # A probe of 10:1 in every channel, a termination that halves all readings.
+        (lambda r: changes.gains(r, np.log(10.0)), "gain-common", 0.1),
+        (lambda r: changes.gains(r, np.log(2.0)), "gain-common", 0.5),
+        # Every second sample saved.
+        (lambda r: changes.clock(r, np.log(2.0)), "clock", 0.5),
+    ],
+)
+def test_a_factor_of_all_gauges_or_of_the_clock_is_told_and_no_effect(empty, change, fault, value):
+    """Sizes were held to 1.65 and 1.05; two or three effects stood for the rest, with 0.93 and more."""
+    v = session.discover(change(empty)).verdict
+    assert [f.fault for f in v.faults] == [fault]
+    assert v.faults[0].value == pytest.approx(value, rel=0.06)  # gains share 2 %, speeds 1 %, moduli 5 %
+    assert v.named == []
+
+
+def test_a_pulse_that_is_cut_off_tells_nothing_of_its_length():
+    pulse = np.exp(-(((np.arange(60) - 30.0) / 8.0) ** 2))
+    whole = starts._length(pulse)
+    assert whole == pytest.approx(2.0 * 8.0 * np.sqrt(np.log(2.0)), rel=0.01)  # straight between samples
+    assert starts._length(pulse[:35]) is None
+    assert starts._length(pulse[25:]) is None
+    assert starts._length(np.zeros(60)) is None
+
+
+@pytest.mark.long
+def test_a_factor_has_another_size_beside_the_effect_that_is_there():
+    """Damping takes a tenth of every pulse; the factor was told as 9.4 then, and the striker as slow."""
+    record, _ = made([("kuwabara-kono", {"time_us": 0.3})], seed=5, speeds=(0.2, 0.45, 0.95))
+    v = session.discover(changes.gains(record, -np.log(10.0))).verdict
+    assert v.named == ["kuwabara-kono"]
+    assert [f.fault for f in v.faults] == ["gain-common"]
+    assert v.faults[0].value == pytest.approx(10.0, rel=0.03)  # gains share 2 %, speeds 1 %

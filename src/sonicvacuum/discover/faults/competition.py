@@ -11,11 +11,9 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from sonicvacuum.discover.faults import policy, tables
 from sonicvacuum.discover.faults.alone import wholes
-from sonicvacuum.discover.faults.examine import examine, with_noise_of
+from sonicvacuum.discover.faults.examine import examine
 from sonicvacuum.discover.faults.found import Bench, Finding
 from sonicvacuum.discover.faults.judged import (
     Judged,
@@ -31,7 +29,7 @@ from sonicvacuum.discover.faults.judged import (
     without_slip,
 )
 from sonicvacuum.discover.faults.retract import retracted, value
-from sonicvacuum.discover.faults.searching import Searching
+from sonicvacuum.discover.faults.searching import Led, Searching
 from sonicvacuum.discover.faults.table import FAULTS
 from sonicvacuum.discover.faults.weights import (
     ALIKE,
@@ -139,6 +137,8 @@ class Search(Searching):
                 model = self._nominal = lower
                 ranked = self.ranked(model)
             if ranked and self._sure(ranked[0], model):
+                alone = self._alone.at_hand(model) or []
+                self._led = Led(model, ranked[0], alone, tuple(self.findings))
                 self._accept(ranked, ranked[0])
             elif (one := self._beside_one_effect(ranked, model)) is not None:
                 self._accept([one], one)
@@ -147,11 +147,11 @@ class Search(Searching):
         else:
             ranked, looked = [], True
         bench = self.bench
-        found = self._investigate()
-        spiky = self.bench is not bench
-        if spiky or (model.bench is bench and found.null.objective < model.fit.objective - SAME_MINIMUM):
+        found = self._factors_anew(self._effects_instead(self._investigate()))
+        anew = self.bench is not bench
+        if anew or (model.bench is bench and found.null.objective < model.fit.objective - SAME_MINIMUM):
             # What slips gained beside spikes, or on a fit that had stopped short, is none of their own.
-            model = self.nominal() if spiky else Model(bench, model.forward, found.null)
+            model = self.nominal() if anew else Model(bench, model.forward, found.null)
             self._nominal, looked = model, suspicious(model)
             ranked = self.ranked(model) if looked else []
         traced = bool(self.bench.record.signals)
@@ -219,20 +219,6 @@ class Search(Searching):
         if name == explanations.UNKNOWN:
             return False
         return name in self._matching or bool(NUISANCES & acts_like(found, name))
-
-    def _accept(self, ranked: list[Judged], chosen: Judged, share: float = 1.0) -> None:
-        """Put a slip right; its rivals are said as far as they are probable."""
-        odds = np.array([j.log_odds for j in ranked])
-        weights = np.exp(odds - odds.max())
-        weights /= weights.sum()
-        for judged, weight in zip(ranked, weights, strict=True):
-            p = min(float(weight) * share, policy.PLAIN)
-            if p >= policy.SHOWN or judged is chosen:
-                finding = judged.finding(p)
-                self.findings.append(replace(finding, corrected=judged is chosen))
-        self.bench = chosen.model.bench
-        if chosen.slip.fault == "gauges-swapped" and self.bench.record.signals:
-            self.findings = with_noise_of(self.findings, self.bench.record, chosen.slip.sensor)
 
     def _instead(self, found: Investigation, ranked: list[Judged]) -> Investigation | None:
         """The investigation of the record with one slip more put right, where that explains it better."""

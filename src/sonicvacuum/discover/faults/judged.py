@@ -57,7 +57,7 @@ class Judged:
     @property
     def log_odds(self) -> float:
         """Log of prior times Bayes factor."""
-        return self.log_bayes + policy.log_prior(self.slip.alternatives)
+        return self.log_bayes + self.slip.log_prior
 
     def finding(self, probability: float = 1.0) -> Finding:
         """What is said of it."""

@@ -8,6 +8,9 @@ PRIOR = 0.01
 # Δχ² that a slip has to gain over the nominal model before it is weighed: the largest of about fifty
 # alternatives (a score of kinds at their places) exceeds it by chance in one null of a thousand.
 LEAST_GAIN = 18.0
+# The size of one that was put right is another one beside effects where that gains so much, two and a half of
+# its errors: it is known to be there.
+OTHER_SIZE = 6.0
 # A slip is put right before any effect is searched for where it takes away this share of all misfit ...
 SHARE = 0.9
 # ... and gains so much that no prior matters.

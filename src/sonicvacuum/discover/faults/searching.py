@@ -1,16 +1,57 @@
-"""The search for effects in a record as far as it was put right, spikes that its pulses hide left out."""
+"""The search for effects in a record as far as it was put right, spikes that its pulses hide left out.
 
+A slip that takes away nearly all misfit by itself is put right before any effect is asked for. Where an
+effect alone explains most of that too (a striker that is slower than stated, beside all gauges that read too
+little), the two are held against each other once more, beside the effects that were found then.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from sonicvacuum.discover.faults import policy
 from sonicvacuum.discover.faults.alone import Kept
+from sonicvacuum.discover.faults.examine import with_noise_of
 from sonicvacuum.discover.faults.found import Bench, Finding
-from sonicvacuum.discover.faults.judged import Model, scatter
+from sonicvacuum.discover.faults.judged import Judged, Model, scatter
+from sonicvacuum.discover.faults.judging import Judge
 from sonicvacuum.discover.faults.ranking import Ranking
 from sonicvacuum.discover.faults.strays import Strays, masked, strays, told
-from sonicvacuum.discover.faults.weights import unexplained
+from sonicvacuum.discover.faults.weights import unexplained, weight_of
 from sonicvacuum.discover.fit.enough import data
+from sonicvacuum.discover.fit.evidence import Candidate
 from sonicvacuum.discover.fit.refit import Fit, fit
+from sonicvacuum.discover.judge import explanations
 from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.model.hypothesis import Hypothesis
 from sonicvacuum.discover.rounds import Investigation, investigate
+from sonicvacuum.discover.search import pairs, singles
 from sonicvacuum.effects import Catalogue
+
+
+@dataclass(frozen=True)
+class Led:
+    """A slip that was put right before any effect was asked for.
+
+    Attributes:
+        model: of the record as it was before.
+        slip: as it was judged.
+        alone: single effects beside that model, best first, where they were asked for.
+        findings: slips told of before.
+    """
+
+    model: Model
+    slip: Judged
+    alone: Sequence[Candidate]
+    findings: Sequence[Finding]
+
+
+def _sized_anew(said: Finding, judged: Judged) -> Finding:
+    """What is said of a factor that was put right, times what it is off by."""
+    same = said.corrected and said.fault == judged.slip.fault
+    return replace(said, value=said.value * judged.finding().value) if same else said
 
 
 class Searching(Ranking):
@@ -19,7 +60,71 @@ class Searching(Ranking):
     def __init__(self, bench: Bench, catalogue: Catalogue, threads: int, plain: list[Finding]):
         super().__init__(bench, catalogue, threads, plain)
         self._nominal: Model | None = None
+        self._led: Led | None = None
         self._alone = Kept()
+
+    def _accept(self, ranked: list[Judged], chosen: Judged, share: float = 1.0) -> None:
+        """Put a slip right; its rivals are said as far as they are probable."""
+        odds = np.array([j.log_odds for j in ranked])
+        weights = np.exp(odds - odds.max())
+        weights /= weights.sum()
+        for judged, weight in zip(ranked, weights, strict=True):
+            p = min(float(weight) * share, policy.PLAIN)
+            if judged.slip.known and judged is chosen:
+                self.findings = [_sized_anew(f, judged) for f in self.findings]
+            elif judged is chosen or (p >= policy.SHOWN and not judged.slip.known):
+                finding = judged.finding(p)
+                self.findings.append(replace(finding, corrected=judged is chosen))
+        self.bench = chosen.model.bench
+        if chosen.slip.fault == "gauges-swapped" and self.bench.record.signals:
+            self.findings = with_noise_of(self.findings, self.bench.record, chosen.slip.sensor)
+
+    def _effects_instead(self, found: Investigation) -> Investigation:
+        """The effects of the record as it was before the slip put right last, where one that alone explains
+        most of what this does explains more in its place, beside those that were found.
+        """
+        led = self._led
+        if led is None or self.bench is not led.slip.model.bench or not led.slip.slip.continuous:
+            return found
+        most = policy.MOSTLY * led.slip.gain
+        near = [c for c in led.alone if c.gain > most and c.effect not in found.final.hypothesis.ids]
+        if not near or found.final is found.null:
+            return found
+        if self._beside_found(led, near[0], found) < led.slip.log_odds + weight_of(found):
+            return found
+        self.bench, self.findings = led.model.bench, list(led.findings)
+        self.simulations += found.forward.chains
+        return self._investigate()
+
+    def _beside_found(self, led: Led, one: Candidate, found: Investigation) -> float:
+        """Log of prior times evidence of an effect in place of a slip, beside those found with it."""
+        others, forward, before = found.final, led.model.forward, led.model.forward.chains
+        both = Hypothesis((*others.hypothesis.components, *one.fit.hypothesis.components))
+        u = np.concatenate((others.u, one.fit.u))[None]
+        joint = pairs.combination(
+            led.model.fit, fit(forward, both, u, one.fit.nu[None]), singles.setup_of(forward)
+        )
+        self.simulations += forward.chains - before
+        told = explanations.log_weights((), [joint], forward.experiment.prior_odds)
+        return told.get(explanations.key(joint.effects), -math.inf)
+
+    def _factors_anew(self, found: Investigation) -> Investigation:
+        """The effects, where beside them a factor that was put right has another size with that: damping
+        takes a part of every pulse, as less gain of all gauges would.
+        """
+        again = [] if found.final is found.null else self.factors(self.bench.record)
+        if not again:
+            return found
+        judge = Judge(Model(self.bench, found.forward, found.final), self.judged)
+        near = [j for j in judge.look_at(again) if j.gain > policy.OTHER_SIZE]
+        better = [j for j in judge.follow_all(near) if j.gain > policy.OTHER_SIZE]
+        self.simulations += judge.simulations
+        if not better:
+            return found
+        best = max(better, key=lambda j: j.gain)
+        self._accept([best], best)
+        self.simulations += found.forward.chains
+        return self._investigate()
 
     def _investigate(self) -> Investigation:
         """The effects; where spikes that a pulse hid are all that these leave, without them."""

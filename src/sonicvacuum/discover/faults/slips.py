@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
-from sonicvacuum.discover.faults import changes
+from sonicvacuum.discover.faults import changes, policy
 from sonicvacuum.discover.faults.found import Finding
 from sonicvacuum.records import Record
 
@@ -45,6 +45,7 @@ class Slip:
         of_values: whether it changes values or their errors only, and nothing of what is simulated.
         plain: whether the values show it by themselves, whatever acts in them.
         seen: fitted model → value that is said, where the size does not tell it.
+        known: whether it was put right already, and only its size is asked for once more.
     """
 
     fault: str
@@ -63,6 +64,12 @@ class Slip:
     of_values: bool = False
     plain: bool = False
     seen: Callable[..., float | None] | None = None
+    known: bool = False
+
+    @property
+    def log_prior(self) -> float:
+        """Log of its prior odds."""
+        return 0.0 if self.known else policy.log_prior(self.alternatives)
 
     @property
     def continuous(self) -> bool:

@@ -1,7 +1,7 @@
 """Where the search for the size of a slip starts: slopes at the record as it is do not lead to a far one."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -14,15 +14,19 @@ from sonicvacuum.records import Record
 
 # Run → gauge → (T,) predicted readings.
 Predicted = Mapping[str, Mapping[str, np.ndarray]]
-# A run's speed is not off by more, in its logarithm.
-FARTHEST = math.log(30.0)
+# A run's speed, and the recorder's time, are not off by more, in their logarithms; what all gauges share may
+# be a unit: millivolts for volts, and more.
+FARTHEST, FARTHEST_GAIN = math.log(30.0), math.log(3e3)
+# What all runs and gauges share: put right before any effect is known, which may have led its size.
+FACTORS = ("gain-common", "clock")
 # Sizes below so many prior widths are found from none.
-NEAR = {"gauge-delayed": 1.0, "run-off": 2.0}
+NEAR = {"gauge-delayed": 1.0, "run-off": 2.0, "gain-common": 2.0, "clock": 3.0}
 
 
 def with_starts(slips: list[Slip], record: Record, predicted: Predicted, model: Model) -> list[Slip]:
-    """Delays of single gauges start where the gauge's own traces fit best, and a run's speed where the fit
-    has led it, or where its peaks are as high as the traces'.
+    """Delays of single gauges start where the gauge's own traces fit best, a run's speed where the fit has
+    led it, or where its peaks are as high as the traces'; a factor that all gauges share (a termination, a
+    probe) where peaks of all runs are, and the recorder's time where pulses are as long.
     """
     return [_started(s, record, predicted, model) for s in slips]
 
@@ -32,6 +36,10 @@ def _started(slip, record, predicted, model):
         return slip
     if slip.fault == "gauge-delayed":
         start = gauge_delay(slip, record, predicted)
+    elif slip.fault == "gain-common":
+        start = _of_runs((_higher(record, run, predicted) for run in predicted), FARTHEST_GAIN)
+    elif slip.fault == "clock":
+        start = _of_runs((_longer(record, run, predicted) for run in predicted), FARTHEST)
     else:
         start = _speed(slip.run, record, predicted, model)
     return replace(slip, start=start) if abs(start) > NEAR[slip.fault] * slip.width else slip
@@ -58,3 +66,33 @@ def _higher(record, run, predicted):
     peaks = [(np.ptp(readings[g]), np.ptp(model)) for g, model in predicted[run].items() if g in readings]
     ratios = [np.log(trace / model) for trace, model in peaks if trace > 0.0 and model > 0.0]
     return float(np.median(ratios)) if ratios else None
+
+
+def _of_runs(seen: Iterable[float | None], farthest: float) -> float:
+    """The median over runs; 0 where none tells anything, or it is farther than anything is off."""
+    told = [value for value in seen if value is not None]
+    middle = float(np.median(told)) if told else 0.0
+    return middle if abs(middle) < farthest else 0.0
+
+
+def _longer(record, run, predicted):
+    """Logarithm of the pulses' lengths over those of the predicted ones, the median over gauges; None without
+    any. Arrivals would tell more of it, and of a late trigger as well; predicted ones may lie behind the end.
+    """
+    readings = record.signals[run].readings
+    lengths = [(_length(readings[g]), _length(model)) for g, model in predicted[run].items() if g in readings]
+    ratios = [math.log(own / model) for own, model in lengths if own and model]
+    return float(np.median(ratios)) if ratios else None
+
+
+def _length(reading):
+    """Samples for which the highest pulse is above half of its height; None where it is cut off."""
+    half, top = 0.5 * reading.max(), int(np.argmax(reading))
+    below = np.flatnonzero(reading < half)
+    before, after = below[below < top], below[below > top]
+    if not (len(before) and len(after)) or half <= 0.0:
+        return None
+    up, down = before[-1], after[0]
+    rises = (half - reading[up]) / (reading[up + 1] - reading[up])
+    falls = (half - reading[down]) / (reading[down - 1] - reading[down])
+    return float(down - up - rises - falls)

@@ -102,7 +102,7 @@ FAULTS: dict[str, Fault] = {
         Fault(
             "gain-common",
             "all gauges read {value} times the force",
-            "check the calibration that all gauges share",
+            "check the calibration that all gauges share, terminations (a factor of 2) and probes (of 10)",
             stretches=True,
         ),
         Fault(

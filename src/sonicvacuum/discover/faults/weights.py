@@ -86,7 +86,7 @@ def odds_of(slip: Judged, found: Investigation, after: Investigation) -> float:
         gain -= float(found.sizes.sum() - after.sizes.sum())
     else:
         gain += noise_volume(found.forward.experiment) - noise_volume(after.forward.experiment)
-    return 0.5 * gain + occam(slip.slip, slip.size, gain) + policy.log_prior(slip.slip.alternatives)
+    return 0.5 * gain + occam(slip.slip, slip.size, gain) + slip.slip.log_prior
 
 
 def hollow(found: Investigation, after: Investigation) -> bool:
