@@ -74,7 +74,7 @@ def provenance(score: pd.DataFrame) -> str:
     asked = int((score["errors_before"] != "nan").sum())
     ideal = "" if asked == len(score) else f" The ideal rule was asked about {asked} of them, evenly spread."
     return (
-        f"Method: git tag `{study.TAG}`, commit {study.METHOD}. The seed, {study.SEEDS['full']}, was drawn "
+        f"Method: commit {study.METHOD}, tag `{study.TAG}`. The seed, {study.SEEDS['full']}, was drawn "
         "after that; all verdicts are of that commit, each made once. Studies of seeds "
         f"{', '.join(map(str, study.BEFORE))} came before (tables of the last: commit "
         f"{study.KEPT_BEFORE}); what was found in them was mended. "
