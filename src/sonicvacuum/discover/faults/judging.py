@@ -1,5 +1,6 @@
 """How much better a model fits the record when a slip is put right: a linear look, then a fit (`judged`)."""
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cached_property
@@ -9,6 +10,7 @@ import numpy as np
 from sonicvacuum.discover.faults.found import Bench
 from sonicvacuum.discover.faults.judged import Judged, Model, noise_volume, occam
 from sonicvacuum.discover.faults.slips import Slip
+from sonicvacuum.discover.faults.table import FAULTS
 from sonicvacuum.discover.fit.enough import data
 from sonicvacuum.discover.fit.refit import Fit, fit
 from sonicvacuum.discover.model import abreast
@@ -29,8 +31,9 @@ FARTHER = 8.0
 TRIES, ROUGHLY = 8, 0.02
 # Calls of the predictor that a look takes, about.
 LOOK = 5
-# Farthest size from where the search starts, in prior widths.
-LONGEST = 5.0
+# Farthest size from where the search starts, in prior widths; of masses, which slopes lead to from none, in
+# its logarithm: another material, a hollow bead, the weight of two for one.
+LONGEST, MASSES = 5.0, math.log(2.0)
 
 
 class Judge:
@@ -296,7 +299,7 @@ class Judge:
         """The record changed by a size and its model, fitted from a start, or from the model as it is and
         from nuisances of zero; `afresh` from all of these.
         """
-        far = LONGEST * slip.width
+        far = max(LONGEST * slip.width, MASSES if FAULTS[slip.fault].curved else 0.0)
         size = float(np.clip(size, slip.start - far, slip.start + far)) if slip.continuous else 0.0
         bench, forward = self._put_right(slip, size)
         one = self.model.fit
