@@ -46,13 +46,23 @@ def block(speeds, orientation="horizontal", sensors=None):
     }
 
 
-def made(effects=(), seed=0, speeds=(0.3, 0.9), noise=1.0, departures=(), sensors=None, catalogue=CATALOGUE):
+def made(
+    effects=(),
+    seed=0,
+    speeds=(0.3, 0.9),
+    noise=1.0,
+    departures=(),
+    sensors=None,
+    catalogue=CATALOGUE,
+    given=None,
+):
     """A record with hidden effects ((id, parameters), ...) of a catalogue, nuisances and white noise drawn;
     the nuisances.
 
+    `given` is the record's content, in place of `block`.
     `departures` (what, place, ratio) change stiffness or mass at places, whatever the catalogue says of it.
     """
-    content = parse(block(speeds, sensors=sensors))
+    content = parse(given or block(speeds, sensors=sensors))
     rng = np.random.default_rng(np.random.SeedSequence(seed))
     time = np.arange(0.0, 700.0, 1.0)
     ids = [s.id for s in content.sensors]

@@ -68,7 +68,7 @@ def test_a_slip_that_no_nuisance_absorbs_is_put_right_at_once(empty, fault):
     best = ranked[0]
     assert suspicious(model)
     assert obvious(best, model)
-    found = best.slip.finding(best.size)
+    (found,) = best.slip.findings(best.size)
     assert (found.fault, found.run, found.sensor) == (fault, run, gauge)
     # Times are as good as a pulse is wide, about 25 us; sizes of fits are far better.
     assert found.value == (
@@ -88,7 +88,7 @@ def test_a_size_beyond_its_error_is_among_the_likeliest(empty, fault):
     # Common gain and common speed are one direction but for a little of the pulse's width.
     assert same.gain > best.gain - 9.0
     # Nuisances take part of it up, each by as much as its own error allows.
-    assert same.slip.finding(same.size).value == pytest.approx(value, abs=0.12)
+    assert same.slip.value(same.size) == pytest.approx(value, abs=0.12)
 
 
 def test_a_size_within_the_errors_of_the_nuisances_is_not_named(empty):
@@ -217,7 +217,7 @@ def test_slips_without_size_are_tried_where_slopes_promise_nothing(empty, monkey
     monkeypatch.setattr(Judge, "look", blind)
     change, run, gauge, value = OBVIOUS[fault]
     _, _, ranked = search(change(empty))
-    found = ranked[0].slip.finding(ranked[0].size)
+    (found,) = ranked[0].slip.findings(ranked[0].size)
     assert (found.fault, found.run, found.sensor, found.value) == (fault, run, gauge, value)
 
 

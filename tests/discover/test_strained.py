@@ -1,10 +1,12 @@
 """What the nominal model asks of a record: said where it follows the data by way of stated numbers alone."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
+import msgspec
 import numpy as np
 import pytest
-from made_records import made
+from made_records import block, made
 
 from sonicvacuum.discover import session
 from sonicvacuum.discover.fit.normal import Normal
@@ -82,3 +84,20 @@ def test_every_kind_has_its_words_and_units(kind, of, sigma, said):
         nuisance_sigma=np.full(layout.size, sigma),
     )
     assert strained._moved(forward, layout.size - 1, 10.0) == said
+
+
+def test_a_stated_preload_that_was_not_there_is_said(empty):
+    """No effect makes a preload less: a gap does it, and is named."""
+    chain = msgspec.structs.replace(empty.block.chain, static_force_N=0.5)
+    loaded = replace(empty, block=msgspec.structs.replace(empty.block, chain=chain))
+    v = session.discover(loaded).verdict
+    assert "contact-gap" in v.named
+    assert sum("stated static_force_N of 0.5 N off contact" in r for r in v.reasons) == 1
+
+
+def test_nor_of_one_that_is_there():
+    given = block((0.3, 0.9))
+    given["chain"]["static_force_N"] = 0.5
+    found = session.discover(made([("kuwabara-kono", {"time_us": 0.5})], given=given)[0])
+    assert found.verdict.named == ["kuwabara-kono"]
+    assert not any("static_force_N" in r for r in found.verdict.reasons)

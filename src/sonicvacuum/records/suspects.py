@@ -9,6 +9,7 @@ arrival that fits the neighbouring bead, a mass that the material does not have.
 import itertools
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -61,8 +62,33 @@ def _same(one, other) -> bool:
     return bool(shared) and all(np.array_equal(a, b) and np.ptp(a) > 0.0 for a, b in shared)
 
 
-def _masses(record) -> Iterator[str]:
-    """Balls that do not weigh what their materials weigh."""
+@dataclass(frozen=True)
+class Weight:
+    """A ball's stated mass beside that of a solid one of its size and material.
+
+    Attributes:
+        key: where the mass stands in the record.
+        given, usual: stated mass, and that of the material's density, in kg.
+        diameter: in m.
+        material: its name, that of the core of a coated ball.
+        striker: whether it is a striker.
+    """
+
+    key: str
+    given: float
+    usual: float
+    diameter: float
+    material: str
+    striker: bool
+
+    @property
+    def off(self) -> bool:
+        """Whether material and size do not make the mass."""
+        return abs(self.given / self.usual - 1.0) > DENSITY
+
+
+def weights(record: Record) -> Iterator[Weight]:
+    """Beads and strikers that are balls of materials whose density is known."""
     bodies = record.specimen.bodies
     for (place, _), bead in zip(bead_blocks(record.block.chain).kinds, bodies.kinds, strict=True):
         inner = bead.core or bead.surface
@@ -70,22 +96,25 @@ def _masses(record) -> Iterator[str]:
             continue
         coating = bead.coating_m or 0.0
         densities = inner.density_kg_m3, bead.surface.density_kg_m3
-        mass = float(bead_mass(bead.diameter_m / 2.0 - coating, coating, *densities))
-        yield from _mass(f"{place}.mass_g", bead.mass_kg, mass, bead.diameter_m, inner.name)
+        usual = float(bead_mass(bead.diameter_m / 2.0 - coating, coating, *densities))
+        yield Weight(f"{place}.mass_g", bead.mass_kg, usual, bead.diameter_m, inner.name, False)
     for k, run in enumerate(record.runs):
         s = run.striker
         if record.beads and math.isfinite(s.radius_m) and s.surface.density_kg_m3:
-            mass = float(bead_mass(s.radius_m, 0.0, s.surface.density_kg_m3, s.surface.density_kg_m3))
+            usual = float(bead_mass(s.radius_m, 0.0, s.surface.density_kg_m3, s.surface.density_kg_m3))
             key = f"runs[{k}].striker.mass_g ({run.id})"
-            yield from _mass(key, s.mass_kg, mass, 2.0 * s.radius_m, s.surface.name)
+            yield Weight(key, s.mass_kg, usual, 2.0 * s.radius_m, s.surface.name, True)
 
 
-def _mass(key, given, usual, diameter, material):
-    if abs(given / usual - 1.0) > DENSITY:
-        yield (
-            f"{key}: is {given * 1e3:.4g} g, but a ball of {diameter * 1e3:.4g} mm of {material} weighs "
-            f"{usual * 1e3:.4g} g: is it another material or size, or is it hollow or bored?"
-        )
+def _masses(record) -> Iterator[str]:
+    """Balls that do not weigh what their materials weigh."""
+    for one in weights(record):
+        if one.off:
+            yield (
+                f"{one.key}: is {one.given * 1e3:.4g} g, but a ball of {one.diameter * 1e3:.4g} mm of "
+                f"{one.material} weighs {one.usual * 1e3:.4g} g: is it another material or size, or is it "
+                "hollow or bored?"
+            )
 
 
 def _arrivals(expected, run):

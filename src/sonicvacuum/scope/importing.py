@@ -55,7 +55,7 @@ def _report(runs):
     for run in runs:
         yield (
             f"run {run.id}: {run.signals.samples} samples, {run.signals.interval_s * 1e6:.6g} us apart, from "
-            f"{run.signals.start_s * 1e6:.6g} us"
+            f"{round(run.signals.start_s * 1e6, 3) + 0.0:.6g} us"
         )
         yield from (f"  {note}" for note in run.notes)
 

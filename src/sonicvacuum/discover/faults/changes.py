@@ -66,20 +66,31 @@ def bead_count(record: Record, by: int, from_wall: bool = False) -> Record:
 
 def gauge_moved(record: Record, id: str, by: int) -> Record:
     """A gauge so many beads further on."""
-    moved = [msgspec.structs.replace(s, bead=s.bead + by) if s.id == id else s for s in record.block.sensors]
+    return gauges_at(record, {s.id: s.bead + by for s in record.block.sensors if s.id == id})
+
+
+def gauges_at(record: Record, beads: Mapping[str, int]) -> Record:
+    """Gauges in other beads: id → bead."""
+    moved = [
+        msgspec.structs.replace(s, bead=beads[s.id]) if s.id in beads else s for s in record.block.sensors
+    ]
     return _block(record, sensors=moved)
 
 
 def gauges_swapped(record: Record, one: str, two: str) -> Record:
     """The readings of two gauges exchanged; noise and gain stay with the cables."""
-    names = {one: two, two: one}
+    return gauges_renamed(record, {one: two, two: one})
 
-    def swapped(signals):
+
+def gauges_renamed(record: Record, names: Mapping[str, str]) -> Record:
+    """The readings of gauges under other names, id → id; noise and gain stay with the cables."""
+
+    def renamed(signals):
         return Signals(signals.time_us, {names.get(k, k): v for k, v in signals.readings.items()})
 
     if not record.signals:
         return _block(record, runs=[_renamed(run, names) for run in record.block.runs])
-    return replace(record, signals={k: swapped(s) for k, s in record.signals.items()})
+    return replace(record, signals={k: renamed(s) for k, s in record.signals.items()})
 
 
 def _renamed(run, names):
@@ -121,12 +132,15 @@ def _scaled_noise(sensor, ratio):
     return sensor
 
 
-def clock(record: Record, log_ratio: float) -> Record:
-    """Recorded times over a ratio."""
+def clock(record: Record, log_ratio: float, runs=None) -> Record:
+    """Recorded times of some runs, or of all, over a ratio."""
     ratio = math.exp(-log_ratio)
-    return replace(
-        record, signals={k: Signals(s.time_us * ratio, s.readings) for k, s in record.signals.items()}
-    )
+    changed = {
+        k: Signals(s.time_us * ratio, s.readings)
+        for k, s in record.signals.items()
+        if runs is None or k in runs
+    }
+    return replace(record, signals={**record.signals, **changed})
 
 
 def time_zero(record: Record, late_us: dict[str, float], sigma_us: float) -> Record:

@@ -323,7 +323,7 @@ class Search(Searching):
         weights = p * parts(rivals, like)
         for judged, weight in zip(rivals, weights, strict=False):
             if weight >= policy.SHOWN:
-                self.findings.append(judged.finding(float(weight)))
+                self.findings += judged.findings(float(weight))
         share, told = float(weights[: len(rivals)].sum()), found.probabilities
         for name, own in list(told.items()):
             if kept := without(name, found, like):

@@ -59,10 +59,12 @@ class Judged:
         """Log of prior times Bayes factor."""
         return self.log_bayes + self.slip.log_prior
 
-    def finding(self, probability: float = 1.0) -> Finding:
+    def findings(self, probability: float = 1.0) -> list[Finding]:
         """What is said of it."""
-        found = self.slip.finding(self.size, probability)
-        return replace(found, value=self.slip.seen(self.model)) if self.slip.seen and self.model else found
+        found = self.slip.findings(self.size, probability)
+        if not (self.slip.seen and self.model):
+            return found
+        return [replace(one, value=self.slip.seen(self.model)) for one in found]
 
 
 def each_once(judged: Iterable[Judged]) -> list[Judged]:
@@ -135,6 +137,13 @@ def without_slip(judged: Judged, model: Model) -> Model | None:
     return replace(model, fit=found) if one.objective - found.objective > policy.LEAST_GAIN else None
 
 
+def speaks_for(judged: Judged, model: Model) -> bool:
+    """Whether data may speak for a size that other numbers of the record do: where the model strains its
+    nuisances without it, or comes near the data with it, as far as a look can tell.
+    """
+    return strained(model) or excess(model) - judged.gain < policy.ROUGHLY_THERE * data(model.forward)
+
+
 def out_of_reach(judged: Judged, model: Model) -> bool:
     """Whether a slip, looked at, leaves so much more misfit than there is that no fit would mend it."""
     return excess(model) - judged.gain > policy.REACH * max(excess(model), 1.0)
@@ -161,9 +170,13 @@ def suspicious(model: Model) -> bool:
     one, size = model.fit, data(model.forward)
     if tabled(model.forward.experiment) and scale_gain(one.objective / size, size) > policy.LEAST_GAIN:
         return True
-    misfit = float(one.normal.chi2.sum()) - size
-    strained = float(one.nu @ one.nu)
-    return misfit > scatter(size) or strained > tails.chi_squared_at(1e-3, len(one.nu))
+    return float(one.normal.chi2.sum()) - size > scatter(size) or strained(model)
+
+
+def strained(model: Model) -> bool:
+    """Whether a nominal fit strains its nuisances by more than chance would."""
+    nu = model.fit.nu
+    return float(nu @ nu) > tails.chi_squared_at(1e-3, len(nu))
 
 
 def tabled(experiment: Experiment) -> bool:
@@ -193,5 +206,6 @@ def occam(slip: Slip, size: float, gain: float) -> float:
     if not slip.continuous:
         return slip.occam
     sigma = max(abs(size), 1e-12) / math.sqrt(max(gain, 1.0))
-    density = 1.0 / (math.pi * slip.width * (1.0 + (size / slip.width) ** 2))
+    away = (size - slip.expected) / slip.width
+    density = 1.0 / (math.pi * slip.width * (1.0 + away**2))
     return min(0.0, math.log(max(math.sqrt(2.0 * math.pi) * sigma * density, 1e-12)))

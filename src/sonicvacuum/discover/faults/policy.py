@@ -80,6 +80,13 @@ LIKELIER = 0.5
 ALONE = 0.4
 
 
+# χ² per datum that a look at a size far off leaves where the size may be right.
+ROUGHLY_THERE = 30.0
+# Log prior of one that numbers of the record speak for: a ball's mass and its material contradict each other
+# where its mass or its size is wrong, or it is hollow, or of another material.
+EXPECTED = math.log(0.25)
+
+
 def log_prior(alternatives: int) -> float:
     """Log prior of one slip of a kind that has so many alternatives in a record."""
     return math.log(PRIOR / max(1, alternatives))

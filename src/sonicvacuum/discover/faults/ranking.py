@@ -17,11 +17,12 @@ from sonicvacuum.discover.faults.judged import (
     obvious,
     of_the_chain,
     out_of_reach,
+    speaks_for,
 )
 from sonicvacuum.discover.faults.judging import Judge
 from sonicvacuum.discover.faults.lines import drifts
 from sonicvacuum.discover.faults.slips import Slip, hypotheses
-from sonicvacuum.discover.faults.starts import FACTORS, with_starts
+from sonicvacuum.discover.faults.starts import FACTORS, run_clocks, with_starts
 from sonicvacuum.discover.faults.table import FAULTS
 from sonicvacuum.discover.faults.timing import late_runs, time_zero
 from sonicvacuum.discover.faults.weights import ALIKE
@@ -35,7 +36,6 @@ from sonicvacuum.discover.model.problem import together
 from sonicvacuum.discover.rounds import Investigation
 from sonicvacuum.discover.search.unknown import raw
 from sonicvacuum.effects import Catalogue
-from sonicvacuum.records import Record
 
 # Slopes foresee this share of what a small slip gains, or more: of beads a tenth too heavy, which gained 31
 # beside strained nuisances, they had foreseen 15.
@@ -104,10 +104,10 @@ class Ranking:
         self.simulations += forward.chains
         return Model(self.bench, forward, found)
 
-    def factors(self, record: Record) -> list[Slip]:
-        """Factors that were put right before, asked for once more."""
-        rough = {f.fault for f in self.findings if f.corrected and f.fault in FACTORS}
-        return [replace(s, known=True) for s in hypotheses(record) if s.fault in rough]
+    def factors(self, slips: list[Slip]) -> list[Slip]:
+        """Of all slips of a record, the factors that were put right before, asked for once more."""
+        rough = {f.fault for f in self.findings if f.corrected and f.fault in FACTORS and not f.run}
+        return [replace(s, known=True) for s in slips if s.fault in rough]
 
     def ranked(self, model: Model, afar: bool = False) -> list[Judged]:
         """Slips that gain enough beside a model, fitted, the likeliest first; masses also `afar`."""
@@ -116,8 +116,10 @@ class Ranking:
             return self._of_table(judge, _possible(tables.hypotheses(record, model), model))
         seen = predicted(self.make(model.bench), self.threads)
         done = {(f.fault, f.run, f.sensor) for f in self.findings}
-        slips = [*with_starts(hypotheses(record), record, seen, model), *late_runs(record, model, seen)]
-        slips = [*(s for s in slips if (s.fault, s.run, s.sensor) not in done), *self.factors(record)]
+        every = hypotheses(record)
+        slips = [*with_starts(every, record, seen, model), *late_runs(record, model, seen)]
+        slips += run_clocks(record, seen)
+        slips = [*(s for s in slips if (s.fault, s.run, s.sensor) not in done), *self.factors(every)]
         slips = _possible(slips, model)
         read = _read(model)
         shown = [*time_zero(record, seen), *drifts(record, read or seen, known=bool(read))]
@@ -129,7 +131,8 @@ class Ranking:
         looked.sort(key=lambda j: -j.log_odds)
         worth = [j for j in looked if j.gain > policy.LEAST_GAIN][: policy.FOLLOWED]
         # Where a run is far off, or all of them, its size is known roughly at first: too roughly for a look.
-        worth += [j for j in looked if j.slip.start and j.slip.sensor is None and j not in worth]
+        started = [j for j in looked if j.slip.start and j.slip.sensor is None and j not in worth]
+        worth += [j for j in started if not j.slip.expected or speaks_for(j, model)]
         # Slopes know nothing of a pulse that comes a bead earlier, or with another run's speed.
         apart = [j for j in looked if not (j.slip.continuous or j in worth or out_of_reach(j, model))]
         if far:

@@ -18,6 +18,7 @@ from sonicvacuum.discover.faults.found import Bench, Finding
 from sonicvacuum.discover.faults.judged import Judged, Model, scatter
 from sonicvacuum.discover.faults.judging import Judge
 from sonicvacuum.discover.faults.ranking import Ranking
+from sonicvacuum.discover.faults.slips import hypotheses
 from sonicvacuum.discover.faults.strays import Strays, masked, strays, told
 from sonicvacuum.discover.faults.weights import unexplained, weight_of
 from sonicvacuum.discover.fit.enough import data
@@ -50,8 +51,10 @@ class Led:
 
 def _sized_anew(said: Finding, judged: Judged) -> Finding:
     """What is said of a factor that was put right, times what it is off by."""
-    same = said.corrected and said.fault == judged.slip.fault
-    return replace(said, value=said.value * judged.finding().value) if same else said
+    slip = judged.slip
+    if not said.corrected or (said.fault, said.run) != (slip.fault, slip.run):
+        return said
+    return replace(said, value=said.value * slip.value(judged.size))
 
 
 class Searching(Ranking):
@@ -73,8 +76,8 @@ class Searching(Ranking):
             if judged.slip.known and judged is chosen:
                 self.findings = [_sized_anew(f, judged) for f in self.findings]
             elif judged is chosen or (p >= policy.SHOWN and not judged.slip.known):
-                finding = judged.finding(p)
-                self.findings.append(replace(finding, corrected=judged is chosen))
+                told = judged.findings(p)
+                self.findings += [replace(finding, corrected=judged is chosen) for finding in told]
         self.bench = chosen.model.bench
         if chosen.slip.fault == "gauges-swapped" and self.bench.record.signals:
             self.findings = with_noise_of(self.findings, self.bench.record, chosen.slip.sensor)
@@ -112,7 +115,7 @@ class Searching(Ranking):
         """The effects, where beside them a factor that was put right has another size with that: damping
         takes a part of every pulse, as less gain of all gauges would.
         """
-        again = [] if found.final is found.null else self.factors(self.bench.record)
+        again = [] if found.final is found.null else self.factors(hypotheses(self.bench.record))
         if not again:
             return found
         judge = Judge(Model(self.bench, found.forward, found.final), self.judged)

@@ -2,8 +2,8 @@
 
 import itertools
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from functools import partial
 
 from sonicvacuum.discover.faults import changes, policy
@@ -23,6 +23,10 @@ WIDTH = {
     "gauge-delayed": 20.0,
     "time-zero": 20.0,
 }
+
+
+# Gauges among which cables may have gone round: three have two ways of it, four eight.
+MOST_CYCLED = 4
 
 
 @dataclass(frozen=True)
@@ -46,6 +50,8 @@ class Slip:
         plain: whether the values show it by themselves, whatever acts in them.
         seen: fitted model → value that is said, where the size does not tell it.
         known: whether it was put right already, and only its size is asked for once more.
+        each: gauge → value, where several gauges are each told of.
+        expected: size that other numbers of the record speak for; 0 where none do.
     """
 
     fault: str
@@ -65,11 +71,15 @@ class Slip:
     plain: bool = False
     seen: Callable[..., float | None] | None = None
     known: bool = False
+    each: Mapping[str, float] = field(default_factory=dict)
+    expected: float = 0.0
 
     @property
     def log_prior(self) -> float:
         """Log of its prior odds."""
-        return 0.0 if self.known else policy.log_prior(self.alternatives)
+        if self.known:
+            return 0.0
+        return policy.EXPECTED if self.expected else policy.log_prior(self.alternatives)
 
     @property
     def continuous(self) -> bool:
@@ -86,10 +96,12 @@ class Slip:
         """What it is and where."""
         return self.fault, self.run, self.sensor, self.quantity
 
-    def finding(self, size: float, probability: float = 1.0) -> Finding:
+    def findings(self, size: float, probability: float = 1.0) -> list[Finding]:
         """What is said of it."""
+        if self.each:
+            return [Finding(self.fault, self.run, id, v, probability) for id, v in self.each.items()]
         value = self.value(size)
-        return Finding(self.fault, self.run, self.sensor, value, probability, quantity=self.quantity)
+        return [Finding(self.fault, self.run, self.sensor, value, probability, quantity=self.quantity)]
 
 
 def hypotheses(record: Record) -> list[Slip]:
@@ -105,7 +117,10 @@ def chain_slips(record: Record) -> list[Slip]:
 
 def _discrete(record):
     embedded = [g for g in record.gauges if g.bead is not None]
-    yield from swaps([g.id for g in record.gauges])
+    ids = [g.id for g in record.gauges]
+    yield from swaps(ids)
+    yield from _cycles(ids)
+    yield from _counted_otherwise(record, embedded)
     moves = [(g, by) for g in embedded for by in (-1, 1) if 1 <= g.bead + by <= record.beads]
     taken = {g.bead for g in embedded}
     for g, by in moves:
@@ -128,6 +143,42 @@ def swaps(ids):
     for one, two in pairs:
         change = partial(_ignoring, changes.gauges_swapped, one, two)
         yield Slip("gauges-swapped", change, None, (one, two), len(pairs), value=partial(constant, None))
+
+
+def _cycles(ids):
+    """Three gauges whose cables went round, either way; of many gauges there are too many to ask."""
+    if len(ids) > MOST_CYCLED:
+        return
+    rounds = [(a, *rest) for a, b, c in itertools.combinations(ids, 3) for rest in ((b, c), (c, b))]
+    for one, two, three in rounds:
+        change = partial(_ignoring, changes.gauges_renamed, {one: two, two: three, three: one})
+        value = partial(constant, None)
+        yield Slip("gauges-swapped", change, None, (one, two, three), 2 * len(rounds), value=value)
+
+
+def _counted_otherwise(record, embedded):
+    """All gauges a bead further or nearer, as where counting began with 0, or the striker was counted; or
+    counted from the wall.
+    """
+    stated = {g.id: g.bead for g in embedded}
+    ways = [{id: bead + by for id, bead in stated.items()} for by in (1, -1)] if len(stated) > 1 else []
+    ways.append({id: record.beads + 1 - bead for id, bead in stated.items()})
+    for beads in ways:
+        inside = all(1 <= bead <= record.beads for bead in beads.values())
+        moved = {id: bead for id, bead in beads.items() if bead != stated[id]}
+        # A gauge alone that is a bead off is one of its own.
+        if not inside or set(beads.values()) == set(stated.values()):
+            continue
+        if len(moved) == 1 and all(abs(bead - stated[id]) == 1 for id, bead in moved.items()):
+            continue
+        yield Slip(
+            "gauge-misplaced",
+            partial(_ignoring, changes.gauges_at, moved),
+            sensor=tuple(moved),
+            alternatives=len(ways),
+            value=partial(constant, float(next(iter(moved.values())))),
+            each={id: float(bead) for id, bead in moved.items()},
+        )
 
 
 def _counts(record, embedded):

@@ -3,20 +3,27 @@
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
+from sonicvacuum.discover.faults import changes
 from sonicvacuum.discover.faults.judged import Model
-from sonicvacuum.discover.faults.slips import Slip
+from sonicvacuum.discover.faults.slips import WIDTH, Slip
 from sonicvacuum.discover.faults.timing import gauge_delay
 from sonicvacuum.physics.scales import STRIKER_POWER
 from sonicvacuum.records import Record
+from sonicvacuum.records.suspects import weights
 
 # Run → gauge → (T,) predicted readings.
 Predicted = Mapping[str, Mapping[str, np.ndarray]]
 # A run's speed, and the recorder's time, are not off by more, in their logarithms; what all gauges share may
 # be a unit: millivolts for volts, and more.
 FARTHEST, FARTHEST_GAIN = math.log(30.0), math.log(3e3)
+# What a ball's mass and its material's density speak of.
+WEIGHED = ("bead-mass", "bead-size", "striker-mass")
+# Pulses of one run that are as much longer than those of others, in logarithms, are no effect's.
+STRETCHED = math.log(1.15)
 # What all runs and gauges share: put right before any effect is known, which may have led its size.
 FACTORS = ("gain-common", "clock")
 # Sizes below so many prior widths are found from none.
@@ -26,9 +33,12 @@ NEAR = {"gauge-delayed": 1.0, "run-off": 2.0, "gain-common": 2.0, "clock": 3.0}
 def with_starts(slips: list[Slip], record: Record, predicted: Predicted, model: Model) -> list[Slip]:
     """Delays of single gauges start where the gauge's own traces fit best, a run's speed where the fit has
     led it, or where its peaks are as high as the traces'; a factor that all gauges share (a termination, a
-    probe) where peaks of all runs are, and the recorder's time where pulses are as long.
+    probe) where peaks of all runs are, and the recorder's time where pulses are as long. Sizes and masses of
+    balls are asked for once more from where these weigh what their material does.
     """
-    return [_started(s, record, predicted, model) for s in slips]
+    weighed = [(s, _weighed(record, s.fault)) for s in slips if s.fault in WEIGHED]
+    started = [_started(s, record, predicted, model) for s in slips]
+    return started + [replace(s, start=start, expected=start) for s, start in weighed if start]
 
 
 def _started(slip, record, predicted, model):
@@ -43,6 +53,17 @@ def _started(slip, record, predicted, model):
     else:
         start = _speed(slip.run, record, predicted, model)
     return replace(slip, start=start) if abs(start) > NEAR[slip.fault] * slip.width else slip
+
+
+def _weighed(record, fault):
+    """Logarithm of the ratio that makes balls weigh what their material does, the median over kinds; 0 where
+    they do.
+    """
+    balls = [one for one in weights(record) if one.striker == (fault == "striker-mass")]
+    if not balls or not all(one.off for one in balls):
+        return 0.0
+    heavier = float(np.median([math.log(one.usual / one.given) for one in balls]))
+    return -heavier / 3.0 if fault == "bead-size" else heavier
 
 
 def _speed(run, record, predicted, model):
@@ -83,6 +104,25 @@ def _longer(record, run, predicted):
     lengths = [(_length(readings[g]), _length(model)) for g, model in predicted[run].items() if g in readings]
     ratios = [math.log(own / model) for own, model in lengths if own and model]
     return float(np.median(ratios)) if ratios else None
+
+
+def run_clocks(record: Record, predicted: Predicted) -> list[Slip]:
+    """Runs whose time runs otherwise than that of all others, as where one file was sampled at another rate:
+    those whose pulses are longer or shorter by a factor that the others' do not show.
+    """
+    seen = {run: _longer(record, run, predicted) for run in predicted}
+    longer = {run: own for run, own in seen.items() if own is not None}
+    if len(longer) < 2 or np.ptp(list(longer.values())) < STRETCHED:
+        return []
+    # Of two runs the one whose pulses are not as long as predicted.
+    usual = float(np.median(list(longer.values()))) if len(longer) > 2 else 0.0
+    far = {run: own - usual for run, own in longer.items() if STRETCHED < abs(own - usual) < FARTHEST}
+    given = {"alternatives": len(longer), "width": WIDTH["clock"], "step": 1e-3}
+    return [Slip("clock", partial(_one_clock, run), run, start=start, **given) for run, start in far.items()]
+
+
+def _one_clock(run, record, size):
+    return changes.clock(record, size, (run,))
 
 
 def _length(reading):

@@ -16,6 +16,8 @@ from sonicvacuum.discover.model.nuisances import WORDS
 ONLY_WITH = "the nominal model comes so near the data only with"
 # Stated errors from which it is said, and share of them that has to be gone with what is named.
 FAR, GONE = 5.0, 0.5
+# A contact that bears less than this share of the stated preload is free of it.
+BORNE = 0.2
 
 
 def told(forward: Forward, null: Fit, final: Fit) -> list[str]:
@@ -35,6 +37,28 @@ def told(forward: Forward, null: Fit, final: Fit) -> list[str]:
     if not left <= policy.GROSS * data(forward):
         return []
     return [f"{ONLY_WITH} {_moved(forward, k, float(nu[k]))}, {far:.2g} of its stated errors away"]
+
+
+def unpressed(forward: Forward, final: Fit) -> list[str]:
+    """That what is named takes a stated preload off a contact, one line; [] where it does not.
+
+    No effect makes a preload less than it is stated: a gap, however small, takes it off all contacts behind
+    it, and is then named where the chain was not pressed as stated.
+    """
+    batch = forward.experiment.batches[0]
+    nominal = forward.nominal(batch, final.nu[None])
+    stated = float(np.max(nominal.chain.static_force))
+    if not stated > 0.0:
+        return []
+    changed = final.hypothesis.change(final.u[None])(nominal, np.zeros(len(batch.runs), dtype=int))
+    bears = changed.chain.static_forces(forward.experiment.beads + 1)[1:].min(axis=1)
+    free = np.flatnonzero(bears < BORNE * stated)
+    if not len(free):
+        return []
+    return [
+        f"what is named takes the stated static_force_N of {stated:.3g} N off contact {free[0] + 1}: look "
+        "whether the chain was pressed by that much"
+    ]
 
 
 def _moved(forward, k, nu):
