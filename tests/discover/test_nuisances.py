@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 from made_records import block, made
 
+from sonicvacuum.discover import session
+from sonicvacuum.discover.faults import changes
 from sonicvacuum.discover.fit.wide import nominal
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Hypothesis
@@ -244,6 +246,31 @@ def test_what_is_taken_of_moduli_is_said(empty):
     assert "bearing-steel 5 %" in assumed(
         Record(unstated, empty.signals, "other"), [experiment(steel).batches[0].chain]
     )
+
+
+def test_a_static_force_has_an_error_where_there_is_one(empty):
+    chain = {**block((0.3, 0.9))["chain"], "static_force_N": 2.0}
+    pressed = Record(parse({**block((0.3, 0.9)), "chain": chain}), empty.signals, "pressed")
+    kinds = {one.kind: one.sigma for one in experiment(pressed).shared}
+    assert kinds["static-force"] == 0.05
+    assert "static-force" not in {one.kind for one in experiment(empty).shared}
+    assert "static force 5 %" in assumed(pressed, [b.chain for b in experiment(pressed).batches])
+    known = with_keys(pressed, tolerances={"static_force_rel": 0.0})
+    assert "static-force" not in {one.kind for one in experiment(known).shared}
+    assert "static force" not in assumed(known, [b.chain for b in experiment(known).batches])
+
+
+def test_materials_of_all_strikers_are_open_in_an_order_of_their_own():
+    """Where runs are exchanged their strikers are; what a slip is weighed in must stay as it is."""
+    given = block((0.3, 0.6, 0.9))
+    for run, material in zip(given["runs"], ("ptfe", "nylon", "delrin"), strict=True):
+        run["striker"] = {**run["striker"], "material": material}
+    record, _ = made(seed=5, given=given)
+    names = [one.of for one in experiment(record).shared if one.kind == "modulus"]
+    assert names == ["delrin", "nylon", "ptfe"]
+    turned = changes.runs_swapped(record, "v0", "v2")
+    assert [one.of for one in experiment(turned).shared if one.kind == "modulus"] == names
+    assert session.discover(turned).verdict.faults[0].fault == "runs-swapped"
 
 
 def wall_of(record: Record, name: str, given: dict | None, bead: str = "brass") -> Record:

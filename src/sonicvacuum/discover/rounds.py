@@ -244,9 +244,13 @@ def _lower(forward, null, found, threshold) -> Fit | None:
     """A lower nominal minimum from where the leading effect has left the nuisances; None where there is none.
 
     A nominal fit that has stopped short of its minimum by less than the scatter of χ² looks like noise, and
-    any effect, however weak, seems to gain what it has missed.
+    any effect, however weak, seems to gain what it has missed. One that leaves more may have done so where
+    beads are of several materials, whose moduli make up for each other in more than one way.
     """
-    if not found or found[0].gain <= threshold or wide.leaves_much(forward, null.objective):
+    if not found or found[0].gain <= threshold:
+        return None
+    alike = len({bead.surface.name for bead in forward.experiment.batches[0].chain.bodies.kinds}) == 1
+    if alike and wide.leaves_much(forward, null.objective):
         return None
     one = fit(forward, null.hypothesis, np.zeros((1, 0)), found[0].fit.nu[None])
     return one if one.objective < null.objective - policy.SAME_MINIMUM else None

@@ -176,11 +176,11 @@ def _taken_as_stated(found: Investigation, records: tuple[Record, ...]) -> list[
     """
     e, said = found.forward.experiment, []
     if found.named and e.record is not None:
-        said = [exact(e.record, e.shared), assumed(e.record, (b.chain for b in e.batches))]
-    if verdict.named_effects(found):
-        said += strained.told(found.forward, found.null, found.final)
-        said += strained.unpressed(found.forward, found.final)
-    return [*filter(None, said), *(line for one in records for line in copies(one))]
+        said = [exact(e.record, e.shared), assumed(e.record, [b.chain for b in e.batches])]
+    final = found.final if verdict.named_effects(found) else None
+    known = final is not None or not found.named
+    moved = strained.lines(found.forward, found.null, final) if known else []
+    return [*filter(None, said), *moved, *(line for one in records for line in copies(one))]
 
 
 def _doubts(found: Investigation, record: Record) -> list[str]:

@@ -86,6 +86,7 @@ class TolerancesBlock(_Block, kw_only=True):
     bead_mass_rel: NonNegative | None = None
     bead_diameter_rel: NonNegative | None = None
     coating_rel: NonNegative | None = None
+    static_force_rel: NonNegative | None = None
     striker_mass_rel: NonNegative | None = None
     speed_common_rel: NonNegative | None = None
     gain_common_rel: NonNegative | None = None

@@ -38,6 +38,7 @@ class Tolerances:
     bead_mass_rel: float | None = None
     bead_diameter_rel: float | None = None
     coating_rel: float | None = None
+    static_force_rel: float | None = None
     striker_mass_rel: float | None = None
     speed_common_rel: float | None = None
     gain_common_rel: float | None = None

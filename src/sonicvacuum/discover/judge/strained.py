@@ -20,9 +20,14 @@ FAR, GONE = 5.0, 0.5
 BORNE = 0.2
 
 
-def told(forward: Forward, null: Fit, final: Fit) -> list[str]:
+def lines(forward: Forward, null: Fit, final: Fit | None) -> list[str]:
+    """What is worth a look at the record: `told`, and `unpressed` where something is named, by `final`."""
+    return told(forward, null, final) + ([] if final is None else unpressed(forward, final))
+
+
+def told(forward: Forward, null: Fit, final: Fit | None) -> list[str]:
     """What the nominal model strains most, one line; [] where that is little, where it is strained beside the
-    named effects as well, and where that brings the model nowhere near.
+    named effects as well, and where that brings the model nowhere near. `final` is None where none is named.
 
     A nominal fit far from the data is held to what the record states; its last step is taken here, and
     simulated.
@@ -31,7 +36,7 @@ def told(forward: Forward, null: Fit, final: Fit) -> list[str]:
     nu = null.nu + np.linalg.lstsq(hessian[0], gradient[0], rcond=1e-12)[0]
     k = int(np.argmax(np.abs(nu)))
     far = abs(float(nu[k]))
-    if far < FAR or abs(float(final.nu[k])) > GONE * far:
+    if far < FAR or (final is not None and abs(float(final.nu[k])) > GONE * far):
         return []
     left = simulated(forward, null.hypothesis, null.u[None], nu[None])[0]
     if not left <= policy.GROSS * data(forward):

@@ -9,7 +9,7 @@ Gaussian prior is N(0, 1); an error of 0 means exact, and costs nothing. Baselin
 the readings, and are marginalised as noise (`slow`).
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -27,6 +27,8 @@ DEFAULTS = Tolerances(
     bead_mass_rel=0.0,
     bead_diameter_rel=0.0,
     coating_rel=0.0,
+    # A spring or a weight over a pulley is set rather than weighed, and no effect makes a preload less.
+    static_force_rel=0.05,
     striker_mass_rel=0.0,
     speed_common_rel=0.0,
     gain_common_rel=0.0,
@@ -41,6 +43,7 @@ WORDS = {
     "bead-mass": "mass of the beads",
     "bead-diameter": "diameter of the beads",
     "coating": "thickness of the coating",
+    "static-force": "static force on the chain",
     "striker-mass": "mass of the striker",
     "speed-common": "speed of the striker, common to all runs",
     "gain-common": "calibration common to all gauges",
@@ -52,8 +55,8 @@ class Shared:
     """One nuisance that all runs share.
 
     Attributes:
-        kind: "modulus", "bead-mass", "bead-diameter", "coating", "striker-mass", "speed-common",
-            "gain-common", "clock", "delay", "shared" or "law".
+        kind: "modulus", "bead-mass", "bead-diameter", "coating", "static-force", "striker-mass",
+            "speed-common", "gain-common", "clock", "delay", "shared" or "law".
         sigma: standard error: of the natural logarithm, of the clock's relative error, in s for delays; of a
             coefficient of the free-form law its prior width; 1 for an error that observables share, whose
             size stands with each of them.
@@ -109,6 +112,7 @@ CHANGES: dict[str, Callable] = {
     "bead-mass": _heavier,
     "bead-diameter": _larger,
     "coating": _thicker,
+    "static-force": lambda chain, _, ratio: replace(chain, static_force=chain.static_force * ratio),
     "striker-mass": lambda chain, _, ratio: replace(chain, striker_mass=chain.striker_mass * ratio),
     "speed-common": lambda chain, _, ratio: chain.struck_at(chain.speed * ratio),
     "law": _shaped,
@@ -193,21 +197,23 @@ class Layout:
         return [np.concatenate([modulus, speeds, others]) for speeds in own]
 
 
-def shared(record: Record, chain: Chain) -> tuple[Shared, ...]:
+def shared(record: Record, chains: Sequence[Chain]) -> tuple[Shared, ...]:
     """What the runs of a record share besides the beads' modulus and the gains; nothing that is exact.
 
-    `chain` are its nominal chains.
+    `chains` are its nominal chains: of each, strikers of one kind.
     """
-    given, default = record.tolerances, DEFAULTS
+    given, default, chain = record.tolerances, DEFAULTS, chains[0]
+    pressed = any(np.any(one.static_force > 0.0) for one in chains)
 
     def tolerance(name):
         stated = getattr(given, name)
         return getattr(default, name) if stated is None else stated
 
     found = [
-        *(Shared("modulus", sigma, name) for name, sigma in _moduli(record, chain).items()),
+        *(Shared("modulus", sigma, name) for name, sigma in _moduli(record, chains).items()),
         *(Shared(kind, tolerance(kind.replace("-", "_") + "_rel")) for kind in _BODIES),
         *(Shared("coating", tolerance("coating_rel")) for a in chain.actions if a.term == LAYER),
+        Shared("static-force", tolerance("static_force_rel") if pressed else 0.0),
         Shared("speed-common", tolerance("speed_common_rel")),
         Shared("gain-common", tolerance("gain_common_rel")),
         Shared("clock", record.clock_rel_sigma),
@@ -243,19 +249,31 @@ def exact(record: Record, given: tuple[Shared, ...]) -> str:
     return f"{', '.join(words)}: taken as exact, no tolerance being stated" if words else ""
 
 
-def assumed(record: Record, chains: Iterable[Chain]) -> str:
-    """How well the moduli of what touches in some chains are taken to be known where the record states no
-    error of them, in words; "" where it states all.
+def assumed(record: Record, chains: Sequence[Chain]) -> str:
+    """How well the moduli of what touches in some chains, and a static force on them, are taken to be known
+    where the record states no error of them, in words; "" where it states all.
     """
     names = dict.fromkeys(s.surface.name for chain in chains for s in chain.solids)
     unstated = [name for name in names if record.modulus_rel_sigma(name) is None]
     taken = [f"{name} {100.0 * record.taken_modulus_rel_sigma(name):g} %" for name in unstated]
-    return f"{', '.join(taken)}: errors of moduli taken so, none being stated" if taken else ""
+    said = [f"{', '.join(taken)}: errors of moduli taken so, none being stated"] if taken else []
+    force = any(np.any(one.static_force > 0.0) for one in chains)
+    if force and record.tolerances.static_force_rel is None:
+        said.append(
+            f"static force {100.0 * DEFAULTS.static_force_rel:g} %: its error taken so, none being stated"
+        )
+    return "; ".join(said)
 
 
-def _moduli(record, chain) -> dict[str, float]:
-    """Material → standard error of its modulus, for materials that touch, the first bead's left aside."""
-    surfaces = {s.surface.name: s.surface for s in chain.solids}
+def _moduli(record, chains) -> dict[str, float]:
+    """Material → standard error of its modulus, for materials that touch, the first bead's left aside.
+
+    Materials of some strikers only come last, by name: which chain is the first is no matter of theirs.
+    """
+    chain, many = chains[0], [{s.surface.name: s.surface for s in one.solids} for one in chains]
+    common = [name for name in many[0] if all(name in own for own in many)]
+    known = {name: surface for own in many for name, surface in own.items()}
+    surfaces = {name: known[name] for name in [*common, *sorted(known.keys() - set(common))]}
     cores = {s.core.name: s.core for s in chain.solids if s.core}
     first = chain.first.surface.name
     own = surfaces.pop(first)

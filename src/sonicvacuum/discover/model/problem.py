@@ -66,7 +66,7 @@ def _experiment(record, catalogue):
         prior_odds=odds,
         present=present,
         model_floor_rel=record.model_floor_rel,
-        shared=shared(record, parts[0].chain),
+        shared=shared(record, [part.chain for part in parts]),
         notes=_notes(record, runs),
     )
 
