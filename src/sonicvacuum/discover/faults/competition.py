@@ -55,6 +55,7 @@ from sonicvacuum.discover.policy import SAME_MINIMUM
 from sonicvacuum.discover.rounds import Investigation, investigate
 from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.records import Record
+from sonicvacuum.records.suspects import weights
 
 
 @dataclass(frozen=True)
@@ -218,7 +219,10 @@ class Search(Searching):
         """Whether an effect named moves data as some slip does."""
         if name == explanations.UNKNOWN:
             return False
-        return name in self._matching or bool(NUISANCES & acts_like(found, name))
+        like = acts_like(found, name)
+        # Contacts of balls of another size are stiffer or softer, as those of another modulus.
+        sized = "modulus" in like and any(ball.off for ball in weights(self.bench.record))
+        return name in self._matching or sized or bool(NUISANCES & like)
 
     def _instead(self, found: Investigation, ranked: list[Judged]) -> Investigation | None:
         """The investigation of the record with one slip more put right, where that explains it better."""

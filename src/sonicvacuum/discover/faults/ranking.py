@@ -22,7 +22,7 @@ from sonicvacuum.discover.faults.judged import (
 from sonicvacuum.discover.faults.judging import Judge
 from sonicvacuum.discover.faults.lines import drifts
 from sonicvacuum.discover.faults.slips import Slip, hypotheses
-from sonicvacuum.discover.faults.starts import FACTORS, run_clocks, with_starts
+from sonicvacuum.discover.faults.starts import FACTORS, run_clock, run_clocks, with_starts
 from sonicvacuum.discover.faults.table import FAULTS
 from sonicvacuum.discover.faults.timing import late_runs, time_zero
 from sonicvacuum.discover.faults.weights import ALIKE
@@ -105,9 +105,11 @@ class Ranking:
         return Model(self.bench, forward, found)
 
     def factors(self, slips: list[Slip]) -> list[Slip]:
-        """Of all slips of a record, the factors that were put right before, asked for once more."""
-        rough = {f.fault for f in self.findings if f.corrected and f.fault in FACTORS and not f.run}
-        return [replace(s, known=True) for s in slips if s.fault in rough]
+        """Factors that were put right before, asked for once more; `slips` are all of a record."""
+        rough = [f for f in self.findings if f.corrected and f.fault in FACTORS]
+        common = {f.fault for f in rough if not f.run}
+        again = [s for s in slips if s.fault in common] + [run_clock(f.run) for f in rough if f.run]
+        return [replace(s, known=True) for s in again]
 
     def ranked(self, model: Model, afar: bool = False) -> list[Judged]:
         """Slips that gain enough beside a model, fitted, the likeliest first; masses also `afar`."""

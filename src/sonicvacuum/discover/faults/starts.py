@@ -117,8 +117,13 @@ def run_clocks(record: Record, predicted: Predicted) -> list[Slip]:
     # Of two runs the one whose pulses are not as long as predicted.
     usual = float(np.median(list(longer.values()))) if len(longer) > 2 else 0.0
     far = {run: own - usual for run, own in longer.items() if STRETCHED < abs(own - usual) < FARTHEST}
-    given = {"alternatives": len(longer), "width": WIDTH["clock"], "step": 1e-3}
-    return [Slip("clock", partial(_one_clock, run), run, start=start, **given) for run, start in far.items()]
+    return [replace(run_clock(run, len(longer)), start=start) for run, start in far.items()]
+
+
+def run_clock(run: str, runs: int = 1) -> Slip:
+    """The slip that time of one run of so many is not as stated."""
+    change = partial(_one_clock, run)
+    return Slip("clock", change, run, alternatives=runs, width=WIDTH["clock"], step=1e-3)
 
 
 def _one_clock(run, record, size):
