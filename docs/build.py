@@ -58,9 +58,18 @@ def on_files(files, config):
 
 def on_page_markdown(markdown, page, config, files):
     """Links as they are on the site: to committed figures, whose guide is only named, to notebooks, and to
-    files of the repository, which stand two folders above the site.
+    files of the repository, which stand two folders above the site. Effects and ledger have pages there that
+    the repository has not.
     """
     for written, there in (
+        (
+            "[Effects](../src/sonicvacuum/effects) (one file each; `make docs` makes a page of them)",
+            "[Effects](effects.md)",
+        ),
+        (
+            "[Ledger](../workflow/resources/reference/ledger.csv) (a table; `make docs` makes a page of it)",
+            "[Ledger](ledger.md)",
+        ),
         ("[figures/README.md](../figures/README.md)", "`figures/README.md`"),
         ("[docs/example](example/README.md)", "`docs/example`"),
         ("](../figures/", "](figures/"),

@@ -19,8 +19,8 @@ UNCERTAIN = 5.0
 HARDLY_KNOWN, LONGER = 0.1, 30.0
 # SI unit → the one in which people read it, and its factor.
 _SHOWN = {"s": ("us", 1e6)}
-_TITLES = {"arrival": "peak at", "amplitude": "peak", "duration_half": "half width", "speed": "speed",
-           "width_half": "width"}  # fmt: skip
+_TITLES = {"arrival": "peak at", "amplitude": "peak", "duration_half": "width at half height",
+           "speed": "speed", "width_half": "width"}  # fmt: skip
 # Of template.yaml.
 TEMPLATE_TITLE = "One line that says what was measured"
 
