@@ -39,8 +39,8 @@ CAPTIONS = {
         Posterior probability below the truth (PIT) of the parameters of effects hidden and named: its
         cumulative distribution (ECDF) less the diagonal, of all parameters together (a) and of each effect's
         by a dashed line of its own (b), in units of the half width of the band. Grey: the band in which
-        correctly stated intervals stay in 95 % of studies, in (b) for all effects at once; orange: effects
-        that leave it. Above the line, stated values are too large; above on the left and below on the right,
+        correctly stated intervals stay in 95 % of studies, in (b) for all effects at once; orange: what
+        leaves it. Above the line, stated values are too large; above on the left and below on the right,
         intervals are too narrow.
     """),
     "baselines": style.paragraph("""
@@ -146,6 +146,7 @@ def accuracy(table: pandas.DataFrame) -> Figure:
             side.annotate(
                 words, (k, 0), (0, -18), ("data", "axes fraction"), "offset points", ha="center", va="top"
             )
+        side.annotate("d′", (0, 0), (-4, -7), "axes fraction", "offset points", ha="right", va="top")
         side.set_xlim(-0.5, max(len(designs), 1) - 0.5)
         bottom = min([0.4, *(table.exact_low.astype(float) - 0.05)])
         for one in (axes, side):
@@ -274,13 +275,18 @@ def _bars(axes, rows, rules):
     look = {"fmt": "none", "ecolor": "black", "lw": 0.8, "capsize": 1.8}
     axes.errorbar(value[known], known, xerr=bars[:, known], **look)
     for k, (share, count) in enumerate(zip(value, rows["count"], strict=True)):
-        # A few of some thousand are not none.
-        shown = f"{share:.1g}" if 0.0 < share < 1.0 else f"{share:.0f}"
-        text = "–" if np.isnan(share) else f"{shown} ({count:.0f})"
-        axes.text(163.0, k, text, ha="right", va="center", fontsize=6.5)
-    axes.set_xlim(0.0, 163.0)
+        text = "–" if np.isnan(share) else f"{_percent(share)} ({count:.0f})"
+        axes.text(172.0, k, text, ha="right", va="center", fontsize=6.5)
+    axes.set_xlim(0.0, 172.0)
     axes.spines["bottom"].set_bounds(0.0, 100.0)
     axes.set_xticks([0, 50, 100])
     # Rules without cases would shrink the axis of their panel.
     axes.set_ylim(len(rules) - 0.4, -0.6)
     axes.tick_params(axis="y", length=0)
+
+
+def _percent(share):
+    """With one decimal; a few of some thousand are not none."""
+    if share in (0.0, 100.0):
+        return f"{share:.0f}"
+    return f"{share:.1f}" if share >= 0.05 else f"{share:.1g}"

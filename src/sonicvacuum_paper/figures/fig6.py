@@ -76,6 +76,10 @@ def _inset(axes, table):
     inset, top = axes.inset_axes(INSET), 1.12 * weak.max()
     _panel(inset, table[table.model.isin(weak.index)], "-inset")
     inset.set(xlim=INSET_US, ylim=(-0.1 * top, top))
+    inset.set_xlabel("µs", fontsize=7, labelpad=1.0)
+    inset.annotate(
+        "N", (0, 1), (0, 2), "axes fraction", "offset points", fontsize=7, ha="center", va="bottom"
+    )
     inset.tick_params(labelsize=7)
 
 
