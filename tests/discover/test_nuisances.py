@@ -302,3 +302,14 @@ def test_beads_without_a_stated_error_are_known_to_a_twentieth_whatever_they_are
     content = wall_of(quiet, "glass", None, "stainless-steel").block
     unstated = msgspec.structs.replace(content, materials={})
     assert experiment(Record(unstated, quiet.signals, "other")).modulus_rel_sigma == 0.05
+
+
+def test_so_are_beads_of_every_material_of_a_pattern(quiet):
+    given = block((0.3, 0.9))
+    bead = given["chain"].pop("bead")
+    given["chain"]["pattern"] = [{**bead, "material": name} for name in ("delrin", "stainless-steel")]
+    record = Record(parse({**given, "materials": {}}), quiet.signals, "dimer")
+    assert (
+        record.taken_modulus_rel_sigma("delrin") == record.taken_modulus_rel_sigma("stainless-steel") == 0.05
+    )
+    assert record.taken_modulus_rel_sigma("bearing-steel") == 0.01

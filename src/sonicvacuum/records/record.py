@@ -192,7 +192,8 @@ class Record:
         stated = self.modulus_rel_sigma(name)
         if stated is not None:
             return stated
-        return MODULUS_REL_SIGMA if name == self.specimen.first.surface.name else modulus_rel_sigma(name)
+        beads = {bead.surface.name for bead in self.specimen.bodies.kinds}
+        return MODULUS_REL_SIGMA if name in beads else modulus_rel_sigma(name)
 
     @cached_property
     def gauges(self) -> tuple[Gauge, ...]:
