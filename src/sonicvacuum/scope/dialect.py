@@ -10,8 +10,6 @@ from sonicvacuum.files import InputError
 
 _POINT = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 _COMMA = re.compile(r"[-+]?(\d+(,\d+)?|,\d+)([eE][-+]?\d+)?")
-_INTEGER = re.compile(r"[-+]?\d+")
-_TAIL = re.compile(r"\d+([eE][-+]?\d+)?")
 # Digits in groups of three that nothing else can be: by blanks or apostrophes, by the mark that is not the
 # decimal one before a decimal mark, or by it more than once.
 _GROUPED = {
@@ -93,9 +91,14 @@ def is_like_number(cell: str) -> bool:
     return bool(_LIKE.fullmatch(cell))
 
 
+def last_lines(text: str) -> list[str]:
+    """The lines that a dialect is found from."""
+    return [line for line in text[-200 * LOOKED_AT :].split("\n")[-LOOKED_AT - 1 :] if line.strip()]
+
+
 def sniff(text: str, path) -> Dialect:
     """The dialect in which the last lines of a text hold most numbers; InputError where none does."""
-    lines = [line for line in text[-200 * LOOKED_AT :].split("\n")[-LOOKED_AT - 1 :] if line.strip()]
+    lines = last_lines(text)
     best, dialect = 0.0, None
     for delimiter in _CANDIDATES:
         for decimal in ".,":
@@ -108,7 +111,7 @@ def sniff(text: str, path) -> Dialect:
         raise InputError(
             f"{path}: the last lines hold no columns of numbers{last}; export the traces as a table"
         )
-    return _decided(dialect, lines, path)
+    return dialect
 
 
 def _score(dialect, lines):
@@ -124,29 +127,3 @@ def _score(dialect, lines):
     even = counts.count(usual[0][0]) / len(counts)
     # Blanks also stand within names and beside other separators.
     return sum(counts) / cells * even * (0.95 if dialect.delimiter is None else 1.0)
-
-
-def _decided(dialect, lines, path):
-    """Commas alone may be decimal marks: digits with leading zeros behind them give that away."""
-    if dialect != Dialect(",", "."):
-        return dialect
-    rows = [[c for c in dialect.cells(line) if c] for line in lines]
-    rows = [
-        r for r in rows if r and all(map(_INTEGER.fullmatch, r[::2])) and all(map(_TAIL.fullmatch, r[1::2]))
-    ]
-    if len(rows) < 0.6 * len(lines):
-        return dialect
-    tails = [c for r in rows for c in r[1::2]]
-    if not any(re.match(r"0\d|\d+[eE]", c) for c in tails):
-        return dialect
-    if max(map(len, rows)) <= 2:
-        return Dialect(";", ",")
-    raise commas(path)
-
-
-def commas(path) -> InputError:
-    """The refusal of a file in which commas are decimal marks and stand between columns as well."""
-    return InputError(
-        f"{path}: commas serve both as decimal marks and between columns, which cannot be told apart; export "
-        "with semicolons or tabs between the columns"
-    )

@@ -32,6 +32,8 @@ MEANINGS = {
              "channelnames", "labels", "waveformsource", "kanal", "ch", "multichannelsource"},
     "scale": {"verticalscale", "voltsdiv", "voltdiv", "vscale"},
 }  # fmt: skip
+# Rows above samples that only say where these begin.
+MARKER = re.compile(r"\W*((waveform|measured|raw) )?(data|values|daten|messwerte)\W*|\*+end.*", re.IGNORECASE)
 # Keys that mean other things too; another key of the same meaning overrules them.
 _VAGUE = {"start", "interval", "samples", "points", "size", "units", "unit", "labels", "channel", "channels",
           "ch", "resolution", "clock", "sampling", "rate", "dx", "t0", "starttime"}  # fmt: skip

@@ -4,7 +4,7 @@ import re
 from dataclasses import dataclass
 
 from sonicvacuum.scope.dialect import Dialect
-from sonicvacuum.scope.keys import is_key, meaning
+from sonicvacuum.scope.keys import MARKER, is_key, meaning
 from sonicvacuum.scope.table import Table
 from sonicvacuum.scope.units import Unit, quantity, unit_of
 
@@ -16,10 +16,6 @@ COUNTER = re.compile(
     r"(sequence|samples?|sample[ _-]?(no|nr|number)\.?|nr|no|index|idx|#|points?|n|i)\.?", re.I
 )
 COUNTS = re.compile(r"(sequence|samples?|index|points?|#|no\.?)", re.IGNORECASE)
-# Rows above samples that only say where these begin.
-_MARKER = re.compile(
-    r"\W*((waveform|measured|raw) )?(data|values|daten|messwerte)\W*|\*+end.*", re.IGNORECASE
-)
 # Rows above the samples in which names and units are looked for.
 LOOKED_AT = 6
 # Symbols of units that are as likely the letter of a channel.
@@ -149,7 +145,7 @@ def _only_letters(cells, table):
 
 def _row(table, k):
     """Header row k cut so that it has a word above most columns of samples; None where it has not."""
-    if all(_MARKER.fullmatch(c) for c in table.header[k] if c):
+    if all(MARKER.fullmatch(c) for c in table.header[k] if c):
         return None
     if _is_setting(table.header[k]) or not any(re.search(r"\w", c) for c in table.header[k]):
         return None

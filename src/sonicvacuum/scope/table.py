@@ -13,8 +13,8 @@ from itertools import pairwise
 import numpy as np
 
 from sonicvacuum.files import InputError
-from sonicvacuum.scope import numbers
-from sonicvacuum.scope.dialect import Dialect, commas, sniff
+from sonicvacuum.scope import commas, numbers
+from sonicvacuum.scope.dialect import Dialect, last_lines, sniff
 from sonicvacuum.scope.keys import is_key, keyed
 
 # Lines in a row that must look like samples where the table begins; header lines looked through at most.
@@ -98,7 +98,7 @@ def split(text: str, path) -> Table:
         InputError: where no columns of numbers are found, or a row has more cells than the table columns.
     """
     samples = _without_footer(text)
-    dialect = sniff(samples, path)
+    dialect = commas.settled(sniff(samples, path), samples, last_lines(samples), path)
     places = _places(samples, dialect, path)
     above, offset = _above(text, dialect, places, path)
     start = _rows(text[offset : offset + 200 * BESIDE].split("\n")[:BESIDE], dialect)
@@ -121,7 +121,7 @@ def _refuse_commas(header, rows, dialect, path):
     wide = [len(row) for row in cells if len(row) > len(names)]
     named = len(names) > 1 and not any(map(dialect.is_number, names))
     if named and len(wide) > 0.5 * len(cells) and not any("." in c for row in cells for c in row):
-        raise commas(path)
+        raise commas.both(path)
 
 
 def _without_footer(text):
