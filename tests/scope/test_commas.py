@@ -99,3 +99,41 @@ def test_whole_numbers_of_three_digits_are_columns(tmp_path):
     assert len(recording(tmp_path, "97,100,1002\n" + lines).channels) == 3
     with pytest.raises(InputError, match="one number with thousands apart or several whole numbers"):
         recording(tmp_path, lines)
+
+
+@pytest.mark.parametrize(("cell", "mark"), [(";", ","), ("\t", ","), (";", "."), ("\t", ".")])
+def test_marks_of_thousands_in_whole_numbers_are_refused(tmp_path, cell, mark):
+    """Whichever the mark is: it reads as one of decimals as well, and divides by a thousand what is large."""
+    times = [f"{k - 300:,}".replace(",", mark) for k in range(1500)]
+    text = f"Time [us]{cell}F [mN]\n" + "".join(f"{t}{cell}{k % 7}\n" for k, t in enumerate(times))
+    with pytest.raises(
+        InputError, match=rf"line 1303, column 1: '1{mark}001' may be .*; export without marks"
+    ):
+        recording(tmp_path, text)
+
+
+@pytest.mark.parametrize("peak", [1, 40])
+def test_a_few_points_in_whole_numbers_are_refused(tmp_path, peak):
+    counts = [str(k % 7) for k in range(200)]
+    counts[100 : 100 + peak] = [f"1.{234 + k}" for k in range(peak)]
+    text = "Time [us];F [mN]\n" + "".join(f"{k};{c}\n" for k, c in enumerate(counts))
+    with pytest.raises(InputError, match=r"line 102, column 2: '1\.234' may be .*; export without marks"):
+        recording(tmp_path, text)
+
+
+@SETTINGS
+@given(st.lists(st.integers(-9_999, 9_999), min_size=20, max_size=60), st.sampled_from(";\t"))
+def test_points_beside_decimal_commas_are_marks_of_thousands(tmp_path, counts, cell):
+    counts = [*counts, *range(20)]
+    times = [f"{k / 1000:.4f}".replace(".", ",") for k in range(len(counts))]
+    lines = [
+        f"{t}{cell}{v:,}".replace(",", ".").replace(".", ",", 1) for t, v in zip(times, counts, strict=True)
+    ]
+    (channel,) = recording(tmp_path, f"Zeit [ms]{cell}Kraft [N]\n" + "\n".join(lines) + "\n").channels
+    assert (list(channel.values), channel.interval_s) == (counts, 1e-6)
+
+
+def test_points_of_decimals_beside_decimal_commas_are_refused(tmp_path):
+    cells = [f"{k / 1e4:.4f}".replace(".", ",") + (";0.512" if 80 < k < 90 else ";0") for k in range(200)]
+    with pytest.raises(InputError, match=r"line 83, column 2: '0\.512' may be"):
+        recording(tmp_path, "Zeit [ms];Kraft [N]\n" + "\n".join(cells) + "\n")

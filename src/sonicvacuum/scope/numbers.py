@@ -192,7 +192,12 @@ def _column(series, dialect):
     texts = series.astype("string").str.strip().fillna("")
     plain = texts.str.replace(",", ".", n=1, regex=False) if dialect.decimal == "," else texts
     values = pd.to_numeric(plain, errors="coerce").to_numpy(dtype=float, na_value=np.nan)
-    cells, words = texts.to_numpy(dtype=object), {}
+    cells, words, thousands = texts.to_numpy(dtype=object), {}, False
+    if dialect.decimal == ",":
+        # A point beside decimal commas is none of decimals.
+        pointed = texts.str.contains(".", regex=False).to_numpy(dtype=bool)
+        values[pointed] = np.nan
+        thousands = all(dialect.is_one_group(c) or dialect.is_sample(c) for c in cells[pointed])
     for k in np.flatnonzero(~np.isfinite(values)):
         stands = stands_for(cells[k]) if cells[k] else np.nan
         whole = dialect.ungrouped(cells[k])
@@ -200,6 +205,8 @@ def _column(series, dialect):
             values[k] = stands
         elif whole != cells[k]:
             values[k] = float(whole.replace(",", "."))
+        elif thousands and dialect.is_one_group(cells[k]):
+            values[k] = float(cells[k].replace(".", ""))
         elif not dialect.is_number(cells[k]):
             words[int(k)] = cells[k]
     strange = none.copy()
@@ -215,37 +222,37 @@ def _grouped(values, strange, words, dialect, place, lines, path):
     others = values[np.isfinite(values)]
     whole = bool((others == np.round(others)).all())
     small = bool((np.abs(others) < 1000.0).all())
-    if all(dialect.is_one_group(words[k]) for k in rows) and (dialect.decimal == "," or not whole or small):
+    if all(dialect.is_one_group(words[k]) for k in rows) and (not whole or small):
         values = values.copy()
         for k in rows:
             values[k] = float(words[k].replace(",", "").replace(".", ""))
         return values
     row = next((k for k in rows if not dialect.is_one_group(words[k])), rows[0])
-    raise _marks(words[row], dialect, place, row, lines, path)
+    raise _marks(words[row], f"elsewhere they follow a {dialect.decimal!r}", place, row, lines, path)
 
 
 def _refuse_marks(values, held, dialect, place, lines, path):
-    """Refuse whole numbers below a thousand beside such as 8.012, which may be thousands as well."""
-    if dialect.decimal != ".":
-        return
+    """Refuse whole numbers below a thousand beside such as 8.012 (8,012), which may be thousands as well."""
     found = values[held & np.isfinite(values)]
     broken = found != np.round(found)
-    if broken.sum() < 3 or (np.abs(found) >= 1000.0).any() or (np.abs(found[broken]) < 1.0).any():
+    if not broken.any() or (np.abs(found) >= 1000.0).any() or (np.abs(found[broken]) < 1.0).any():
         return
     if broken.all() or (np.abs(found[broken] * 1e3 % 1.0 - 0.5) < 0.5 - 1e-6).any():
         return
     rows = np.flatnonzero(held & np.isfinite(values))
     cells = [dialect.cells(lines.text(row)) for row in rows]
     texts = np.array([row[place] if place < len(row) else "" for row in cells])
-    grouped = [bool(re.fullmatch(r"[-+]?[1-9]\d{0,2}\.\d{3}", t)) for t in texts if "." in t]
+    mark = dialect.decimal
+    grouped = [bool(re.fullmatch(rf"[-+]?[1-9]\d{{0,2}}\{mark}\d{{3}}", t)) for t in texts if mark in t]
     if all(grouped) and len(grouped) < len(texts):
-        raise _marks(str(texts[broken][0]), dialect, place, int(rows[broken][0]), lines, path)
+        cell, why = str(texts[broken][0]), "other cells of the column are whole"
+        raise _marks(cell, why, place, int(rows[broken][0]), lines, path)
 
 
-def _marks(cell, dialect, place, row, lines, path):
+def _marks(cell, why, place, row, lines, path):
     return InputError(
         f"{path}: {lines.where(row)}, column {place + 1}: {cell!r} may be a number with thousands apart or "
-        f"one with decimals (elsewhere they follow a {dialect.decimal!r}); export without marks of thousands"
+        f"one with decimals ({why}); export without marks of thousands"
     )
 
 

@@ -211,7 +211,7 @@ def _fits(cells, places, dialect):
     return (
         len(held) >= 1
         and not (places[0] == 1 and is_key(cells[0]))
-        and all(not c or dialect.is_sample(c) for c in held)
+        and all(not c or dialect.is_sample(c) or dialect.is_one_group(c) for c in held)
         and any(dialect.is_number(c) for c in held)
         and len(held) >= min(len(places), 2)
     )
