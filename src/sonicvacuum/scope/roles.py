@@ -64,8 +64,41 @@ def _roles(found, table):
             role = "time"
         result.append(replace(column, role=role))
     if len(result) > 1 and all(c.role == "value" for c in result):
-        return _by_numbers(result, table)
+        result = _by_numbers(result, table)
+    return _with_twins(result, table)
+
+
+def _with_twins(found, table):
+    """Also times further on that are called otherwise: columns before values that rise evenly.
+
+    They are in a unit of time, or labelled as the first time but for a number or a letter: `t1,F1,t2,F2`.
+    """
+    result, first = list(found), next((c for c in found if c.role == "time"), None)
+    for k, column in enumerate(found[:-1]):
+        timed = column.unit is not None and column.unit.base == "s"
+        alike = first and column.unit == first.unit and are_twins(first.name, column.name)
+        # What stands beside times or behind counts alone is no trace of them, but may be the first times.
+        apart = k > 1 or (k == 1 and found[0].role == "counter" and first is None)
+        before = found[k + 1].role == "value" and (first is None or result[k - 1].role == "value")
+        if column.role == "value" and (timed or alike) and apart and before:
+            values = table.columns[column.place]
+            # Times of a shorter trace end before the others.
+            held = np.flatnonzero(np.isfinite(values))
+            if len(held) and even(values[: held[-1] + 1]):
+                result[k] = replace(column, role="time")
+                first = first or result[k]
     return result
+
+
+def are_twins(one: str, other: str) -> bool:
+    """Whether two labels differ by nothing but one number or single letter, as `t1`, `t2` or `x`, `x.1`."""
+    parts = [re.findall(r"\d+|[^\W\d_]+", name.lower()) for name in (one, other)]
+    if len(parts[1]) == len(parts[0]) + 1:
+        parts[0].append("0")
+    if len(parts[0]) != len(parts[1]):
+        return False
+    differ = [pair for pair in zip(*parts, strict=True) if pair[0] != pair[1]]
+    return len(differ) == 1 and all(p.isdigit() or len(p) == 1 for p in differ[0])
 
 
 def _by_numbers(found, table):
