@@ -50,3 +50,79 @@ def test_what_does_not_rise_is_no_time(tmp_path, names, seed):
     found = recording(tmp_path, f"Time (s),{','.join(names)}\n" + rows(TIMES, *columns, form="{:.9g}"))
     assert [c.name for c in found.channels] == names
     assert [c.interval_s for c in found.channels] == [pytest.approx(1e-6, rel=1e-6)] * 3
+
+
+LABELS = [
+    ("micros", 1e-6), ("Time (micros)", 1e-6), ("Time (millis)", 1e-3), ("Zeit (Mikrosekunden)", 1e-6),
+    ("Time (mus)", 1e-6), ("Time (\\mus)", 1e-6), ("Time ($\\mu$s)", 1e-6), ("Time (u s)", 1e-6),
+    ("Time (us.)", 1e-6), ("Time (Sec.)", 1.0), ("Time (10^-6 s)", 1e-6), ("Time (E-6 s)", 1e-6),
+    ("Time (1e-6 s)", 1e-6), ("Time us", 1e-6), ("Time: us", 1e-6), ("Time - us", 1e-6), ("Time|us", 1e-6),
+    ("Time {us}", 1e-6), ("Time.us", 1e-6), ("t1 us", 1e-6), ("Time (us rel)", 1e-6), ("Time (æs)", 1e-6),
+    ("Time (ms since trigger)", 1e-3), ("Время (мк\u0441)", 1e-6), ("時間 (ミリ秒)", 1e-3),
+    ("Time (秒)", 1.0),
+]  # fmt: skip
+# What says of what kind or whose the times are, not in which unit.
+REMARKS = ["relative", "CH1", "A", "Run 2", "local", "since trigger", "rel.", "1"]
+
+
+@pytest.mark.parametrize(("label", "factor"), LABELS)
+def test_units_of_time_behind_any_mark(tmp_path, label, factor):
+    (channel,) = recording(tmp_path, f"{label},CH1 (V)\n" + rows(TIMES / factor, PULSE)).channels
+    assert (channel.start_s, channel.interval_s) == (pytest.approx(-1e-4), pytest.approx(1e-6, rel=1e-6))
+    assert channel.notes == ()
+
+
+@pytest.mark.parametrize("label", ["CH1: mV", "CH1 - mV", "CH1|mV", "CH1 {mV}", "CH1 mV"])
+def test_units_of_channels_behind_any_mark(tmp_path, label):
+    (channel,) = recording(tmp_path, f"Time (s),{label}\n" + rows(TIMES, 1e3 * PULSE)).channels
+    assert (channel.name, channel.unit) == ("CH1", "V")
+    assert channel.values == pytest.approx(PULSE, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    "label", ["Channel A", "Gauge N", "CH1 min", "Side - A", "Front amp", "CH1.s", "CH1 s"]
+)
+def test_names_that_end_like_a_unit(tmp_path, label):
+    (channel,) = recording(tmp_path, f"Time (s),{label}\n" + rows(TIMES, PULSE)).channels
+    assert (channel.name, channel.unit) == (label, "")
+
+
+UNKNOWN = [
+    ("Time (?s)", "?s"), ("Time (MS)", "MS"), ("Time (h)", "h"), ("Time (jiffies)", "jiffies"),
+    ("Time: furlongs", "furlongs"), ("t1 [ticks]", "ticks"), ("Time {xs}", "xs"), ("Time (2 xs)", "2 xs"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("label", "unit"), UNKNOWN)
+def test_a_unit_of_time_that_is_not_known_is_no_second(tmp_path, label, unit):
+    text = f"{label},CH1 (V)\n" + rows(3.0 * TIMES, PULSE)
+    (channel,) = recording(tmp_path, text).channels
+    said = f"No time: the unit of time, {unit!r}, is not known; give --interval."
+    assert (channel.interval_s, channel.notes) == (None, (said,))
+    (channel,) = recording(tmp_path, "Sample Interval,3e-06\n" + text.replace("(MS)", "(xs)")).channels
+    assert channel.interval_s == pytest.approx(3e-6)
+
+
+@pytest.mark.parametrize("count", ["samples", "ticks", "pts", "Points", "n"])
+def test_counts_are_no_times(tmp_path, count):
+    text = f"Time ({count}),CH1 (V)\n" + rows(np.arange(200) - 100.0, PULSE)
+    (channel,) = recording(tmp_path, text).channels
+    assert channel.interval_s is None and "give --interval" in channel.notes[0]
+    (channel,) = recording(tmp_path, "Sample Rate,500 kHz\n" + text).channels
+    assert channel.interval_s == 2e-6
+
+
+@pytest.mark.parametrize("remark", REMARKS)
+def test_a_remark_is_no_unit_of_time(tmp_path, remark):
+    (channel,) = recording(tmp_path, f"Time ({remark}),CH1 (V)\n" + rows(TIMES, PULSE)).channels
+    assert channel.interval_s == pytest.approx(1e-6, rel=1e-6)
+    assert channel.notes == ("The unit of time is not given; s assumed.",)
+
+
+@pytest.mark.parametrize(
+    "label", ["Time (UTC+1)", "Time (HH:MM:SS)", "Time (ms)", "Time (CET)", "Time (Berlin)"]
+)
+def test_times_of_day_are_seconds_whatever_is_beside(tmp_path, label):
+    clock = [f"12:00:00.{k * 2:06d}" for k in range(200)]
+    (channel,) = recording(tmp_path, f"{label},CH1 (V)\n" + rows(clock, PULSE)).channels
+    assert (channel.interval_s, channel.notes) == (pytest.approx(2e-6), ())

@@ -24,6 +24,7 @@ _UNIT_AT_END = (
     re.compile(r"(.*?)\s*\(([^()]*(?:\([^()]*\))?[^()]*)\)\s*$"),
     re.compile(r"(.*?)\s*\[([^\[\]]*)\]\s*$"),
     re.compile(r"(.*?)\s*<([^<>]*)>\s*$"),
+    re.compile(r"(.*?)\s*\{([^{}]*)\}\s*$"),
     re.compile(r"(.*?)\s*\bin\s+(\S+)\s*$"),
     # Behind a lower dash a single letter is a name, but for those that time, volts and newtons mostly bear.
     re.compile(r"(.*\w)(?:,\s*|_(?=[sVN]$|\S\S))(\S+)\s*$"),
@@ -31,6 +32,18 @@ _UNIT_AT_END = (
     re.compile(r"(.*?)\s*/\s*(\S+)\s*$"),
     re.compile(r"(CH\d+)(V|mV|A)\s*$"),
 )
+# Marks that stand in front of a unit as well as of anything else; a blank and a point before those of times.
+_BEHIND = re.compile(r"(.*?\S)(\s*[:|]\s*|\s+-\s+|\s+|\.)(\S+)\s*$")
+_SYMBOL = re.compile("(?:[numkM]|\u00b5|\u03bc)(?:V|N|Pa|Hz)")
+_NUMBERED = re.compile(r"[ _.-]?(\d+|(?<=[ _.-])[a-z])$", re.IGNORECASE)
+# What else stands in brackets behind a time: of what kind it is, since when it counts, and whose it is.
+_REMARK = re.compile(
+    r"rel\.?|relativ(e|es)?|abs\.?|absolut(e)?|elapsed|local|utc.*|gmt.*|ce?s?t|(since|from|after|seit|ab)\b.*"
+    r"|h+:m+.*|x|(x.?)?axis|trigger.*|start.*|.*\b(time|zeit)\b.*|[^\W\d_]+[ _.-]?\d+|(?-i:[A-Z])|[\W\d]*",
+    re.IGNORECASE,
+)
+# Counts of samples or of the ticks of a clock.
+TICKS = re.compile(r"(samples?|ticks?|pts|points?|counts?|cycles|scans?|index|idx|n)\.?", re.IGNORECASE)
 _BRACKETS = re.compile(r".*[(\[<]([^()\[\]<>]+)[)\]>]\s*$")
 
 
@@ -42,12 +55,54 @@ def split_unit(label: str) -> tuple[str, Unit | None]:
         unit = unit_of(found.group(2)) if found else None
         if unit:
             return found.group(1).strip(), unit
+    name, unit = _behind(label)
+    if unit:
+        return name, unit
     # Times may be counted in so many seconds; with other units that may as well be a range.
     found = _BRACKETS.match(label)
+    words = found.group(1).split() if found else []
+    if (
+        len(words) > 1
+        and _is_time_word(label[: found.start(1) - 1])
+        and _REMARK.fullmatch(" ".join(words[1:]))
+    ):
+        unit = unit_of(words[0])
+        if unit and unit.base == "s":
+            return label[: found.start(1) - 1].strip(), unit
     scaled = quantity(found.group(1)) if found else None
     if scaled and scaled[1] and scaled[1].base == "s" and scaled[0] > 0.0:
         return label[: found.start(1) - 1].strip(), Unit("s", scaled[0] * scaled[1].factor)
     return label, None
+
+
+def _behind(label):
+    """Name and unit parted by a mark that may part anything, as in `Time: us`, `CH1 - mV`, `Time us`."""
+    found = _BEHIND.match(label)
+    unit = unit_of(found.group(3)) if found else None
+    if not unit:
+        return label, None
+    name, mark, text = found.groups()
+    if unit.base == "s":
+        sure = _is_time_word(name)
+    else:
+        sure = (
+            bool(_SYMBOL.fullmatch(text))
+            if not mark.strip()
+            else mark != "." and not _LETTERS.fullmatch(text)
+        )
+    return (name.strip(), unit) if sure else (label, None)
+
+
+def _is_time_word(name):
+    return bool(TIME.fullmatch(_NUMBERED.sub("", name.strip())))
+
+
+def unknown_time_unit(label: str) -> str:
+    """What stands where the unit of a time would and is none that is known, "" where nothing does."""
+    found = re.search(r"[(\[<{]([^()\[\]<>{}]+)[)\]>}]\s*$", label.strip().strip('"'))
+    found = found or re.match(r".*?\S(?:\s*[:|]\s*|\s+-\s+)([^:|]+)$", label.strip().strip('"'))
+    text = found.group(1).strip() if found else ""
+    return "" if "?" not in text and _REMARK.fullmatch(text) else text
 
 
 def unknown_unit(label: str) -> str:

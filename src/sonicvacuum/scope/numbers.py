@@ -39,11 +39,13 @@ class Samples:
         columns: place of the column → (S,) numbers; NaN lost, ±inf over range.
         breaks: row of the first sample behind other lines → these lines, without blank ones.
         notes: what was left out, in whole sentences.
+        clocks: places of columns of times of day, which are seconds.
     """
 
     columns: dict[int, np.ndarray]
     breaks: dict[int, list[str]]
     notes: tuple[str, ...]
+    clocks: frozenset[int] = frozenset()
 
 
 class _Lines:
@@ -81,9 +83,8 @@ def read(body: str, dialect: Dialect, places: list[int], path, width: int, above
     for j, k in enumerate(places):
         columns[k], strange[j], words[k] = _column(frame[k], dialect)
     number = ~np.isnan(np.array([columns[k] for k in places])).all(axis=0)
-    for k in range(places[0]):
-        times = clock(frame[k])
-        columns |= {k: times} if times is not None else {}
+    clocks = {k: times for k in range(places[0]) if (times := clock(frame[k])) is not None}
+    columns |= clocks
     left = frame[[k for k in range(places[0]) if k not in columns]].notna().any(axis=1).to_numpy()
     # A word in place of the first number, as of the time, begins a row of another kind.
     no_sample = strange.any(axis=0) & ~number | strange[0]
@@ -95,7 +96,7 @@ def read(body: str, dialect: Dialect, places: list[int], path, width: int, above
         columns[k] = _grouped(columns[k], strange[j] & ~foreign, words[k], dialect, k, lines, path)
         _refuse_marks(columns[k], ~foreign, dialect, k, lines, path)
     kept, breaks, said = _cut(columns, foreign, lines)
-    return Samples(kept, breaks, (*notes, *said))
+    return Samples(kept, breaks, (*notes, *said), frozenset(clocks))
 
 
 def _frame(body, dialect, width, path):

@@ -94,7 +94,7 @@ def _base(clock, column, columns, kept, keys, place) -> TimeBase:
         clock.unit is None and roles.counts(times) and keys.values.get("interval")
     ):
         return _shifted(from_header(keys, place, column.place), kept)
-    return from_column(times[kept], clock.unit, keys, place, column.place)
+    return from_column(times[kept], clock.unit, keys, place, column.place, clock.said)
 
 
 def _shifted(base, kept):

@@ -5,7 +5,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sonicvacuum.scope.labels import COUNTER, COUNTS, TIME, labels, split_unit, unknown_unit
+from sonicvacuum.scope.labels import (
+    COUNTER,
+    COUNTS,
+    TICKS,
+    TIME,
+    labels,
+    split_unit,
+    unknown_time_unit,
+    unknown_unit,
+)
 from sonicvacuum.scope.table import Table
 from sonicvacuum.scope.units import Unit, spelled, unit_of
 
@@ -43,7 +52,18 @@ def columns(table: Table) -> tuple[list[Column], list[list[str]]]:
         unit = unit_of(below) or unit or spelled(name)
         odd = "" if unit else unknown_unit(said.name(k)) or _unread(below) or said.stray(k)
         found.append((Column(k, "value", name, unit, odd), below))
-    return _roles(found, table), said.rest
+    return [_timed(c, said.name(c.place), table) for c in _roles(found, table)], said.rest
+
+
+def _timed(column, label, table):
+    """A column of times with what its label holds in place of a unit, or a counter where that is samples."""
+    if column.role == "time" and column.place in table.clocks:
+        return replace(column, unit=Unit("s"), said="")
+    if column.role != "time" or column.unit is not None:
+        return column
+    said = unknown_time_unit(label)
+    one_each = (np.diff(table.columns[column.place]) == 1.0).mean() > 0.9
+    return replace(column, role="counter" if TICKS.fullmatch(said) and one_each else "time", said=said)
 
 
 def _unread(text):

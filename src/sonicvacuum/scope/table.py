@@ -38,6 +38,7 @@ class Table:
         columns: place of the column → (S,) numbers; NaN lost, ±inf over range.
         breaks: row of the first sample behind lines between the samples → these lines.
         notes: what was left out, in whole sentences.
+        clocks: places of columns of times of day, which are seconds.
     """
 
     dialect: Dialect
@@ -47,6 +48,7 @@ class Table:
     columns: dict[int, np.ndarray]
     breaks: dict[int, list[str]]
     notes: tuple[str, ...] = ()
+    clocks: frozenset[int] = frozenset()
 
     @property
     def places(self) -> list[int]:
@@ -109,7 +111,7 @@ def split(text: str, path) -> Table:
     _refuse_commas(header, start, dialect, path)
     found = numbers.read(text[offset:], dialect, places, path, width, text.count("\n", 0, offset))
     rows, raw = [c for _, c in header], [r for r, _ in header]
-    return Table(dialect, rows, raw, beside, found.columns, found.breaks, found.notes)
+    return Table(dialect, rows, raw, beside, found.columns, found.breaks, found.notes, found.clocks)
 
 
 def _refuse_commas(header, rows, dialect, path):

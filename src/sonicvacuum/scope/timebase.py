@@ -79,9 +79,9 @@ def from_header(
 
 
 def from_column(
-    times: np.ndarray, label: Unit | None, keys: Keys, place: int = 0, column: int = 0
+    times: np.ndarray, label: Unit | None, keys: Keys, place: int = 0, column: int = 0, odd: str = ""
 ) -> TimeBase:
-    """Time base of a column of times, one shot."""
+    """Time base of a column of times, one shot, whose label may hold an odd text in place of a unit."""
     times, notes = _filled(times)
     if times is None:
         return _headers(keys, place, column, "the column of times has gaps")
@@ -96,6 +96,9 @@ def from_column(
     if not slope > 0.0:
         return _headers(keys, place, column, "the times do not rise")
     factor, said = _factor(slope, label, declared, keys)
+    if factor is None and odd:
+        return _headers(keys, place, column, f"the unit of time, {odd!r}, is not known")
+    factor = factor or 1.0
     interval, start, notes = tidy(slope * factor), tidy(begin * factor), [*notes, *said]
     if declared and rounded and not uneven and abs(declared / interval - 1.0) < max(FINER, 3.0 * rough):
         interval, start = declared, tidy(float(times[0]) * factor)
@@ -170,7 +173,7 @@ def _last_digit(times):
 
 
 def _factor(slope, label, declared, keys):
-    """Seconds in one unit of the column, and remarks on contradictions."""
+    """Seconds in one unit of the column (None: nothing tells them), and remarks on contradictions."""
     header = next((u for u in map(unit_of, keys.texts("time unit")) if u and u.base == "s"), None)
     label = label if label and label.base == "s" else None
     votes = {}
@@ -183,7 +186,7 @@ def _factor(slope, label, declared, keys):
         if told:
             votes[told] = votes.get(told, 0) + 1
     if not votes:
-        return 1.0, ["The unit of time is not given; s assumed."]
+        return None, ["The unit of time is not given; s assumed."]
     most = max(votes.values())
     order = [label and label.factor, told, header and header.factor]
     factor = next(f for f in order if f and votes[f] == most)

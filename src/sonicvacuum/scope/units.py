@@ -13,7 +13,15 @@ from sonicvacuum.files import InputError
 # Standard acceleration of free fall, exact (3rd CGPM, 1901), the unit g of accelerometers.
 STANDARD_GRAVITY = 9.80665
 _PREFIX = {"p": 1e-12, "n": 1e-9, "u": 1e-6, "m": 1e-3, "c": 1e-2, "k": 1e3, "M": 1e6, "G": 1e9}
-_LONG_PREFIX = {"pico": 1e-12, "nano": 1e-9, "micro": 1e-6, "milli": 1e-3, "kilo": 1e3, "mega": 1e6}
+_LONG_PREFIX = {
+    "pico": 1e-12,
+    "nano": 1e-9,
+    "micro": 1e-6,
+    "mikro": 1e-6,
+    "milli": 1e-3,
+    "kilo": 1e3,
+    "mega": 1e6,
+}
 # Symbol → base unit; those that take prefixes.
 _SYMBOLS = {
     "V": "V", "A": "A", "N": "N", "Pa": "Pa", "s": "s", "m": "m", "m/s": "m/s", "m/s^2": "m/s^2", "g": "g",
@@ -31,6 +39,11 @@ _WHOLE = {"S": ("s", 1.0), "kg": ("kg", 1.0), "1/s": ("Hz", 1.0), "sps": ("Hz", 
 _WHOLE |= {"daN": ("N", 10.0), "kgf": ("N", STANDARD_GRAVITY), "kp": ("N", STANDARD_GRAVITY)}
 _WHOLE |= {"lbf": ("N", 0.45359237 * STANDARD_GRAVITY), "Kg": ("kg", 1.0)}
 _WHOLE |= {"%": ("%", 1.0), "bar": ("Pa", 1e5), "dB": ("dB", 1.0), "deg": ("deg", 1.0), "min": ("s", 60.0)}
+# Times in other scripts (Cyrillic, Chinese and Japanese), and as programs for microcontrollers call them.
+_WHOLE |= {"\u0441": ("s", 1.0), "м\u0441": ("s", 1e-3), "мк\u0441": ("s", 1e-6), "н\u0441": ("s", 1e-9)}
+_WHOLE |= {"秒": ("s", 1.0), "毫秒": ("s", 1e-3), "微秒": ("s", 1e-6), "u秒": ("s", 1e-6), "m秒": ("s", 1e-3)}
+_WHOLE |= {"ミリ秒": ("s", 1e-3), "マイクロ秒": ("s", 1e-6), "mus": ("s", 1e-6), "u s": ("s", 1e-6)}
+_BARE = {"millis": 1e-3, "micros": 1e-6, "mikros": 1e-6, "nanos": 1e-9}
 # Prefixes that recorders write in another case: K for kilo before these, S for seconds behind small ones.
 _CAPITAL_K = re.compile(r"K(?=V$|N$|Pa$|Hz$|Sa?/s$|Ohm$)")
 _SECONDS = re.compile(r"([munp])S")
@@ -38,8 +51,8 @@ _THOUSANDS = re.compile(r"^[-+]?\d{1,3}(?:[ \u00a0\u202f]\d{3})+(?![\d.])")
 # Samples a second, however they are written.
 _SAMPLES = re.compile(r"\s*(?:samples?|sa|s)\s*/\s*(?:s|sec|seconds?)|\s*sps", re.IGNORECASE)
 _NUMBER = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?"
-# The micro sign in its two code points and as wrong decoding leaves it (UTF-8 and GBK read as Latin-1).
-_MICRO = re.compile("Âµ|Î¼|¦Ì|µ|μ|�(?=[sVANmg]\\b)")
+# The micro sign in its two code points and as wrong decoding leaves it (UTF-8, GBK and DOS read as Latin-1).
+_MICRO = re.compile("Âµ|Î¼|¦Ì|µ|μ|[�æ](?=[sVANmg]\\b)")
 
 
 @dataclass(frozen=True)
@@ -69,6 +82,8 @@ def _plain(text):
     """Brackets off, one spelling of micro, of squares and of products with s."""
     text = _MICRO.sub("u", text.strip().strip('"').strip())
     text = re.sub(r"^[\[({<](.*)[\])}>]$", r"\1", text).strip()
+    text = re.sub(r"[$\\]", "", text)
+    text = text[:-1] if re.search(r"\w\w\.$", text) else text
     rate = re.fullmatch(rf"([kKMG]?)({_SAMPLES.pattern})", text, re.IGNORECASE)
     if rate and rate.group(1) != "m":
         text = f"{rate.group(1)}Sa/s"
@@ -81,6 +96,8 @@ def _plain(text):
 def spelled(word: str) -> Unit | None:
     """The unit that a word such as `Second`, `Volts` or `millivolt` is; None for anything else."""
     word = word.lower()
+    if word in _BARE:
+        return Unit("s", _BARE[word])
     for prefix, factor in ({"": 1.0} | _LONG_PREFIX | {"m": 1e-3, "u": 1e-6, "n": 1e-9, "k": 1e3}).items():
         if word.startswith(prefix):
             rest = word[len(prefix) :]
@@ -99,6 +116,7 @@ def quantity(text: str, decimal: str = ".") -> tuple[float, Unit | None] | None:
     text = re.sub(
         r"^([-+]?\d{1,3})((?:[ \u00a0\u202f]\d{3})+)(?![\d.])", lambda m: re.sub(r"\s", "", m[0]), text
     )
+    text = re.sub(r"^(?:10\s*\^\s*|E(?=[-+]))([-+]?\d+)", r"1e\1", text)
     found = re.match(rf"({_NUMBER})\s*(.*)$", text)
     if not found:
         return None
