@@ -126,3 +126,37 @@ def test_times_of_day_are_seconds_whatever_is_beside(tmp_path, label):
     clock = [f"12:00:00.{k * 2:06d}" for k in range(200)]
     (channel,) = recording(tmp_path, f"{label},CH1 (V)\n" + rows(clock, PULSE)).channels
     assert (channel.interval_s, channel.notes) == (pytest.approx(2e-6), ())
+
+
+def test_times_that_run_backwards_are_none(tmp_path):
+    order = np.arange(200)
+    order[60:64] = order[60:64][::-1]
+    for head in ("", "Sample Interval,1e-06\n"):
+        text = f"{head}Time (s),CH1 (V)\n" + rows(TIMES[order], PULSE, form="{:.7f}")
+        (channel,) = recording(tmp_path, text).channels
+        said = "No time: the times run backwards behind sample 61, from -3.7e-05 to -3.8e-05; put the rows"
+        assert channel.interval_s is None and channel.notes[0].startswith(said)
+    (channel,) = recording(tmp_path, "Time (s),CH1 (V)\n" + rows(TIMES[::-1], PULSE, form="{:.7f}")).channels
+    assert channel.interval_s is None
+
+
+@pytest.mark.parametrize("head", ["", "Sampling interval,1ms\n"])
+def test_fractions_that_start_again_each_second_are_no_times(tmp_path, head):
+    lines = "".join(f"{k + 1},2016/10/05 13:31:4{k // 80},{k % 80},{v:.4f}\n" for k, v in enumerate(PULSE))
+    text = f"{head}Number,Date&Time,ms,CH1\nNO.,Time,ms,V\n" + lines
+    (channel,) = recording(tmp_path, text).channels
+    assert channel.interval_s == (1e-3 if head else None)
+    assert any("he times run backwards behind sample 80, from 79 to 0" in n for n in channel.notes)
+    assert any("start and interval are the header's" in n for n in channel.notes) == bool(head)
+
+
+@SETTINGS
+@given(st.integers(0, 2**32 - 1), st.integers(1, 8))
+def test_rows_in_any_wrong_order_tell_no_time(tmp_path, seed, swaps):
+    random, order = np.random.default_rng(seed), np.arange(200)
+    for k in random.integers(0, 190, swaps):
+        order[[k, k + 7]] = order[[k + 7, k]]
+    if (np.diff(order) > 0).all():
+        return
+    text = "Time (s),CH1 (V)\n" + rows(TIMES[order], PULSE, form="{:.7f}")
+    assert all(c.interval_s is None for c in recording(tmp_path, text).channels)

@@ -107,8 +107,9 @@ def _pieces(part: Table, found, keys):
     clock = next((c for c in found if c.role in ("time", "counter")), None)
     cuts, notes = np.zeros(0, dtype=int), []
     if clock is not None:
-        steps = np.diff(part.columns[clock.place])
-        again, leaps = np.flatnonzero(steps < 0.0) + 1, _leaps(steps)
+        times = part.columns[clock.place]
+        steps = np.diff(times)
+        again, leaps = _restarts(times, steps), _leaps(steps)
         cuts = np.union1d(again, leaps)
         if len(leaps):
             notes.append(
@@ -129,6 +130,13 @@ def _pieces(part: Table, found, keys):
     if left:
         notes.append(f"{left} rows that stand alone in time are no shot: left out.")
     return [{p: v[a:b] for p, v in part.columns.items()} for a, b in pieces], tuple(notes)
+
+
+def _restarts(times, steps):
+    """Rows in which time starts again; none where it only falls a little, as in rows of wrong order."""
+    again = np.flatnonzero(steps < 0.0) + 1
+    spans = [np.nanmax(times[a:b]) - np.nanmin(times[a:b]) for a, b in pairwise([0, *again.tolist()])]
+    return again if (-steps[again - 1] >= 0.5 * np.array(spans)).all() else again[:0]
 
 
 def _leaps(steps):

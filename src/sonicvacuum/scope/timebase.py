@@ -88,6 +88,8 @@ def from_column(
     declared = declared_interval(keys, place, column)
     slope = float(times[-1] - times[0]) / (len(times) - 1)
     rounded, uneven = _spacing(times, slope)
+    if (np.diff(times) < 0.0).any():  # rounding never turns times round
+        return _backwards(times, keys, place, column)
     begin, rough = float(times[0]), 0.0
     if (rounded and not uneven) or slope == 0.0:
         slope, begin, rough = _line(times)
@@ -129,6 +131,16 @@ def _headers(keys, place, column, why):
         return base
     said = f"{why[0].upper()}{why[1:]}; start and interval are the header's."
     return TimeBase(base.start_s, base.interval_s, (*base.notes, said))
+
+
+def _backwards(times, keys, place, column):
+    """No times, but the header's interval where they start again only, as fractions of a second do."""
+    steps, span = np.diff(times), float(np.ptp(times))
+    k = int((steps < 0.0).argmax())
+    said = f"the times run backwards behind sample {k + 1}, from {times[k]:.9g} to {times[k + 1]:.9g}"
+    if (steps[steps < 0.0] < -0.5 * span).all():
+        return _headers(keys, place, column, said)
+    return TimeBase(None, None, (f"No time: {said}; put the rows in order, or give --interval.",))
 
 
 def _filled(times):
