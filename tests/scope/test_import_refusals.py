@@ -1,5 +1,7 @@
 """What an import is told wrongly is refused before anything is written; what it is told right is kept."""
 
+import re
+
 import numpy as np
 import pytest
 import yaml
@@ -36,7 +38,7 @@ WRONG = [
     ("--scale", "CH1=25N/V±2.5.1%"), ("--scale", "CH1=25N/V±.%"), ("--scale", "CH1=1e400N/V"),
     ("--scale", "CH1=1e-400N/V"), ("--scale", "CH1=1e308kN/mV"), ("--speed", "0.5±.%"),
     ("--speed", "1e400"), ("--place", "CH1=²"), ("--place", "CH1=1" + "0" * 30), ("--impact-at", "1e400us"),
-    ("--interval", "1e400"),
+    ("--interval", "1e400"), ("--impact-at", "1e300"), ("--interval", "1e300"), ("--speed", "1e300"),
     ("--start", "1e400"), ("--interval", "2 bananas"),
 ]  # fmt: skip
 
@@ -54,6 +56,36 @@ def test_any_text_of_an_option_is_taken_or_refused(option, text):
         options(**{option: value})
     except InputError as error:
         assert "--" in str(error)
+
+
+# Moments of impact on the clock of a record from -100 to 99 us, whose pulses arrive at some 15 us.
+MOMENTS = [
+    ("12", "is 12 s, behind the recording, which lasts from -0.0001 to 9.9e-05 s; give .* as in 12us"),
+    ("-12", "is -12 s, more than 3 lengths before the recording"),
+    ("100us", "behind the recording"),
+    ("95us", "is 9.5e-05 s, when the pulse has passed every gauge, the last at"),
+    ("-1000us", "more than 3 lengths before the recording"),
+]
+
+
+@pytest.mark.parametrize(("moment", "said"), MOMENTS)
+def test_an_impact_that_cannot_be_that_of_the_recording(tmp_path, shot, moment, said):
+    for text in (moment, f"fast={moment}"):
+        refusal, written = asked(tmp_path, shot, "--impact-at", text)
+        assert re.search(f"^--impact-at: run fast: .*{said}", refusal) and not written
+
+
+def test_an_impact_that_is_odd_is_told(tmp_path):
+    late = np.roll(PULSE, 40)
+    (tmp_path / "fast.csv").write_text(HEAD + rows(TIMES, PULSE, late))
+    for moment, said in (
+        ("-150us", "5e-05 s before the recording begins"),
+        ("30us", "arrival of the pulse at CH1."),
+    ):
+        found = import_files([tmp_path / "fast.csv"], tmp_path / "r", options(impact_at=[moment]), force=True)
+        assert any(said in line for line in found), found
+    found = import_files([tmp_path / "fast.csv"], tmp_path / "r", options(impact_at=["0us"]), force=True)
+    assert not any("impact is given" in line for line in found)
 
 
 RECORDS = [

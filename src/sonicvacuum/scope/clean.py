@@ -19,6 +19,8 @@ BRIDGED = 5
 # in widths of the pulse at half height.
 BEFORE, AFTER, LONGEST = 15.0, 10.0, 150.0
 FEWEST_QUIET = 40
+# Lengths of the recording by which the impact may lie before it, as where the recorder waits for a delay.
+FARTHEST = 3.0
 # Digits of readings that are written.
 DIGITS = 7
 # Base units that a record's gauges count in.
@@ -65,6 +67,9 @@ def clean(shot: Shot, options: Options) -> CleanRun:
         notes += [f"{gauge}: {n}" for n in _found(trace, unit[gauge], step, start)]
         values[gauge] = _without_spikes(values[gauge] - trace.rest, trace)
     impact = options.impacts.get(shot.id, options.impacts.get(""))
+    if impact is not None:
+        count = len(next(iter(values.values())))
+        notes += _held_against(impact, start, step, count, seen, shot.id)
     begin, end, factor = _window(values, seen, None if impact is None else (impact - start) / step, options)
     if factor > 1:
         notes.append(
@@ -195,6 +200,28 @@ def _sigma(written, trace, begin, factor):
         found = white(quiet, 0.0)
         return max(found, floor, 0.5 * trace.sigma * thin.noise_left(factor))
     return max(trace.sigma * thin.noise_left(factor), floor)
+
+
+def _held_against(impact, start, step, count, seen, run):
+    """Remarks on a moment of impact that is odd; InputError for one that cannot be that of the recording."""
+    end, length = start + (count - 1) * step, count * step
+    given, span = f"--impact-at: run {run}: is {impact:g} s", f"which lasts from {start:.6g} to {end:.6g} s"
+    cure = "give the moment on the recorder's clock with its unit, as in 12us"
+    if impact > end:
+        raise InputError(f"{given}, behind the recording, {span}; {cure}")
+    if impact < start - FARTHEST * length:
+        raise InputError(f"{given}, more than {FARTHEST:g} lengths before the recording, {span}; {cure}")
+    # Without rest before it, where the pulse arrives is not sure.
+    sure = {g: t for g, t in seen.items() if t.arrival is not None and t.quiet >= FEWEST_QUIET}
+    arrivals = {g: start + t.arrival * step for g, t in sure.items()}
+    late = [g for g, at in arrivals.items() if impact > at + seen[g].width * step]
+    if late and len(late) == len(arrivals):
+        last = max(arrivals.values())
+        raise InputError(f"{given}, when the pulse has passed every gauge, the last at {last:.6g} s; {cure}")
+    if late:
+        yield f"The impact is given behind the arrival of the pulse at {', '.join(late)}."
+    if impact < start:
+        yield f"The impact is given {start - impact:.4g} s before the recording begins."
 
 
 def _zero(impact, start, step, begin, first, seen, notes):

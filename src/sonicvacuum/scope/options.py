@@ -9,6 +9,8 @@ from sonicvacuum.files import InputError
 from sonicvacuum.scope.units import Scale, quantity, scale
 
 _ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.+-]*")
+# Times that may count from 1970, also in ms; no striker is faster than light.
+_LARGEST, _KIND = {"s": 1e14, "m/s": 3e8}, {"s": "time", "m/s": "speed"}
 _PERCENT = re.compile(r"\s*(?:±|\+-|\+/-)\s*(\d+(?:\.\d*)?|\.\d+)\s*%\s*$")
 
 
@@ -119,7 +121,10 @@ def _number(option, text, base):
     found = quantity(text)
     if found is None or (found[1] and found[1].base != base):
         raise InputError(f"{option}: is {text!r}; give a number in {base}, or one with its unit")
-    return found[0] * (found[1].factor if found[1] else 1.0)
+    number = found[0] * (found[1].factor if found[1] else 1.0)
+    if abs(number) > _LARGEST[base]:
+        raise InputError(f"{option}: is {text!r}, which is no {_KIND[base]} of a recording; give another")
+    return number
 
 
 def _positive(option, number, text):
