@@ -37,7 +37,13 @@ def import_files(
 def _spare(folder, runs, raw, force):
     """Refuse to write over the raw files themselves, and over other files without `force`."""
     for target in (folder / f"{r.id}.csv" for r in runs):
-        if target.resolve() in raw:
+        try:
+            same = target.resolve() in raw
+        except (OSError, RuntimeError):
+            raise InputError(
+                f"{target}: leads round in a loop of links; choose another folder for --out"
+            ) from None
+        if same:
             raise InputError(f"{target}: is one of the files to import; choose another folder for --out")
         if target.exists() and not force:
             raise InputError(f"{target}: exists already; choose another folder, or give --force")

@@ -29,7 +29,7 @@ MEANINGS = {
              "verticalunitlabel", "einheit", "dataunits"},
     "time unit": {"horizontalunits", "horizontalunit", "hunit", "xunits", "xunit", "timeunits", "timeunit"},
     "name": {"source", "tracename", "channeldata", "channel", "channels", "trace", "channelname",
-             "channelnames", "labels", "waveformsource", "kanal", "ch", "multichannelsource"},
+             "channelnames", "channeltitle", "labels", "waveformsource", "kanal", "ch", "multichannelsource"},
     "scale": {"verticalscale", "voltsdiv", "voltdiv", "vscale"},
 }  # fmt: skip
 # Rows above samples that only say where these begin.

@@ -210,6 +210,8 @@ def _row(table, k):
 def _is_setting(cells):
     """Whether a row is a key and its values: words of one that has words, or what begins with digits."""
     rest = [c for c in cells[1:] if c]
+    if rest and re.fullmatch(r"\w[\w ]*=", cells[0]):
+        return True
     worded = meaning(cells[0]) in ("name", "unit", "time unit")
     return bool(rest) and is_key(cells[0]) and (worded or any(re.match(r"[-+.]?\d", c) for c in rest))
 

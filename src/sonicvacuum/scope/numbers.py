@@ -77,6 +77,11 @@ def read(body: str, dialect: Dialect, places: list[int], path, width: int, above
     Raises:
         InputError: for rows with more cells than there are columns, or where most rows are no samples.
     """
+    if places[-1] >= _WIDEST:
+        raise InputError(
+            f"{path}: the table has more than {_WIDEST} columns; export the traces one "
+            "below the other, in a column for each channel"
+        )
     frame = _frame(body, dialect, width, path)
     lines = _Lines(body, len(frame), above)
     columns, strange, words = {}, np.zeros((len(places), len(frame)), dtype=bool), {}
@@ -119,6 +124,9 @@ def _frame(body, dialect, width, path):
             **_EXACT,
         )
     except (pd.errors.ParserError, ValueError) as error:
+        # What is read is in memory: nothing but an interruption can fail there, and pandas hides it.
+        if "Calling read(nbytes) on source failed" in str(error):
+            raise KeyboardInterrupt from None
         if "EOF inside string" not in str(error):
             raise InputError(
                 f"{path}: rows differ in their columns; export the traces as a table of numbers"

@@ -73,7 +73,7 @@ def _further(part, found, keys, path):
     own, said = _header(part)
     said = said.beside(keys)
     # Rows of names have as many cells as there are columns, and name the time where the first table does.
-    full = any(sum(map(bool, row)) == len(found) for row in part.header)
+    full = any(sum(map(bool, row)) == len(found) or _names_all(row, part) for row in part.header)
     timed = not (found[0].name and found[0].role == "time") or own[0].unit or TIME.fullmatch(own[0].name)
     if not full and any(_names_time(row) for row in part.header):
         raise _other(part, path)
@@ -82,6 +82,11 @@ def _further(part, found, keys, path):
     if [c.role for c in own] != [c.role for c in found]:
         raise _other(part, path)
     return own, said
+
+
+def _names_all(row, part):
+    """Whether a row names a time and every column, maybe with more names behind, as of remarks."""
+    return _names_time(row) and all(k < len(row) and row[k] for k in part.places)
 
 
 def _names_time(row):

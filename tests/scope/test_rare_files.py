@@ -1,0 +1,50 @@
+"""Files whose parts are as recorders write them, but not where or how they usually stand."""
+
+import pandas as pd
+import pytest
+from odd_files import PULSE, SECOND, TIMES, recording, rows
+
+from sonicvacuum.files import InputError
+from sonicvacuum.scope import numbers
+from sonicvacuum.scope.importing import import_files
+from sonicvacuum.scope.options import options
+
+
+def test_names_behind_channel_titles(tmp_path):
+    head = "Interval=\t1e-06 s\nDateFormat=\t\nChannelTitle=\tForce\tWall\nRange=\t5.000 V\t2.000 V\n"
+    found = recording(tmp_path, 2 * (head + rows(TIMES, PULSE, SECOND, cell="\t")), "t.txt").channels
+    assert [(c.name, c.segment) for c in found] == [("Force", 1), ("Wall", 1), ("Force", 2), ("Wall", 2)]
+    assert [c.interval_s for c in found] == [pytest.approx(1e-6, rel=1e-6)] * 4
+
+
+def test_segments_with_times_for_each_channel(tmp_path):
+    lead = "LabVIEW Measurement\t\nSeparator\tTab\nX_Columns\tMulti\n***End_of_Header***\t\n\t\n"
+    head = "Channels\t2\t\t\t\nDelta_X\t1E-6\t\t1E-6\t\t\n***End_of_Header***\t\t\t\t\n"
+    head += "X_Value\tnear\tX_Value\tfar\tComment\n"
+    part = head + rows(TIMES, PULSE, TIMES, SECOND, cell="\t")
+    found = recording(tmp_path, lead + part + "\t\n" + part, "t.lvm").channels
+    assert [(c.name, c.segment) for c in found] == [("near", 1), ("far", 1), ("near", 2), ("far", 2)]
+    assert found[3].values == pytest.approx(SECOND, abs=1e-6)
+
+
+def test_too_many_columns_are_refused(tmp_path):
+    row = ",".join("1" for _ in range(numbers._WIDEST + 50)) + "\n"
+    with pytest.raises(InputError, match=r"t.csv: the table has more than 10000 columns; export"):
+        recording(tmp_path, row * 8)
+
+
+def test_a_loop_of_links_is_no_folder(tmp_path):
+    (tmp_path / "shot.csv").write_text("Time (s),CH1 (V)\n" + rows(TIMES, PULSE))
+    (tmp_path / "a").symlink_to(tmp_path / "b")
+    (tmp_path / "b").symlink_to(tmp_path / "a")
+    with pytest.raises(InputError, match=r"a/shot.csv: .*loop of links; choose another folder for --out"):
+        import_files([tmp_path / "shot.csv"], tmp_path / "a", options())
+
+
+def test_an_interruption_that_pandas_hides_is_one(tmp_path, monkeypatch):
+    def interrupted(*_, **__):
+        raise pd.errors.ParserError("Error tokenizing data. C error: Calling read(nbytes) on source failed.")
+
+    monkeypatch.setattr(numbers.pd, "read_csv", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        recording(tmp_path, "Time (s),CH1 (V)\n" + rows(TIMES, PULSE))
