@@ -48,3 +48,36 @@ def test_an_interruption_that_pandas_hides_is_one(tmp_path, monkeypatch):
     monkeypatch.setattr(numbers.pd, "read_csv", interrupted)
     with pytest.raises(KeyboardInterrupt):
         recording(tmp_path, "Time (s),CH1 (V)\n" + rows(TIMES, PULSE))
+
+
+# Cells of the second column that are no numbers, from the line on in which the first of them stands.
+CELLS = [
+    ("Time (us),CH1 (%)\n", ",", lambda k: f"{k % 7}.5%", 2, "0.5%"),
+    ("Time (us),CH1\n", ",", lambda k: f"{(65535 - k % 7) if k > 1 else k:04X}", 4, "FFFD"),
+    ("Time (ms);F (N)\n", ";", lambda k: f"0,{k % 7}512", 2, "0,0512"),
+]
+
+
+@pytest.mark.parametrize(("head", "cell", "form", "line", "word"), CELLS)
+def test_a_channel_that_is_no_numbers_is_named(tmp_path, head, cell, form, line, word):
+    text = head + "".join(f"{k / 2 + 0.5:.2f}{cell}{form(k)}\n" for k in range(60))
+    said = rf"no channel beside them: line {line}, column 2: '{word}' is no number.*; export plain numbers"
+    with pytest.raises(InputError, match=said):
+        recording(tmp_path, text)
+
+
+def test_times_that_are_no_numbers_are_named(tmp_path):
+    text = "Zeit (ms);F (N)\n" + "".join(
+        f"{0.001 * k - 0.1:.3f};".replace(".", ",") + f"{v}\n" for k, v in enumerate(PULSE)
+    )
+    (channel,) = recording(tmp_path, text).channels
+    assert channel.notes[0].startswith(
+        "No time: the column of times is not read: line 2, column 1: '-0,100' is"
+    )
+
+
+def test_the_first_gap_in_the_times_is_named(tmp_path):
+    text = "Time (s),CH1 (V),CH2 (V)\n" + rows(TIMES, PULSE, SECOND) + ",30.1,20.5\n"
+    for channel in recording(tmp_path, text).channels:
+        assert channel.interval_s is None
+        assert channel.notes[0].startswith("No time: the column of times has gaps, the first at sample 201;")

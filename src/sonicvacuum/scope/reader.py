@@ -9,6 +9,8 @@ import numpy as np
 from sonicvacuum.files import InputError
 from sonicvacuum.scope import roles, text
 from sonicvacuum.scope.binary import is_binary, read_binary
+from sonicvacuum.scope.dialect import is_like_number
+from sonicvacuum.scope.labels import TIME, split_unit
 from sonicvacuum.scope.layouts import Layout, recognise
 from sonicvacuum.scope.recording import Channel, Recording
 from sonicvacuum.scope.shots import Shot, shots
@@ -43,13 +45,31 @@ def read(path) -> Recording:
     channels, said = [], [] if encoding.startswith("utf-8") else [f"Text is {encoding}."]
     for shot in shots(table, layout.companion(path) if layout.companion else [], path):
         said += [n for n in shot.notes if n not in said]
-        channels += _channels(shot, layout, path)
+        channels += _channels(shot, layout, path, _why(table))
     if not channels:
+        odd = next((_told(table, k) for k in sorted(table.odd)), "")
+        if odd:
+            raise InputError(f"{path}: has times but no channel beside them: {odd}; export plain numbers")
         raise InputError(f"{path}: has times but no channel beside them; export the traces too")
     return Recording(path, layout.name, tuple(channels), (*said, *cut, *table.notes))
 
 
-def _channels(shot: Shot, layout: Layout, path):
+def _why(table):
+    """Why a table has no times, where it has no column of them."""
+    names = next((row for row in reversed(table.header) if len(row) > table.places[0]), [])
+    for k in sorted(table.odd):
+        if k < len(names) and k < table.places[0] and TIME.fullmatch(split_unit(names[k])[0]):
+            return f"the column of times is not read: {_told(table, k)}"
+    return "the file has no times and no interval"
+
+
+def _told(table, k):
+    line, cell = table.odd[k]
+    mark = f" (decimals elsewhere follow a {table.dialect.decimal!r})" if is_like_number(cell) else ""
+    return f"line {line}, column {k + 1}: {cell[:40]!r} is no number{mark}"
+
+
+def _channels(shot: Shot, layout: Layout, path, why):
     found, keys, columns = shot.found, shot.keys, shot.columns
     names = _names(found, keys, path)
     values = [c.place for c in found if c.role == "value"]
@@ -61,7 +81,7 @@ def _channels(shot: Shot, layout: Layout, path):
     for column in found:
         if column.role == "value":
             values, kept = _held(columns[column.place])
-            base = _base(clock, column, columns, kept, keys, place)
+            base = _base(clock, column, columns, kept, keys, place, why)
             channel = _channel(names[place], column, values, base, keys, layout, place, shot.several)
             if shot.several:
                 channel = replace(channel, segment=shot.number)
@@ -86,9 +106,9 @@ def _held(values):
     return values[rows], rows
 
 
-def _base(clock, column, columns, kept, keys, place) -> TimeBase:
+def _base(clock, column, columns, kept, keys, place, why) -> TimeBase:
     if clock is None:
-        return _shifted(from_header(keys, place, column.place), kept)
+        return _shifted(from_header(keys, place, column.place, why), kept)
     times = columns[clock.place]
     if clock.role == "counter" or (
         clock.unit is None and roles.counts(times) and keys.values.get("interval")

@@ -7,7 +7,7 @@ some recorders) is kept as further header rows.
 
 import re
 from collections import Counter
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 import numpy as np
@@ -39,6 +39,7 @@ class Table:
         breaks: row of the first sample behind lines between the samples → these lines.
         notes: what was left out, in whole sentences.
         clocks: places of columns of times of day, which are seconds.
+        odd: place of a column that is none of samples → line and text of its first cell that is no number.
     """
 
     dialect: Dialect
@@ -49,6 +50,7 @@ class Table:
     breaks: dict[int, list[str]]
     notes: tuple[str, ...] = ()
     clocks: frozenset[int] = frozenset()
+    odd: dict[int, tuple[int, str]] = field(default_factory=dict)
 
     @property
     def places(self) -> list[int]:
@@ -103,15 +105,28 @@ def split(text: str, path) -> Table:
     dialect = commas.settled(sniff(samples, path), samples, last_lines(samples), path)
     places = _places(samples, dialect, path)
     above, offset = _above(text, dialect, places, path)
-    start = _rows(text[offset : offset + 200 * BESIDE].split("\n")[:BESIDE], dialect)
+    first = text[offset : offset + 200 * BESIDE].split("\n")[:BESIDE]
+    start = _rows(first, dialect)
     header = [(raw, cells) for raw, cells in ((a, _header_cells(a, dialect)) for a in above) if any(cells)]
     places = _with_sparse(places, start, header[-1][1] if header else [], dialect)
     beside = [row[: places[0]] for row in start if any(row[: places[0]])]
     width = max(_width(start, places, samples, dialect), len(header[-1][1]) if header else 0)
     _refuse_commas(header, start, dialect, path)
-    found = numbers.read(text[offset:], dialect, places, path, width, text.count("\n", 0, offset))
+    lines = text.count("\n", 0, offset)
+    found = numbers.read(text[offset:], dialect, places, path, width, lines)
+    odd = _odd(first, lines, found.columns, dialect)
     rows, raw = [c for _, c in header], [r for r, _ in header]
-    return Table(dialect, rows, raw, beside, found.columns, found.breaks, found.notes, found.clocks)
+    return Table(dialect, rows, raw, beside, found.columns, found.breaks, found.notes, found.clocks, odd)
+
+
+def _odd(lines, above, columns, dialect):
+    """The first cells that are no numbers in the columns beside those of samples."""
+    found = {}
+    for number, line in enumerate(lines, above + 1):
+        for k, cell in enumerate(dialect.cells(line)):
+            if cell and k not in columns and not dialect.is_sample(cell):
+                found.setdefault(k, (number, cell))
+    return found
 
 
 def _refuse_commas(header, rows, dialect, path):

@@ -82,9 +82,10 @@ def from_column(
     times: np.ndarray, label: Unit | None, keys: Keys, place: int = 0, column: int = 0, odd: str = ""
 ) -> TimeBase:
     """Time base of a column of times, one shot, whose label may hold an odd text in place of a unit."""
+    gap = int(np.isfinite(times).argmin()) + 1
     times, notes = _filled(times)
     if times is None:
-        return _headers(keys, place, column, "the column of times has gaps")
+        return _headers(keys, place, column, f"the column of times has gaps, the first at sample {gap}")
     declared = declared_interval(keys, place, column)
     slope = float(times[-1] - times[0]) / (len(times) - 1)
     rounded, uneven = _spacing(times, slope)
