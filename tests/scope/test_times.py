@@ -62,7 +62,7 @@ LABELS = [
     ("Time (秒)", 1.0),
 ]  # fmt: skip
 # What says of what kind or whose the times are, not in which unit.
-REMARKS = ["relative", "CH1", "A", "Run 2", "local", "since trigger", "rel.", "1"]
+REMARKS = ["left side of it", "relative", "CH1", "A", "Run 2", "local", "since trigger", "rel.", "1"]
 
 
 @pytest.mark.parametrize(("label", "factor"), LABELS)
@@ -70,6 +70,15 @@ def test_units_of_time_behind_any_mark(tmp_path, label, factor):
     (channel,) = recording(tmp_path, f"{label},CH1 (V)\n" + rows(TIMES / factor, PULSE)).channels
     assert (channel.start_s, channel.interval_s) == (pytest.approx(-1e-4), pytest.approx(1e-6, rel=1e-6))
     assert channel.notes == ()
+
+
+@pytest.mark.parametrize("form", ["Time - {}", "Time: {}", "Time ({})", "{} time", "X [{}]"])
+@pytest.mark.parametrize("name", ["Force", "Wall_1", "near", "Plot 0"])
+def test_times_named_by_their_channel(tmp_path, form, name):
+    text = f"{form.format(name)},Amplitude - {name}\n" + rows(TIMES, PULSE)
+    (channel,) = recording(tmp_path, text).channels
+    assert channel.interval_s == pytest.approx(1e-6, rel=1e-6)
+    assert channel.notes[0] == "The unit of time is not given; s assumed."
 
 
 @pytest.mark.parametrize("label", ["CH1: mV", "CH1 - mV", "CH1|mV", "CH1 {mV}", "CH1 mV"])
@@ -89,7 +98,8 @@ def test_names_that_end_like_a_unit(tmp_path, label):
 
 UNKNOWN = [
     ("Time (?s)", "?s"), ("Time (MS)", "MS"), ("Time (h)", "h"), ("Time (jiffies)", "jiffies"),
-    ("Time: furlongs", "furlongs"), ("t1 [ticks]", "ticks"), ("Time {xs}", "xs"), ("Time (2 xs)", "2 xs"),
+    ("Time: xs", "xs"), ("Time (ms or so)", "ms or so"), ("t1 [ticks]", "ticks"), ("Time {xs}", "xs"),
+    ("Time (2 xs)", "2 xs"),
 ]  # fmt: skip
 
 

@@ -83,7 +83,7 @@ def _behind(label):
         return label, None
     name, mark, text = found.groups()
     if unit.base == "s":
-        sure = _is_time_word(name)
+        sure = _is_time_word(name) and (text != "min" or bool(mark.strip(" .")))
     else:
         sure = (
             bool(_SYMBOL.fullmatch(text))
@@ -99,9 +99,20 @@ def _is_time_word(name):
 
 def unknown_time_unit(label: str) -> str:
     """What stands where the unit of a time would and is none that is known, "" where nothing does."""
-    found = re.search(r"[(\[<{]([^()\[\]<>{}]+)[)\]>}]\s*$", label.strip().strip('"'))
-    found = found or re.match(r".*?\S(?:\s*[:|]\s*|\s+-\s+)([^:|]+)$", label.strip().strip('"'))
-    text = found.group(1).strip() if found else ""
+    label = label.strip().strip('"')
+    found = re.search(r"[(\[<{]([^()\[\]<>{}]+)[)\]>}]\s*$", label)
+    if found:
+        text = found.group(1).strip()
+        words = text.split()
+        unit = next((u for u in map(unit_of, (words or [""])[:: max(1, len(words) - 1)]) if u), None)
+        if len(words) > 1 and not (unit and unit.base == "s") and not words[0][0].isdigit():
+            return ""
+    else:
+        # Behind other marks a name is as likely, as in `Time - Force`.
+        found = re.match(r".*?\S(?:\s*[:|]\s*|\s+-\s+)(\S+)$", label)
+        text = found.group(1) if found else ""
+        if not re.fullmatch(r".{0,2}s|\w*se[ck]\w*\.?", text, re.IGNORECASE) and not TICKS.fullmatch(text):
+            return ""
     return "" if "?" not in text and _REMARK.fullmatch(text) else text
 
 
@@ -210,7 +221,7 @@ def _row(table, k):
 def _is_setting(cells):
     """Whether a row is a key and its values: words of one that has words, or what begins with digits."""
     rest = [c for c in cells[1:] if c]
-    if rest and re.fullmatch(r"\w[\w ]*=", cells[0]):
+    if rest and re.fullmatch(r"\w[\w ]*=", cells[0]) and not rest[0].endswith("="):
         return True
     worded = meaning(cells[0]) in ("name", "unit", "time unit")
     return bool(rest) and is_key(cells[0]) and (worded or any(re.match(r"[-+.]?\d", c) for c in rest))

@@ -52,18 +52,23 @@ def columns(table: Table) -> tuple[list[Column], list[list[str]]]:
         unit = unit_of(below) or unit or spelled(name)
         odd = "" if unit else unknown_unit(said.name(k)) or _unread(below) or said.stray(k)
         found.append((Column(k, "value", name, unit, odd), below))
-    return [_timed(c, said.name(c.place), table) for c in _roles(found, table)], said.rest
+    others = [column.name for column, _ in found]
+    return [_timed(c, said.name(c.place), table, others) for c in _roles(found, table)], said.rest
 
 
-def _timed(column, label, table):
+def _timed(column, label, table, names):
     """A column of times with what its label holds in place of a unit, or a counter where that is samples."""
     if column.role == "time" and column.place in table.clocks:
         return replace(column, unit=Unit("s"), said="")
     if column.role != "time" or column.unit is not None:
         return column
     said = unknown_time_unit(label)
-    one_each = (np.diff(table.columns[column.place]) == 1.0).mean() > 0.9
-    return replace(column, role="counter" if TICKS.fullmatch(said) and one_each else "time", said=said)
+    whole = re.compile(rf"(?<![^\W_]){re.escape(said)}(?![^\W_])", re.IGNORECASE)
+    if not said or any(whole.search(name) for name in names if name != column.name):
+        # Nothing, or the name of the channel that the times are of.
+        return replace(column, said="")
+    counting = TICKS.fullmatch(said) and (np.diff(table.columns[column.place]) == 1.0).all()
+    return replace(column, role="counter" if counting else "time", said=said)
 
 
 def _unread(text):
