@@ -81,14 +81,19 @@ def test_decimals_below_one_name_are_one_column(tmp_path, values, digits, head, 
     assert list(channel.values) == [float(t) for t in texts]
 
 
-@pytest.mark.parametrize("head", ["", "Data:\n", "Waveform Data\n", "Sample Interval,1e-06\n"])
+@pytest.mark.parametrize(
+    "head", ["", "F, N\n", "Kraft, N\n", "Data:\n", "Waveform Data\n", "Sample Interval,1e-06\n"]
+)
 def test_what_may_be_one_column_or_two_is_refused(tmp_path, head):
     lines = pairs(500 + np.arange(60) % 7, 500 + np.arange(60) % 5)
     with pytest.raises(InputError, match=r"'503,504' and the other lines .* a line that names each column"):
         recording(tmp_path, head + lines)
+    head = "" if "N" in head else head
     assert len(recording(tmp_path, head + "CH1,CH2\n" + lines).channels) == 2
-    (channel,) = recording(tmp_path, head + "Kraft (N)\n" + lines).channels
-    assert (channel.unit, channel.values[0]) == ("N", 500.5)
+    for name in ("Kraft (N)", "Kraft (N);"):
+        (channel,) = recording(tmp_path, head + name + "\n" + lines).channels
+        assert (channel.unit, channel.values[0]) == ("N", 500.5)
+    assert len(recording(tmp_path, head + "mV,V\n" + lines).channels) == 2
 
 
 def test_whole_numbers_of_three_digits_are_columns(tmp_path):

@@ -103,7 +103,8 @@ def _two_named(above):
     for line in reversed([x for x in lines if re.search(r"[^\W\d_]", x)]):
         if MARKER.fullmatch(line):
             continue
-        cells = [c.strip() for c in line.rstrip(",; \t").split(",")]
+        line = line.rstrip(",; \t")
+        cells = [c.strip() for c in line.split(",")]
         words = [c for c in cells if re.search(r"[^\W\d_]", c)]
         if is_key(cells[0]) and len(cells) > 1:
             # Of a key's values, as of the names in one line with `Source`, there is one for each column.
@@ -112,8 +113,9 @@ def _two_named(above):
             continue
         if len(cells) == 1:
             return None if re.search("[:=;\t]", line) or is_key(line) else False
-        # `Force, N` is one name with its unit.
-        single = len(cells) == 2 and unit_of(cells[1]) and not unit_of(cells[0])
+        # `Force, N` and `F, N` are one name with its unit, `mV,V` are two units.
+        named = not unit_of(cells[0]) or cells[0] in "ACFHJKTWgm"
+        single = len(cells) == 2 and unit_of(cells[1]) and named
         return len(words) == len(cells) == 2 if not single else None
     return None
 
