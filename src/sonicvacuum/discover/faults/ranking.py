@@ -139,7 +139,7 @@ class Ranking:
         apart = [j for j in looked if not (j.slip.continuous or j in worth or out_of_reach(j, model))]
         if far:
             pairs = both_off(worth)
-            worth += [j for j in apart if of_the_chain(j.slip) or j.slip.run in pairs]
+            worth += [j for j in apart if of_the_chain(j.slip) or j.slip.each or j.slip.run in pairs]
         whole = judge.look_at([s for s in shown if (s.fault, s.run, s.sensor) not in done])
         followed = judge.follow_all([*worth, *whole])
         if far and not any(obvious(j, model) for j in followed):
