@@ -134,7 +134,9 @@ class Ranking:
         worth = [j for j in looked if j.gain > policy.LEAST_GAIN][: policy.FOLLOWED]
         # Where a run is far off, or all of them, its size is known roughly at first: too roughly for a look.
         started = [j for j in looked if j.slip.start and j.slip.sensor is None and j not in worth]
-        worth += [j for j in started if not j.slip.expected or speaks_for(j, model)]
+        # Strong pulses miss each other at a size that is nearly right: the best is fitted anyway.
+        best = next((j for j in started if j.slip.expected), None) if far else None
+        worth += [j for j in started if not j.slip.expected or j is best or speaks_for(j, model)]
         # Slopes know nothing of a pulse that comes a bead earlier, or with another run's speed.
         apart = [j for j in looked if not (j.slip.continuous or j in worth or out_of_reach(j, model))]
         if far:
