@@ -13,7 +13,7 @@ from sonicvacuum.discover.fit.wide import nominal
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Hypothesis
 from sonicvacuum.discover.model.nuisances import Layout, Shared, assumed, exact
-from sonicvacuum.discover.model.problem import experiment
+from sonicvacuum.discover.model.problem import experiment, together
 from sonicvacuum.discover.model.slow import columns
 from sonicvacuum.discover.search import directions, screen
 from sonicvacuum.discover.search.singles import setup_of
@@ -313,3 +313,13 @@ def test_so_are_beads_of_every_material_of_a_pattern(quiet):
         record.taken_modulus_rel_sigma("delrin") == record.taken_modulus_rel_sigma("stainless-steel") == 0.05
     )
     assert record.taken_modulus_rel_sigma("bearing-steel") == 0.01
+
+
+def test_a_static_force_of_any_record_of_several_is_open():
+    records = []
+    for force in (0.0, 2.0):
+        given = block((0.3, 0.9))
+        given["chain"]["static_force_N"] = force
+        records.append(made(seed=7, given=given)[0])
+    for order in (records, records[::-1]):
+        assert [one.kind for one in together(order).shared] == ["static-force"]

@@ -126,12 +126,17 @@ def _described(specimen):
 
 
 def _joined(first: Experiment, record, other: Experiment) -> Experiment:
-    """Two data sets in one; runs of the second are numbered on."""
+    """Two data sets in one; runs of the second are numbered on. A static force, and materials of strikers,
+    that only these have are open as well.
+    """
     known = {r.id for r in first.runs}
     named = [replace(r, id=f"{record.name} {r.id}" if r.id in known else r.id) for r in other.runs]
     start = len(first.runs)
     moved = [replace(b, runs=tuple(start + k for k in b.runs), gauges=other.gauges) for b in other.batches]
-    return replace(first, runs=(*first.runs, *named), batches=(*first.batches, *moved))
+    open_ = {(one.kind, one.of) for one in first.shared}
+    own = [o for o in other.shared if o.kind in ("modulus", "static-force") and (o.kind, o.of) not in open_]
+    joined = replace(first, runs=(*first.runs, *named), batches=(*first.batches, *moved))
+    return replace(joined, shared=(*first.shared, *own))
 
 
 def _run(record, run, sigma):
