@@ -105,7 +105,8 @@ def from_slopes(forward: Forward, free: int, u, nu, columns) -> Normal:
     for run, parts in enumerate(columns):
         parts = parts.copy()
         parts[:, 0] = forward.data(run) - parts[:, 0]
-        products = parts @ parts.transpose(0, 2, 1)
+        with np.errstate(over="ignore", invalid="ignore"):  # lanes that run away are left out below
+            products = parts @ parts.transpose(0, 2, 1)
         where = np.concatenate([np.arange(free), free + forward.local(run)])
         chi2[run] = products[:, 0, 0]
         gradient[run][:, where] = products[:, 0, 1:]
