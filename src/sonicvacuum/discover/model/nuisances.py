@@ -28,7 +28,7 @@ DEFAULTS = Tolerances(
     bead_diameter_rel=0.0,
     coating_rel=0.0,
     # A spring or a weight over a pulley is set rather than weighed, and no effect makes a preload less.
-    static_force_rel=0.05,
+    static_force_rel=0.02,
     striker_mass_rel=0.0,
     speed_common_rel=0.0,
     gain_common_rel=0.0,
