@@ -40,6 +40,9 @@ class Case:
         `few` says for which effects the data do not suffice, see `enough`.
         """
         seen = left(self.forward, self.null, self.known)
+        opposed = self._opposed(seen)
+        if opposed is not None:
+            return opposed
         reasons = list(few) or ["no single effect passes the threshold"]
         if not sure(seen):
             return Decision([], self.null, {"none": seen.p}, reasons, seen.p)
@@ -115,6 +118,13 @@ class Case:
                     return self._anew(lower)
                 passed, start, lowest = self._passing(tried, needed, most, alarms, seen)
         return passed or self._set(needed, most, shape, alarms, start, lowest, tried)
+
+    def _opposed(self, seen: Left) -> Decision | None:
+        """A pair where no single effect passes, as each of the two takes back most of what the other does."""
+        if not self.found:
+            return None
+        needed, most = self.scores.threshold(policy.FALSE_ALARM), unknown.simplest(self.forward, self.null)[1]
+        return self._pair_instead(needed, most, {"none": seen.p}, seen)
 
     def _pair_instead(self, needed, most, alarms, seen: Left) -> Decision | None:
         """A pair instead of one effect that leaves nothing but stands for both, where slopes promise more."""
