@@ -203,6 +203,15 @@ def test_while_others_are_missing_a_run_may_be_predicted_a_little_worse(monkeypa
     assert heldout.better(before, after, share=several.WORSE) is growing
 
 
+@pytest.mark.parametrize(
+    ("gains", "kept"), [([-6.2, 8.0, 31.5], True), ([-9.0, 8.0, 31.5], False), ([-6.2, 3.0, 4.0], False)]
+)
+def test_one_run_may_be_predicted_worse_by_chance_where_others_gain_much(monkeypatch, gains, kept):
+    """A gap of d' 10 lost 6.2 in one run of three, and gained 33 in all: two of its standard errors."""
+    before, after = predicting(monkeypatch, gains, 0.0)
+    assert heldout.better(before, after, share=policy.BY_CHANCE) is kept
+
+
 @pytest.mark.parametrize(("gained", "kept"), [(30.0, False), (157.5, True)])
 def test_what_strains_a_nuisance_alone_need_not_predict_better(monkeypatch, gained, kept):
     """A modulus 2.25 times as large is one that the other runs tell as well, at 12 of its standard errors."""

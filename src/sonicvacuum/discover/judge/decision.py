@@ -74,7 +74,7 @@ class Case:
             return instead
         if seen.behind > 0.0:
             return self._unknown(alarms, [f"{shape} explains more than {best.effect}"], seen)
-        if heldout.better(self.null, best.fit):
+        if heldout.better(self.null, best.fit, share=policy.BY_CHANCE):
             reason = f"{best.effect} leaves nothing significant"
             return Decision([best.effect], best.fit, alarms, [reason], seen.p)
         reason = f"{best.effect} does not predict unseen runs better"
