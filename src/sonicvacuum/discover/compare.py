@@ -2,6 +2,7 @@
 stay.
 """
 
+from dataclasses import replace
 from pathlib import Path
 
 import msgspec
@@ -19,8 +20,18 @@ from sonicvacuum.discover.model.problem import experiment
 from sonicvacuum.discover.verdict import Gap, Model, Sources, gap
 from sonicvacuum.effects import CATALOGUE, Catalogue, free_form
 from sonicvacuum.files import InputError, reading
+from sonicvacuum.laboratory import ranges
+from sonicvacuum.laboratory.ranges import Range
+from sonicvacuum.physics.extent import estimate
 from sonicvacuum.records import Record
 
+# What nuisances of a model may be: a thousand times what was stated is no chain (`forward.NO_CHAIN`); of a
+# gauge that nobody calibrated the gain may be in any unit.
+RATIO = Range("(a ratio)", 1e-4, 1e4, {})
+GAIN = Range("(a ratio)", 1e-15, 1e15, {})
+TRIGGER = Range("us", -1e9, 1e9, {})
+# Simulations of every run that a comparison takes, at most.
+SIMULATIONS = 1000
 # Contacts that go farther than known by less than this part are not told of: runs alike differ by as much.
 FURTHER = 0.05
 
@@ -64,14 +75,8 @@ def read_model(path, catalogue: Catalogue = CATALOGUE) -> Model:
                 raise InputError(
                     f"{path}: effects.{name}.{key}: unknown key; {name} has {', '.join(filter(None, known))}"
                 )
-        with reading(path, "sonicvacuum discover writes a sound one"):
-            _check_values(name, given, catalogue)
-    ratios = {"modulus_ratio": found.modulus_ratio}
-    ratios |= {f"gain.{k}": v for k, v in found.gain.items()}
-    ratios |= {f"speed_ratio.{k}": v for k, v in found.speed_ratio.items()}
-    for key, ratio in ratios.items():
-        if not ratio > 0.0:
-            raise InputError(f"{path}: {key}: is {ratio:g}; a ratio is positive")
+        _check_values(path, one, given)
+    _check_nuisances(path, found)
     return found
 
 
@@ -97,14 +102,33 @@ def check_source(path, name: str, sources: Sources, catalogue: Catalogue) -> Non
         )
 
 
-def _check_values(name, given, catalogue):
-    """ValueError for a parameter without meaning, or an effect whose place is missing or no whole number."""
-    one = catalogue.effect(name)
+def _check_values(path, one, given):
+    """InputError for a parameter without meaning, or an effect whose place is missing or no whole number."""
     for key, value in given.items():
-        if key != one.places:
-            one.parameter(key).check(value, name)
-    if one.places and not float(given[one.places]).is_integer():
-        raise ValueError(f"effect {name}: {one.places} is {given[one.places]:g}; use a whole number")
+        told = None if key == one.places else one.parameter(key).refused(value)
+        if told:
+            raise InputError(f"{path}: effects.{one.id}.{key}: {told}")
+    if not one.places:
+        return
+    at = given.get(one.places)
+    if at is None or not (0.0 <= at <= ranges.BEADS.high and at.is_integer()):
+        told = "is missing" if at is None else f"is {at:g}"
+        raise InputError(f"{path}: effects.{one.id}.{one.places}: {told}; give a whole number, zero or more")
+
+
+def _check_nuisances(path, found):
+    """InputError for a ratio or a time zero that no laboratory has."""
+    for key, ratios, limits in (
+        ("modulus_ratio", {"": found.modulus_ratio}, RATIO),
+        ("speed_ratio", found.speed_ratio, RATIO),
+        ("gain", found.gain, GAIN),
+        ("trigger_us", found.trigger_us, TRIGGER),
+    ):
+        for one, value in ratios.items():
+            try:
+                limits.check(f"{key}.{one}".rstrip("."), value)
+            except ranges.LaboratoryError as error:
+                raise InputError(f"{path}: {error}") from None
 
 
 def hypothesis(model: Model, catalogue: Catalogue = CATALOGUE) -> Hypothesis:
@@ -126,6 +150,7 @@ def compare(model: Model, record: Record, threads: int = 1, catalogue: Catalogue
     known = forward.experiment.present
     more = {name: given for name, given in model.effects.items() if name not in known}
     whole = hypothesis(msgspec.structs.replace(model, effects=more), catalogue)
+    _check_extent(forward, whole)
     nominal, extended = (_fit(forward, h) for h in (Hypothesis(), whole))
     before, after = nominal.normal.chi2[:, 0], extended.normal.chi2[:, 0]
     runs = {
@@ -158,8 +183,20 @@ def _beyond(law: dict[str, float], forward: Forward, one: Fit) -> list[str]:
     ]
 
 
+def _check_extent(forward, one):
+    """InputError where the record's chains with the model in them ask for more than a computer gives."""
+    change, nu = one.change(np.zeros((1, 0))), np.zeros((1, forward.layout.size))
+    try:
+        for batch in forward.experiment.batches:
+            chain = change(forward.nominal(batch, nu), np.zeros(len(batch.runs), dtype=int)).chain
+            asked = estimate(chain, 2 * len(forward.experiment.gauges) + 1, batch.duration, batch.interval)
+            replace(asked, work=SIMULATIONS * asked.work).check("a model with weaker effects")
+    except ValueError as error:
+        raise InputError(f"the model does not fit this record: {error}") from None
+
+
 def _fit(forward, one):
     try:
         return wide.nominal(forward, one)
-    except ValueError as error:
+    except (ValueError, FloatingPointError) as error:
         raise InputError(f"the model does not fit this record: {error}") from None

@@ -18,6 +18,11 @@ from sonicvacuum.physics.laws import Term
 MICRO = 1e-6
 PLACES = (None, "bead", "contact", "sensor")
 PRIORS = ("log-uniform", "uniform", "log-normal", "normal")
+# What is smaller, in any unit, has powers that are no numbers.
+FAINTEST = 1e-100
+# So many times the bounds of a search nothing has a meaning: steps become too many, or numbers overflow. Fits
+# that run into a bound are followed for half of it (`discover.fit.bounds`).
+FAR = 2e4
 # What a record states with an error, and a parameter may do as well.
 NUISANCES = (None, "modulus", "speed", "gain")
 
@@ -57,7 +62,8 @@ class Parameter:
             (relative for "log-normal"), the others lie between low and high.
         scale: typical deviation from `off`; typical value where `off` is None or infinite.
         help: one line.
-        least, most: values outside [least, most] have no meaning and are refused.
+        least, most: values outside [least, most] have no meaning and are refused, as are those beyond `FAR`
+            times the bounds of the search, unless the effect fades there.
         acts_like: the nuisance of a record that this parameter, a ratio, moves exactly as: "modulus" of the
             beads' material, "speed" of the striker, "gain" of the gauge where the effect sits; None for none.
         least_strength: deviation over `scale` below which the effect is not what it is called (a gap opens at
@@ -113,23 +119,31 @@ class Parameter:
         towards = np.where(off + self.scale > self.high, -1.0, 1.0)
         return off + towards * strength * self.scale
 
-    def check(self, value, effect: str):
-        """Raise ValueError for a value that has no meaning: no number, none at all, or outside the limits.
+    @property
+    def limits(self) -> tuple[float, float]:
+        """The least and the largest value that is taken, both included, in the parameter's unit."""
+        far = FAR * max(abs(self.low), abs(self.high))
+        return max(self.least, -far), self.most if self.off == math.inf else min(self.most, far)
+
+    def refused(self, value) -> str | None:
+        """Why a number or (lanes,) numbers are not taken, with the cure, in a few words; None where they are.
 
         Infinity has a meaning only where the effect fades as the value grows.
         """
         if isinstance(value, str | bool):
-            raise ValueError(f"effect {effect}: {self.name} is {value!r}, not a number{number_cure(value)}")
-        values = np.asarray(value, dtype=float)
-        bad = ~((values >= self.least) & (values <= self.most))
-        if self.off != math.inf:
-            bad |= np.isinf(values)
-        if np.any(bad):
-            finite = "" if self.off == math.inf or math.isfinite(self.most) else ", finite"
-            raise ValueError(
-                f"effect {effect}: {self.name} is {values[bad].flat[0]:g}; "
-                f"use a value from {self.least:g} to {self.most:g}{finite}"
-            )
+            return f"is {value!r}, not a number{number_cure(value)}"
+        values, (least, most) = np.asarray(value, dtype=float), self.limits
+        bad = ~((values >= least) & (values <= most))
+        faint = (values != 0.0) & (np.abs(values) < FAINTEST)
+        if not np.any(bad | faint):
+            return None
+        told = f"is {values[bad | faint].flat[0]:g}; use a value from {least:g} to {most:g}"
+        return told if np.any(bad) else f"{told}, none but 0 closer to 0 than {FAINTEST:g}"
+
+    def check(self, value, effect: str):
+        """Raise ValueError for a value that has no meaning: no number, none at all, or outside the limits."""
+        if told := self.refused(value):
+            raise ValueError(f"effect {effect}: {self.name} {told}")
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,8 @@ DENSITY = (50.0, 30000.0)
 LIKELY_DENSITY = (500.0, 20000.0)
 # A handbook's number and one for the same material in a record differ by less.
 TABLE_FACTOR = 100.0
+# No recorder is finer, whatever it counts in; errors far below make ratios that are no numbers.
+FINEST = 1e-15
 # Largest force of a record over that of the same impact on one contact.
 FORCE = (3e-3, 100.0)
 # Over the contact time: a duration, the whole record, one sampling interval.
@@ -50,8 +52,12 @@ class Range:
     others: Mapping[str, float]
 
     def check(self, key: str, value: float) -> None:
-        """LaboratoryError for a value outside the range."""
-        if self.low <= value <= self.high:
+        """LaboratoryError for a value outside the range, or next to zero without being it."""
+        inside = self.low <= value <= self.high
+        if inside and 0.0 < abs(value) < FINEST:
+            told = f"is {value:g} {self.unit}, nearer to 0 than {FINEST:g}; write 0 where it is meant"
+            raise LaboratoryError(key, told)
+        if inside:
             return
         raise LaboratoryError(
             key,
@@ -97,10 +103,8 @@ WIDTH = Range("diameters", 0.3, 1e3, {"m": 5e-3, "mm": 5.0})
 
 
 def error_range(unit: str) -> Range:
-    """What a standard error may be, whatever it is of and whatever an uncalibrated gauge counts in: no
-    recorder is finer, and its square can be computed with.
-    """
-    return Range(unit, 1e-15, 1e12, {})
+    """What a standard error may be, whatever it is of and whatever an uncalibrated gauge counts in."""
+    return Range(unit, FINEST, 1e12, {})
 
 
 def force_range(impact_N: float) -> Range:

@@ -29,6 +29,8 @@ AUDIT_ENTRIES = 400
 SHARES = 8
 # Beyond so many bodies one chain or two take no lanes: eight copies cost more than compiling.
 LONG = 1000
+# Steps that no counter holds, and no computer takes.
+COUNTLESS = 2.0**53
 # Steps of one body (in all lanes of a group) below which a call is over in a fraction of a second.
 SHORT = 5e6
 # And below which threads take longer to begin than the call by itself.
@@ -164,7 +166,15 @@ class _Batch:
         else:
             fine, late, until = np.full(lanes, step), np.full(lanes, step), np.zeros(lanes)
         self.fine, self.late, self.until = fine / refine, late / refine, until
-        self.steps = np.minimum(until, end) / self.fine + np.maximum(end - until, 0.0) / self.late
+        with np.errstate(all="ignore"):
+            self.steps = np.minimum(until, end) / self.fine + np.maximum(end - until, 0.0) / self.late
+        countless = ~(self.steps < COUNTLESS)
+        if countless.any():
+            worst = int(countless.argmax())
+            raise FloatingPointError(
+                f"chain {worst}: asks for {self.steps[worst]:.3g} steps of {self.late[worst]:.3g} s; "
+                "a number of its bodies or laws is far too large or too small"
+            )
 
     def _spread(self, values):
         """(…, lanes) → (groups, …, width)."""

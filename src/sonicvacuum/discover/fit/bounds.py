@@ -116,7 +116,7 @@ def _ends(c: Coordinate, soon: float) -> tuple[float, float]:
     own = c.parameter
     if own.known:
         return c.low, c.high
-    ends = [_place(c, value) for value in (own.least, own.most)]
+    ends = [_place(c, value) for value in own.limits]
     if soon and own.unit == "us" and not own.switches and not own.electronic:
         ends[0] = max(ends[0], min(c.low, c.inverse(soon)))
     return min(ends), max(ends)
@@ -128,4 +128,4 @@ def _place(c, value):
         below = value <= 0.0 or value == -np.inf
         return np.inf if below == (c.kind == "inverse") else -np.inf
     # A limit itself may be singular.
-    return c.inverse(value) + (_ROOM if value == c.parameter.least else -_ROOM)
+    return c.inverse(value) + (_ROOM if value == c.parameter.limits[0] else -_ROOM)
