@@ -132,7 +132,7 @@ laws: env  ## contact laws from outside the catalogue: 30 records, their free-fo
 	$(START) --cores $(CORES) blind_laws
 
 docs: .venv/documented  ## build the documentation into results/docs
-	$(BIN)/mkdocs build --quiet --config-file workflow/mkdocs.yml
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --config-file workflow/mkdocs.yml
 
 lock:  ## resolve the requirements anew; versions already locked stay unless UPGRADE=--upgrade
 	@tools=$$(mktemp -d) && trap 'rm -rf "$$tools"' EXIT && $(PYTHON) -m venv "$$tools" && \

@@ -18,6 +18,7 @@ from sonicvacuum.report.inline import formula
 
 ROOT = Path(__file__).resolve().parents[1]
 _DRAWN = Path(tempfile.mkdtemp(prefix="gallery-"))
+REPOSITORY = "repository:"
 LEDGER = """# Ledger of claims
 
 Every checkable statement of the paper (C. Daraio and V. F. Nesterenko, 2006), held against the simulation.
@@ -73,11 +74,16 @@ def on_page_markdown(markdown, page, config, files):
         ("[figures/README.md](../figures/README.md)", "`figures/README.md`"),
         ("[docs/example](example/README.md)", "`docs/example`"),
         ("](../figures/", "](figures/"),
-        ("](../", "](../../"),
+        ("](../", f"]({REPOSITORY}"),
         (".ipynb)", ".md)"),
     ):
         markdown = markdown.replace(written, there)
     return markdown
+
+
+def on_page_content(html, page, config, files):
+    """Links to files of the repository, which are none of the site: only now, so that all others are checked."""
+    return html.replace(f'href="{REPOSITORY}', 'href="../../').replace(f'src="{REPOSITORY}', 'src="../../')
 
 
 def _notebook(path):

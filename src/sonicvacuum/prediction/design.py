@@ -93,7 +93,7 @@ def design(
     strength: float = STRENGTH,
     noise: float = NOISE,
     echo: bool = True,
-    **chain,
+    **chain: str | float | None,
 ) -> Design:
     """Where to put how many gauges and which runs to make, to tell effects apart and from none.
 
