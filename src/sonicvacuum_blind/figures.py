@@ -6,6 +6,7 @@ confusion.csv, accuracy.csv, reliability.csv, pit.csv, baselines.csv. A picture 
 not there is left out.
 """
 
+import math
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -235,6 +236,8 @@ def pit(table: pandas.DataFrame) -> Figure:
                 look = {"color": style.ORANGE if far else style.BLUE, "lw": 1.4 if far else 0.8}
                 y = (ecdf - x) / row.band
                 axes.plot(x, y, ls="-" if far or k == 0 else (0, (4, 1.5)), **look)
+                if far and k == 0:  # it may leave the band by less than is seen, or between the steps kept
+                    _farthest(axes, x, y, row.distance / row.band)
                 if far and k:
                     at = int(np.argmax(np.abs(y)))
                     side = "bottom" if y[at] > 0.0 else "top"
@@ -246,6 +249,17 @@ def pit(table: pandas.DataFrame) -> Figure:
             if k == 0:
                 axes.set_ylabel("(ECDF − diagonal) / half width of band")
     return figure
+
+
+def _farthest(axes, x, y, ratio):
+    """How far a curve goes, written where it does."""
+    at = int(np.argmax(np.abs(y)))
+    side = "bottom" if y[at] > 0.0 else "top"
+    told = f"farthest: {ratio:.3f}"
+    axes.text(
+        x[at], math.copysign(1.03 * max(abs(y[at]), 1.0), y[at]), told, fontsize=6.5, ha="center", va=side
+    )
+    axes.margins(y=0.12)
 
 
 def baselines(table: pandas.DataFrame) -> Figure:

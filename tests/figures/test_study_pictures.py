@@ -122,3 +122,11 @@ def test_missing_tables_are_named(tmp_path):
         kept.read(tmp_path)
     with pytest.raises(InputError, match=r"baselines\.csv is missing"):
         kept.read(tmp_path, ["baselines"])
+
+
+def test_a_curve_that_hardly_leaves_its_band_says_so():
+    """One that leaves it by 0.2 % is orange, and looks as if it stayed."""
+    ecdf = " ".join(f"{k / 100 - 0.02 * (k == 70):.4f}" for k in range(1, 100))
+    row = {"effect": "all", "count": 2000, "distance": 0.02004, "band": 0.02, "inside": "no", "ecdf": ecdf}
+    shown = texts(study.pit(pandas.DataFrame([row])))
+    assert "farthest: 1.002" in [text.get_text() for text, _ in shown]

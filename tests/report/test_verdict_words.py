@@ -4,6 +4,7 @@ import pytest
 from made_verdicts import KINDS, gaps, model, verdict
 from msgspec.structs import replace
 
+from sonicvacuum.discover.parts import CellFit, GoodnessOfFit
 from sonicvacuum.discover.verdict import Where
 from sonicvacuum.effects import CATALOGUE
 from sonicvacuum.report import bench, misfit, rows, words
@@ -21,6 +22,22 @@ from sonicvacuum.report import bench, misfit, rows, words
 )
 def test_probabilities_in_words(probability, text):
     assert words.in_words(probability) == text
+
+
+@pytest.mark.parametrize(
+    ("ps", "told"),
+    [
+        ([0.1], "there with probability 0.1."),
+        ([0.1, 0.9], "there with probability 0.1, in some trace of 2 with 0.19."),
+        ([1e-30, 0.9, 0.8], "there with probability 1e-30, in some trace of 3 with 3e-30."),
+        ([1.0, 1.0], "there with probability 1, in some trace of 2 with 1."),
+    ],
+)
+def test_the_worst_of_many_traces_is_told_as_that(ps, told):
+    """One of twelve traces has a p below 0.08 more often than not."""
+    cells = [CellFit(run="a", sensor=f"g{k}", chi2=2.0 - k, p=p, whiteness=0.5) for k, p in enumerate(ps)]
+    left = GoodnessOfFit(nominal=cells, extended=cells, p={}, smooth_rel=0.0, wider=1.0)
+    assert misfit.goodness(verdict(fit=left)).endswith(told)
 
 
 def test_a_gap_that_is_not_closed_is_not_called_closed():

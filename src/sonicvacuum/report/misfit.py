@@ -1,5 +1,6 @@
 """What a record's page tells of the misfit: where it is, how it shrinks, whether what is left is noise."""
 
+import math
 from collections import Counter
 
 from sonicvacuum.discover.judge.locate import DISCOVERY_RATE
@@ -76,8 +77,8 @@ def gap(verdict: Verdict, runs: int = 0) -> str:
     fitted, held_out = verdict.gap.fitted, verdict.gap.held_out
     if not effects_of(verdict) and not verdict.law:
         text = (
-            f"The nominal model leaves a mean squared misfit of {fitted.before:.3g} times the noise; 1 is "
-            "expected."
+            f"The nominal model leaves a mean squared misfit of {fitted.before:.3g} times that of the "
+            "noise; 1 is expected."
         )
         if not verdict.named:
             return f"{text} As nothing was added, nothing changes."
@@ -85,8 +86,8 @@ def gap(verdict: Verdict, runs: int = 0) -> str:
             return f"{text} Nothing was added that would lower it."
         return f"{text} The nearest model that was found, which is not named, leaves {fitted.after:.3g}."
     text = (
-        f"The nominal model leaves a mean squared misfit of {fitted.before:.4g} times the noise, the "
-        f"extended model {fitted.after:.4g}{_closed(fitted)}; 1 is expected."
+        f"The nominal model leaves a mean squared misfit of {fitted.before:.4g} times that of the noise, "
+        f"the extended model {fitted.after:.4g}{_closed(fitted)}; 1 is expected."
     )
     if held_out is None:
         return f"{text} There is one run only, so that none could be held out."
@@ -107,6 +108,14 @@ def _closed(one: Gap):
     return f" ({closed:.3g} % of the gap closed)" if closed > 0.0 else " (the gap is not closed)"
 
 
+def _somewhere(p: float, traces: int) -> str:
+    """The same probability of some trace of many: the worst of them is told."""
+    if traces < 2:
+        return ""
+    some = 1.0 if p >= 1.0 else -math.expm1(traces * math.log1p(-p))
+    return f", in some trace of {traces} with {number(str(some), 2)}"
+
+
 def goodness(verdict: Verdict) -> str:
     """Whether what the model leaves looks like noise; empty for verdicts that did not ask."""
     fit = verdict.fit
@@ -114,8 +123,9 @@ def goodness(verdict: Verdict) -> str:
         return ""
     worst = max(fit.extended, key=lambda c: c.chi2)
     text = (
-        f"The largest mean squared misfit of a trace is {worst.chi2:.3g} times the noise (run {worst.run}, "
-        f"gauge {worst.sensor}), which noise alone would give with probability {number(str(worst.p), 2)}."
+        f"The largest mean squared misfit of a trace is {worst.chi2:.3g} times that of the noise (run "
+        f"{worst.run}, gauge {worst.sensor}), which noise alone would give there with probability "
+        f"{number(str(worst.p), 2)}{_somewhere(worst.p, len(fit.extended))}."
     )
     if fit.smooth_rel:
         text += (

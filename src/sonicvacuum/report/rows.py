@@ -162,7 +162,7 @@ def rounds(table: list[dict], catalogue) -> list[dict]:
     return [
         {
             "name": _round(r["run"].split(": ", 1)[1], catalogue),
-            "value": number(r["after"], 3),
+            "value": number(r["after"]),  # as many digits as the sentence above it
             "percent": f"{100.0 * min(max(math.log(max(v, 1.0)) / most, 0.0), 1.0):.1f}",
         }
         for r, v in zip(steps, values, strict=True)
