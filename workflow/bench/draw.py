@@ -1,6 +1,6 @@
 """Draw the benchmark's figures from its tables: python workflow/bench/draw.py FOLDER."""
 
-import sys
+import argparse
 from pathlib import Path
 
 import pandas
@@ -8,7 +8,9 @@ import pictures
 
 from sonicvacuum.figures import style
 
-folder = Path(sys.argv[1])
+parser = argparse.ArgumentParser(description=__doc__)
+parser.add_argument("folder", metavar="FOLDER", type=Path, help="of the tables, and of the figures")
+folder = parser.parse_args().folder
 tables = {name: pandas.read_csv(folder / f"bench_{name}.csv") for name in ("accuracy", "length", "lanes")}
 for name, figure in (
     ("accuracy", pictures.draw_accuracy(tables["accuracy"])),

@@ -4,6 +4,7 @@ measured.
 `python workflow/bench/hands_on.py` renews the page from the tables kept beside the ledger.
 """
 
+import argparse
 import csv
 from pathlib import Path
 
@@ -73,4 +74,8 @@ def renewed(text: str) -> str:
 
 
 if __name__ == "__main__":
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.parse_args()
     PAGE.write_text(renewed(PAGE.read_text(encoding="utf-8")), encoding="utf-8")

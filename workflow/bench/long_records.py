@@ -5,6 +5,7 @@ samples of a run (the same stretch of time, the same noise of one sample), as a 
 it on one thread. One row for each: processor seconds of reading and of searching, memory, what was named.
 """
 
+import argparse
 import csv
 import json
 import subprocess
@@ -75,4 +76,12 @@ def main(out: Path, sizes: list[int]) -> None:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), [int(n) for n in sys.argv[2:]])
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("out", metavar="OUT", type=Path, help="table (CSV) to write")
+    parser.add_argument(
+        "samples", metavar="SAMPLES", nargs="*", type=int, help="of a run; by default a thousand to a million"
+    )
+    given = parser.parse_args()
+    main(given.out, given.samples)

@@ -4,12 +4,10 @@
 installs, and a Chromium on the path. Heights are in px, of the whole page.
 """
 
+import argparse
 import csv
 import shutil
-import sys
 from pathlib import Path
-
-from playwright.sync_api import sync_playwright
 
 WIDTHS = (1300, 900, 400)
 COLUMNS = ("page", "kB", "at 1300", "all unfolded", "at 900", "at 400", "A4 pages")
@@ -43,6 +41,8 @@ def measured(browser, name: str, path: Path) -> list:
 
 def main(out: str, pages: list[str]) -> None:
     """Measure all pages and write the table."""
+    from playwright.sync_api import sync_playwright  # not of the locked environment: --help does without
+
     with sync_playwright() as driver, open(out, "w", encoding="utf-8", newline="") as stream:
         browser = driver.chromium.launch(executable_path=shutil.which("chromium"), args=["--no-sandbox"])
         table = csv.writer(stream, lineterminator="\n")
@@ -57,4 +57,10 @@ def _named(page):
 
 
 if __name__ == "__main__":
-    main(sys.argv[1], sys.argv[2:])
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("out", metavar="OUT", help="table (CSV) to write")
+    parser.add_argument("pages", metavar="NAME=FILE", nargs="+", help="name of a page, and its file")
+    given = parser.parse_args()
+    main(given.out, given.pages)

@@ -10,6 +10,7 @@ Importing numba alone stands first, as a yardstick. Python keeps its bytecode, w
 without it every start compiles the package's sources anew.
 """
 
+import argparse
 import csv
 import json
 import os
@@ -189,4 +190,11 @@ def main(results: Path, out: Path, names: list[str]) -> None:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]).resolve(), Path(sys.argv[2]), sys.argv[3:])
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("results", metavar="RESULTS", type=Path, help="folder of a finished pipeline")
+    parser.add_argument("out", metavar="OUT", type=Path, help="table (CSV) to write")
+    parser.add_argument("verbs", metavar="VERB", nargs="*", help="by default all")
+    given = parser.parse_args()
+    main(given.results.resolve(), given.out, given.verbs)

@@ -5,6 +5,7 @@ runs the README's commands on them: import, check, discover. One row for each la
 each step (user and system), what was named, and what the import had to be told besides the README's options.
 """
 
+import argparse
 import csv
 import os
 import subprocess
@@ -170,4 +171,12 @@ def main(out: Path, names: list[str]) -> None:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), sys.argv[2:])
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("out", metavar="OUT", type=Path, help="table (CSV) to write")
+    parser.add_argument("layouts", metavar="LAYOUT", nargs="*", help=f"by default all: {', '.join(LAYOUTS)}")
+    given = parser.parse_args()
+    if unknown := set(given.layouts) - set(LAYOUTS):
+        parser.error(f"no such layout: {', '.join(sorted(unknown))}")
+    main(given.out, given.layouts)

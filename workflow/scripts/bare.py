@@ -4,6 +4,7 @@ Its dependencies take the versions of requirements.lock. Run it from the top of 
 locked environment's Python: `make bare`. Ends with 1 and the reason where something fails.
 """
 
+import argparse
 import re
 import subprocess
 import sys
@@ -57,4 +58,8 @@ def main() -> None:
 
 
 if __name__ == "__main__":
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.parse_args()
     main()

@@ -4,7 +4,7 @@ The data come from the blind study's own integrator, which shares no code with t
 hidden in them, `HIDDEN`. Usage: python workflow/scripts/example.py FOLDER
 """
 
-import sys
+import argparse
 from pathlib import Path
 
 import numpy as np
@@ -83,4 +83,8 @@ def write(folder) -> None:
 
 
 if __name__ == "__main__":
-    write(sys.argv[1])
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("folder", metavar="FOLDER", help="where the four files are written")
+    write(parser.parse_args().folder)

@@ -4,6 +4,7 @@ Prints one line for each mutation with the tests that notice it; ends with 1 whe
 top of the repository: `python workflow/scripts/mutations.py`.
 """
 
+import argparse
 import os
 import re
 import shutil
@@ -90,4 +91,8 @@ def main() -> int:
 
 
 if __name__ == "__main__":
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.parse_args()
     sys.exit(main())

@@ -10,6 +10,7 @@ the rest together, its jobs use one thread each however many cores there are, an
 against git besides.
 """
 
+import argparse
 import filecmp
 import json
 import os
@@ -122,4 +123,8 @@ def main() -> int:
 
 
 if __name__ == "__main__":
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.parse_args()
     sys.exit(main())
