@@ -14,7 +14,7 @@ from msgspec.structs import asdict, replace
 from sonicvacuum.card import Card, CaseBlock, SensorBlock, StrikerBlock, resolve
 from sonicvacuum.files import InputError, check_values, convert
 from sonicvacuum.laboratory.blocks import BeadBlock, ChainBlock
-from sonicvacuum.laboratory.ranges import LaboratoryError, check_coating
+from sonicvacuum.laboratory.ranges import DIAMETER, LaboratoryError, check_coating
 from sonicvacuum.materials import MATERIALS
 from sonicvacuum.physics.theory import bead_mass
 
@@ -278,6 +278,7 @@ def _mass_g(made: Any, place: str) -> float:
     """Mass in g of the ball of a block; InputError for what is no ball, or has no density in the table."""
     if made.diameter_mm is None or "flat" in (getattr(made, "faces", None), getattr(made, "shape", None)):
         raise InputError(f"{place}: mass_g: missing; only that of a ball follows from diameter and material")
+    DIAMETER.check(f"{place}.diameter_mm", made.diameter_mm)
     core, coating_um = getattr(made, "core", None), getattr(made, "coating_um", None) or 0.0
     if coating_um:
         check_coating(place, made)

@@ -92,6 +92,7 @@ def whole(**changes):
             lambda: sv.bead(diameter_mm=5, material="parylene-c", coating_um=5000, core="glass"),
             r"bead\.coating_um: .*5000",
         ),
+        (lambda: sv.bead(diameter_mm=1e308, material="glass"), r"bead\.diameter_mm: is 1e\+308 mm, outside"),
         (lambda: sv.bead(diameter_mm=float("inf"), material="glass"), "bead: diameter_mm: is inf"),
         (lambda: sv.gauge("velocity", bead=1.5), r"gauge: bead: is 1\.5"),
         (lambda: sv.chain(pattern=3, beads=3), "chain: pattern: is a int"),

@@ -83,6 +83,8 @@ WRONG = [
     ({"diameter": "20"}, "diameter: is '20'; write a number with its unit, as in 20mm"),
     ({"diameter": "20 kg"}, "diameter: is '20 kg'"),
     ({"diameter": "20m"}, "diameter: is 20000 mm, outside"),
+    ({"diameter": "1e308mm"}, "diameter: is 1e+308 mm, outside 0.02 to 500 mm"),
+    ({"striker_diameter": "1e308mm"}, "striker_diameter: is 1e+308 mm, outside 0.02 to 500 mm"),
     ({"mass": "33kg"}, "mass: is 33000 g, which at a diameter of 20 mm"),
     ({"mass": "-3g"}, "mass: is '-3g'; it must be a positive number"),
     ({"material": "bearing-stel"}, "did you mean bearing-steel?"),

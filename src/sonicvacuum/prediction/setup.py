@@ -12,7 +12,7 @@ from sonicvacuum.builders import ball_mass
 from sonicvacuum.card import Card, CaseBlock, resolve
 from sonicvacuum.files import InputError, convert, likely
 from sonicvacuum.laboratory.next_run import gauge_beads
-from sonicvacuum.laboratory.ranges import LaboratoryError
+from sonicvacuum.laboratory.ranges import DIAMETER, LaboratoryError
 from sonicvacuum.materials import MATERIALS
 from sonicvacuum.physics.extent import Extent, TooLargeError
 from sonicvacuum.scope.units import quantity
@@ -137,9 +137,18 @@ def _bead(diameter, material, mass, coating, core):
         raise InputError(f"{lacking}: missing beside {given}; give both, or neither for solid beads")
     if coating is not None and coating >= diameter / 2.0:
         raise InputError(f"coating: is {coating:g} m on a bead of {diameter:g} m; it must be below half")
-    mass = ball_mass(diameter, material, coating, core) if mass is None else mass
+    mass = _mass("diameter", diameter, material, coating, core) if mass is None else mass
     bead = {"diameter_mm": diameter * 1e3, "mass_g": mass * 1e3, "material": material}
     return bead if coating is None else bead | {"coating_um": coating * 1e6, "core": core}
+
+
+def _mass(name, diameter, *solid):
+    """Mass in kg of a ball; InputError for a diameter in m of which none can be computed with."""
+    try:
+        DIAMETER.check(name, 1e3 * diameter)
+    except LaboratoryError as error:
+        raise InputError(str(error)) from None
+    return ball_mass(diameter, *solid)
 
 
 def _striker(shape, mass, diameter, material, bead):
@@ -158,7 +167,7 @@ def _striker(shape, mass, diameter, material, bead):
     if diameter is None:
         heavy = ball_mass(1.0, material)
         diameter = bead["diameter_mm"] / 1e3 if mass is None else (mass / heavy) ** (1.0 / 3.0)
-    mass = ball_mass(diameter, material) if mass is None else mass
+    mass = _mass("striker_diameter", diameter, material) if mass is None else mass
     return {"shape": shape, "material": material, "mass_g": mass * 1e3, "diameter_mm": diameter * 1e3}
 
 
