@@ -82,7 +82,7 @@ def on_page_markdown(markdown, page, config, files):
 
 
 def on_page_content(html, page, config, files):
-    """Links to files of the repository, which are none of the site: only now, so that all others are checked."""
+    """Links to files of the repository, none of the site: only now, so that all others are checked."""
     return html.replace(f'href="{REPOSITORY}', 'href="../../').replace(f'src="{REPOSITORY}', 'src="../../')
 
 
