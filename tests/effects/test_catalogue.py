@@ -60,7 +60,7 @@ def test_the_header_is_complete_and_closed(one):
         assert getattr(one, name).strip() == getattr(one, name) != "", name
     assert "\n" not in one.missing
     assert one.places in KINDS_OF_PLACE
-    assert (one.places is None) == (one.choices is None)
+    assert (one.sits is None) == (one.choices is None)
     assert any(p.switches for p in one.parameters)
 
 

@@ -103,7 +103,7 @@ def effects(name, own):
     known = catalogue(own)
     if name is None:
         for e in known:
-            taken = ", ".join([*(p.name for p in e.parameters), *([e.places] if e.places else [])])
+            taken = ", ".join([*(p.name for p in e.parameters), *([e.sits] if e.sits else [])])
             click.echo(f"{e.id:18} {e.missing} ({taken})")
         return
     if name not in known:
@@ -124,8 +124,8 @@ def effects(name, own):
     for p in e.parameters:
         off = "shapes only" if p.off is None else "as recorded" if callable(p.off) else f"off at {p.off:g}"
         click.echo(f"{p.name:12} {p.help}; {p.unit}, {off}, searched from {p.low:g} to {p.high:g}")
-    if e.places:
-        click.echo(f"{e.places:12} where it sits")
+    if e.sits:
+        click.echo(f"{e.sits:12} where it sits" + ("" if e.places else ", where the beads are of several"))
 
 
 @verb("sonicvacuum schema --out config.schema.json", short_help="JSON schema of config.yaml, for editors.")

@@ -10,13 +10,14 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from sonicvacuum.effects import whereabouts
 from sonicvacuum.effects.catalogue import EMPTY, Catalogue
 from sonicvacuum.numerals import number_cure
 from sonicvacuum.physics.chain import Chain
 from sonicvacuum.physics.laws import Term
 
 MICRO = 1e-6
-PLACES = (None, "bead", "contact", "sensor")
+PLACES = (None, "bead", "contact", "sensor", "material")
 PRIORS = ("log-uniform", "uniform", "log-normal", "normal")
 # What is smaller, in any unit, has powers that are no numbers.
 FAINTEST = 1e-100
@@ -168,9 +169,13 @@ class Effect:
         energy: what it stores or takes, per contact or body; v is the rate of delta, u' a body's velocity.
         reference: where the form comes from; says so where a form was chosen.
         parameters: continuous parameters; at least one has an off value.
-        places: "bead", "contact" or "sensor" where the effect sits at one of them, else None; that word is
-            then one more parameter, a number (or (lanes,) whole numbers): beads and contacts as the chain
-            counts them, sensors from 0 in the order of the setup, or by id.
+        places: "bead", "contact", "sensor" or "material" where the effect sits at one of them, else None;
+            that word is then one more parameter, a number (or (lanes,) whole numbers): beads and contacts as
+            the chain counts them, sensors from 0 in the order of the setup, or by id, materials of the beads
+            likewise (`whereabouts.materials_of`).
+        of_several: the same word where the effect sits somewhere only in setups that leave it a choice, as a
+            material does only where the beads are of several; elsewhere it has no place, and the word may be
+            left out of its parameters: its first place is meant then. See `located`.
         signature: what it moves in the readings, and which way.
         when_to_use: what makes it likely.
         when_not: where it means nothing, or where another effect is the better name.
@@ -202,6 +207,7 @@ class Effect:
     dissipative: bool
     change: Callable[..., Setup] = field(repr=False)
     places: str | None = None
+    of_several: str | None = None
     choices: Callable[[Setup], tuple[int, ...]] | None = field(default=None, repr=False)
     lacks: Callable[[Setup], str | None] | None = field(default=None, repr=False)
     stated: Callable | None = field(default=None, repr=False)
@@ -214,6 +220,16 @@ class Effect:
         """The continuous parameter of that name (KeyError if there is none)."""
         return {p.name: p for p in self.parameters}[name]
 
+    @property
+    def sits(self) -> str | None:
+        """The parameter that says where the effect sits, in all setups or in some; None without one."""
+        return self.places or self.of_several
+
+    def located(self, chain: Chain) -> "Effect":
+        """The effect as one that sits somewhere, where a chain leaves it a choice; else the same."""
+        choice = self.of_several is not None and len(self._possible(Setup(chain))) > 1
+        return replace(self, places=self.of_several) if choice else self
+
     def informed(self, chain: Chain, tolerances) -> "Effect":
         """The effect with what a record states of its parameters; the same where it states nothing."""
         known = self.stated(chain, tolerances) if self.stated else {}
@@ -223,6 +239,9 @@ class Effect:
 
     def candidates(self, setup: Setup) -> tuple[int, ...]:
         """Places at which the effect can sit in this setup; empty for an effect without place."""
+        return self._possible(setup) if self.places else ()
+
+    def _possible(self, setup):
         return self.choices(setup) if self.choices else ()
 
     def why_not(self, setup: Setup) -> str | None:
@@ -258,12 +277,12 @@ class Effect:
             p.name: parameters.get(p.name, p.off_in(setup) if p.switches else p.scale)
             for p in self.parameters
         }
-        if self.places:
-            given[self.places] = self._place(setup, parameters)
+        if self.places or self.of_several in parameters:
+            given[self.sits] = self._place(setup, parameters)
         return self.change(setup, **given)
 
     def _check(self, setup, parameters):
-        names = [p.name for p in self.parameters] + ([self.places] if self.places else [])
+        names = [p.name for p in self.parameters] + ([self.sits] if self.sits else [])
         for name in parameters:
             if name not in names:
                 raise ValueError(f"effect {self.id} has no parameter {name}; it has {', '.join(names)}")
@@ -275,22 +294,12 @@ class Effect:
                 p.check(parameters[p.name], self.id)
 
     def _place(self, setup, parameters):
-        if self.places not in parameters:
-            raise ValueError(f"effect {self.id} needs the parameter {self.places}: where it sits")
-        place, possible = parameters[self.places], self.candidates(setup)
-        if isinstance(place, str):
-            if self.places != "sensor":
-                raise ValueError(
-                    f"effect {self.id}: {self.places} is {place!r}, not a number{number_cure(place)}"
-                )
-            ids = [s.id for s in setup.sensors]
-            place = ids.index(place) if place in ids else -1
-        if not np.all(np.isin(place, possible)):
-            raise ValueError(
-                f"effect {self.id}: {self.places} is {parameters[self.places]}; "
-                f"possible here: {', '.join(map(str, possible)) or 'none'}"
-            )
-        return place
+        if self.sits not in parameters:
+            raise ValueError(f"effect {self.id} needs the parameter {self.sits}: where it sits")
+        try:
+            return whereabouts.place(self.sits, parameters[self.sits], self._possible(setup), setup)
+        except ValueError as error:
+            raise ValueError(f"effect {self.id}: {error}") from None
 
 
 def add_term(setup: Setup, term: Term, coefficients: Callable, **parameters) -> Setup:

@@ -71,13 +71,12 @@ class Catalogue:
         return Catalogue(result, self.besides)
 
     def informed(self, chain, tolerances) -> Catalogue:
-        """The catalogue with ranges that suit a record's chains (`sized`), and what it states of the effects'
-        parameters, see `Effect.stated`.
+        """The catalogue with ranges that suit a record's chains (`sized`), what it states of the effects'
+        parameters (`Effect.stated`), and places where these chains leave effects a choice (`Effect.located`).
         """
         ratios = ratios_of(chain)
-        return Catalogue(
-            tuple(sized(e, ratios).informed(chain, tolerances) for e in self.effects), self.besides
-        )
+        own = (sized(e, ratios).informed(chain, tolerances).located(chain) for e in self.effects)
+        return Catalogue(tuple(own), self.besides)
 
     def held(self, ids: Iterable[str]) -> Catalogue:
         """The catalogue of a model that holds some effects already: no search tries them."""

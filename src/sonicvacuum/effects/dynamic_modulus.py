@@ -1,14 +1,24 @@
-"""The contact material is stiffer (or softer) at impact rates than its handbook modulus says."""
+"""The contact material is stiffer (or softer) at impact rates than its handbook modulus says.
+
+Beads of several materials have as many that may be so: the effect sits in one of them then.
+"""
 
 from dataclasses import replace
 
+import numpy as np
+
 from sonicvacuum.effects.base import Effect, Parameter, Setup
+from sonicvacuum.effects.whereabouts import materials, materials_of
 
 
-def change(setup: Setup, modulus_ratio) -> Setup:
-    """Scale the modulus of every body that is made of the beads' contact material."""
-    chain = setup.chain
-    return replace(setup, chain=chain.stiffened(chain.first.surface.name, modulus_ratio))
+def change(setup: Setup, modulus_ratio, material=0) -> Setup:
+    """Scale the modulus of every body that is made of one contact material of the beads."""
+    chain, names = setup.chain, materials_of(setup.chain)
+    if np.ndim(material) == 0:
+        return replace(setup, chain=chain.stiffened(names[int(material)], modulus_ratio))
+    for k in np.unique(material):
+        chain = chain.stiffened(names[k], np.where(np.asarray(material) == k, modulus_ratio, 1.0))
+    return replace(setup, chain=chain)
 
 
 EFFECT = Effect(
@@ -33,6 +43,8 @@ EFFECT = Effect(
             acts_like="modulus",
         ),
     ),
+    of_several="material",
+    choices=materials,
     signature="speed as s^{1/3} at given force, forces as s^{2/5} at given striker; no decay, 1/6 "
     "power law kept",
     when_to_use="polymers and coatings loaded at 10^2 to 10^3 per second against moduli from slow tests",

@@ -82,9 +82,13 @@ def _parameter(p):
 def _places(effect):
     known = ", ".join(filter(None, PLACES))
     _need(effect.places in PLACES, f"places: is {effect.places!r}; use one of {known}, or leave it out")
-    paired = (effect.places is None) == (effect.choices is None)
-    _need(paired, "places and choices: give both, or neither")
-    names = [p.name for p in effect.parameters] + ([effect.places] if effect.places else [])
+    _need(
+        effect.of_several in (None, "material"),
+        f"of_several: is {effect.of_several!r}; use material, or leave it out",
+    )
+    paired = (effect.sits is None) == (effect.choices is None)
+    _need(paired, "places (or of_several) and choices: give both, or neither")
+    names = [p.name for p in effect.parameters] + ([effect.sits] if effect.sits else [])
     try:
         inspect.signature(effect.change).bind(None, **dict.fromkeys(names))
     except TypeError:

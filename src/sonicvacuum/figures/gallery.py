@@ -131,6 +131,8 @@ def _entry(effect: Effect, pictures, typeset):
         f"* `{p.name}`: {told(f'{p.help}; searched from {p.low:g} to {p.high:g}{units[p.name]}')}"
         for p in effect.parameters
     )
+    if effect.of_several:
+        parameters += f"\n* `{effect.of_several}`: which one, of beads of several"
     return f"""
 ## {effect.title} (`{effect.id}`)
 
