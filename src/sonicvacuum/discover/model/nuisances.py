@@ -33,8 +33,8 @@ DEFAULTS = Tolerances(
     speed_common_rel=0.0,
     gain_common_rel=0.0,
 )
-# A material whose modulus nobody stated an error of counts only if that error moves the stiffness of a
-# contact by more than this: steel behind a polymer does not.
+# A material whose modulus nobody stated an error of counts only if that error moves the stiffness of one of
+# its contacts by more than this: steel between polymers does not, but before a wall of steel it does.
 NEGLIGIBLE = 3e-3
 
 
@@ -276,19 +276,33 @@ def _moduli(record, chains) -> dict[str, float]:
     surfaces = {name: known[name] for name in [*common, *sorted(known.keys() - set(common))]}
     cores = {s.core.name: s.core for s in chain.solids if s.core}
     first = chain.first.surface.name
-    own = surfaces.pop(first)
+    del surfaces[first]
+    shares = _shares(chains)
     found = {}
     for name in surfaces | cores:
         unstated, error = record.modulus_rel_sigma(name) is None, record.taken_modulus_rel_sigma(name)
         if name == first or (unstated and name not in surfaces):
             continue
-        if unstated and _share(surfaces[name], own) * error < NEGLIGIBLE:
+        if unstated and shares.get(name, 0.0) * error < NEGLIGIBLE:
             continue
         found[name] = error
     return found
 
 
-def _share(surface, other) -> float:
-    """Share of a contact's compliance that one side has: d log K / d log E."""
-    one, two = ((1.0 - s.poisson**2) / float(np.ravel(s.modulus)[0]) for s in (surface, other))
-    return one / (one + two)
+def _shares(chains) -> dict[str, float]:
+    """Material → d log K / d log E of that contact in which it has most of the compliance.
+
+    Any bead may be the last: the number of beads may be a slip, and nuisances are the same with and without.
+    """
+    shares: dict[str, float] = {}
+    for chain in chains:
+        bodies, wall = chain.bodies, len(chain.solids) - 1
+        inner = bodies.neighbours(chain.beads + len(bodies.pattern)) if chain.beads else ()
+        ends = [(0, bodies.kind(1) + 1), *((k, wall) for k in range(1, wall))] if chain.beads else [(0, wall)]
+        for i, j in {*ends, *((i + 1, j + 1) for i, j in inner)}:
+            one, other = chain.solids[i].surface, chain.solids[j].surface
+            near, far = ((1.0 - s.poisson**2) / float(np.ravel(s.modulus)[0]) for s in (one, other))
+            for surface, part in ((one, near), (other, far)):
+                share = 1.0 if one.name == other.name else part / (near + far)
+                shares[surface.name] = max(share, shares.get(surface.name, 0.0))
+    return shares
