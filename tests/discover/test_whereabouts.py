@@ -69,7 +69,7 @@ def test_a_strong_effect_is_where_it_is():
     told = fitted(forward, wide.nominal(forward), "mass-defect", 5, 0.8)
     (one,) = whereabouts.spread(forward, told, setup_of(forward))
     assert (one.fit, one.probability) == (told, 1.0)
-    assert whereabouts.unsure([one], told, forward.experiment.gauges) == []
+    assert whereabouts.unsure([one], told, forward.experiment) == []
 
 
 def test_every_gauge_is_asked():
@@ -79,7 +79,7 @@ def test_every_gauge_is_asked():
     told = fitted(forward, wide.nominal(forward), "sensor-gain", 1, 1.005)
     found = whereabouts.spread(forward, told, setup_of(forward))
     assert {r.fit.hypothesis.components[0].place for r in found} == {0, 1, 2}
-    (line,) = whereabouts.unsure(found, told, forward.experiment.gauges)
+    (line,) = whereabouts.unsure(found, told, forward.experiment)
     assert line.startswith("sensor-gain sits at gauge g7 (")
     assert " or g4 (" in line and " or wall (" in line
 

@@ -2,6 +2,7 @@
 stay.
 """
 
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -17,8 +18,10 @@ from sonicvacuum.discover.model import window
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis
 from sonicvacuum.discover.model.problem import experiment
+from sonicvacuum.discover.search.starts import setup_of
 from sonicvacuum.discover.verdict import Gap, Model, Sources, gap
-from sonicvacuum.effects import CATALOGUE, Catalogue, free_form
+from sonicvacuum.effects import CATALOGUE, Catalogue, Setup, free_form
+from sonicvacuum.effects import whereabouts as where
 from sonicvacuum.files import InputError, reading
 from sonicvacuum.laboratory import ranges
 from sonicvacuum.laboratory.ranges import Range
@@ -69,7 +72,7 @@ def read_model(path, catalogue: Catalogue = CATALOGUE) -> Model:
     for name, given in found.effects.items():
         check_source(path, name, found.sources, catalogue)
         one = catalogue.effect(name)
-        known = [p.name for p in one.parameters] + [one.places]
+        known = [p.name for p in one.parameters] + [one.sits]
         for key in given:
             if key not in known:
                 raise InputError(
@@ -105,15 +108,17 @@ def check_source(path, name: str, sources: Sources, catalogue: Catalogue) -> Non
 def _check_values(path, one, given):
     """InputError for a parameter without meaning, or an effect whose place is missing or no whole number."""
     for key, value in given.items():
-        told = None if key == one.places else one.parameter(key).refused(value)
+        told = None if key == one.sits else one.parameter(key).refused(value)
         if told:
             raise InputError(f"{path}: effects.{one.id}.{key}: {told}")
-    if not one.places:
+    if not one.sits:
         return
-    at = given.get(one.places)
-    if at is None or not (0.0 <= at <= ranges.BEADS.high and at.is_integer()):
-        told = "is missing" if at is None else f"is {at:g}"
-        raise InputError(f"{path}: effects.{one.id}.{one.places}: {told}; give a whole number, zero or more")
+    at = given.get(one.sits, 0.0 if one.of_several else None)
+    if isinstance(at, str) and one.of_several:
+        return  # a name, of which no more is known without a chain
+    if isinstance(at, str) or at is None or not (0.0 <= at <= ranges.BEADS.high and at.is_integer()):
+        told = "is missing" if at is None else f"is {at if isinstance(at, str) else f'{at:g}'}"
+        raise InputError(f"{path}: effects.{one.id}.{one.sits}: {told}; give a whole number, zero or more")
 
 
 def _check_nuisances(path, found):
@@ -131,15 +136,31 @@ def _check_nuisances(path, found):
                 raise InputError(f"{path}: {error}") from None
 
 
-def hypothesis(model: Model, catalogue: Catalogue = CATALOGUE) -> Hypothesis:
-    """The model's effects, nothing free."""
+def hypothesis(model: Model, setup: Setup, catalogue: Catalogue = CATALOGUE) -> Hypothesis:
+    """The model's effects in a record's nominal setup, nothing free.
+
+    Raises:
+        ValueError: for an effect of a material of which no bead is.
+    """
     components = []
     for name, given in model.effects.items():
         one = catalogue.effect(name)
-        fixed = {k: v for k, v in given.items() if k != one.places}
-        place = int(given[one.places]) if one.places else None
-        components.append(Component(one, (), fixed, place))
+        fixed = {k: float(v) for k, v in given.items() if k != one.sits}
+        components.append(Component(one.located(setup.chain), (), fixed, _place(one, given, setup)))
     return Hypothesis(tuple(components))
+
+
+def _place(one, given, setup):
+    """Where an effect of a model sits; None where it sits nowhere."""
+    if one.places:
+        return int(given[one.places])
+    if one.of_several is None:
+        return None
+    try:
+        at = where.place(one.sits, given.get(one.sits, 0), one.choices(setup), setup)
+    except ValueError as error:
+        raise ValueError(f"effect {one.id}: {error}") from None
+    return int(at) if one.located(setup.chain).places else None
 
 
 @one_thread
@@ -149,9 +170,9 @@ def compare(model: Model, record: Record, threads: int = 1, catalogue: Catalogue
     sizes = np.array([forward.experiment.size(k) for k in range(len(forward.experiment.runs))])
     known = forward.experiment.present
     more = {name: given for name, given in model.effects.items() if name not in known}
-    whole = hypothesis(msgspec.structs.replace(model, effects=more), catalogue)
-    _check_extent(forward, whole)
-    nominal, extended = (_fit(forward, h) for h in (Hypothesis(), whole))
+    more = msgspec.structs.replace(model, effects=more)
+    nominal = _fit(forward, Hypothesis())
+    extended = _fit(forward, _made(forward, more, catalogue))
     before, after = nominal.normal.chi2[:, 0], extended.normal.chi2[:, 0]
     runs = {
         run.id: gap(float(before[k] / sizes[k]), float(after[k] / sizes[k]))
@@ -169,9 +190,9 @@ def compare(model: Model, record: Record, threads: int = 1, catalogue: Catalogue
     )
 
 
-def _beyond(law: dict[str, float], forward: Forward, one: Fit) -> list[str]:
+def _beyond(law: Mapping[str, float | str], forward: Forward, one: Fit) -> list[str]:
     """Whether contacts go farther than those of the data that a free-form law was fitted to."""
-    known = Reach.of(law)
+    known = Reach.of({key: float(value) for key, value in law.items()})
     if known is None:
         return []
     seen = reach(forward, one)
@@ -183,16 +204,21 @@ def _beyond(law: dict[str, float], forward: Forward, one: Fit) -> list[str]:
     ]
 
 
-def _check_extent(forward, one):
-    """InputError where the record's chains with the model in them ask for more than a computer gives."""
-    change, nu = one.change(np.zeros((1, 0))), np.zeros((1, forward.layout.size))
+def _made(forward, model, catalogue):
+    """The model's effects on a record; InputError where they do not fit it, or its chains with them ask for
+    more than a computer gives.
+    """
+    nu = np.zeros((1, forward.layout.size))
     try:
+        one = hypothesis(model, setup_of(forward), catalogue)
+        change = one.change(np.zeros((1, 0)))
         for batch in forward.experiment.batches:
             chain = change(forward.nominal(batch, nu), np.zeros(len(batch.runs), dtype=int)).chain
             asked = estimate(chain, 2 * len(forward.experiment.gauges) + 1, batch.duration, batch.interval)
             replace(asked, work=SIMULATIONS * asked.work).check("a model with weaker effects")
     except ValueError as error:
         raise InputError(f"the model does not fit this record: {error}") from None
+    return one
 
 
 def _fit(forward, one):

@@ -155,14 +155,13 @@ def _kept(left: list[Explanation]) -> set[str]:
 def _at_places(found: Investigation, rivals) -> list[Explanation]:
     """What is named at each place where it may sit, the told one first; [] where that is clear."""
     one = found.counted or found
-    gauges = one.forward.experiment.gauges
     own = whereabouts.where_open(rivals, one.final)
     return [
         Explanation(
             "+".join(r.fit.hypothesis.ids),
             float(np.log(r.probability)),
             r.fit,
-            whereabouts.named(r.fit, gauges),
+            whereabouts.named(r.fit, one.forward.experiment),
         )
         for r in [*own[:1], *sorted(own[1:], key=lambda r: -r.probability)][: 1 + _ALIKE]
     ]

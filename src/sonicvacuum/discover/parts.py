@@ -14,10 +14,13 @@ class Part(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class Value(Part, kw_only=True):
-    """A parameter with its standard error; of a bead or contact how far off it may be, 0 of a gauge."""
+    """A parameter with its standard error; of a bead or contact how far off it may be, 0 of a gauge or of a
+    material, which has its `name` besides.
+    """
 
     value: float
     sigma: float
+    name: str | UnsetType = UNSET
 
 
 class Gap(Part, kw_only=True):
@@ -93,7 +96,7 @@ class Known(Part, kw_only=True):
 class Next(Part, kw_only=True):
     """The change of the experiment that most likely leaves one explanation alone; the best one and its
     nearest rival there, and the `delta_chi2` predicted between them. Where these are one explanation at two
-    places, `places` has the bead, contact or gauge of each of its effects at either.
+    places, `places` has the bead, contact, gauge or material of each of its effects at either.
     """
 
     change: dict[str, float | int | str]

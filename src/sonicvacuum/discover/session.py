@@ -129,7 +129,7 @@ def discover(
     )
     told = law.told(free, found) if free else UNSET
     clock.mark("limits")
-    named, counted = verdict.named_effects(found), found.counted or found
+    named, counted, e = verdict.named_effects(found), found.counted or found, forward.experiment
     rivals, drawn = posterior.of_named(found)
     clock.mark("posterior")
     stages.begin("next experiment")
@@ -140,7 +140,7 @@ def discover(
         named=found.named,
         probabilities=found.probabilities,
         confusable=alike,
-        parameters=verdict.parameters(counted.final, rivals, drawn) if named else {},
+        parameters=verdict.parameters(counted.final, rivals, drawn, e.materials) if named else {},
         gap=verdict.gaps(found.null, final, found.sizes, before, left),
         where=verdict.where(places),
         upper_limits=verdict.upper_limits(limits),
@@ -148,7 +148,7 @@ def discover(
         next_experiment=proposal,
         reasons=[
             *found.reasons,
-            *(whereabouts.doubts(rivals, counted.final, forward.experiment.gauges) if named else ()),
+            *(whereabouts.doubts(rivals, counted.final, e) if named else ()),
             *_taken_as_stated(found, records),
             *(law.reasons(told) if free else ()),
             *verdict.corrections(outcome.findings),

@@ -121,7 +121,7 @@ class Model(Part, kw_only=True):
     fitted.
 
     Attributes:
-        effects: effect → parameter → value, in order.
+        effects: effect → parameter → value, in order; materials by their names.
         speed_ratio: run → striker speed over the recorded one.
         trigger_us: run → trigger shift.
         gain: gauge → gain over the stated one.
@@ -131,7 +131,7 @@ class Model(Part, kw_only=True):
 
     format: int = 1
     record: str
-    effects: dict[str, dict[str, float]]
+    effects: dict[str, dict[str, float | str]]
     speed_ratio: dict[str, float]
     trigger_us: dict[str, float]
     gain: dict[str, float]
@@ -167,10 +167,11 @@ def sources(catalogue: Catalogue, ids=None) -> Sources:
 
 
 def parameters(
-    fit: Fit, found: Sequence[Rival] = (), drawn: Sequence[Draws] = ()
+    fit: Fit, found: Sequence[Rival] = (), drawn: Sequence[Draws] = (), materials: Sequence[str] = ()
 ) -> dict[str, dict[str, Value]]:
     """Values and standard errors of the free parameters, with what rivals that have them make of them; of
-    beads and contacts the distance of where else the effect may sit, root mean square; 0 of gauges.
+    beads and contacts the distance of where else the effect may sit, root mean square; 0 of gauges and
+    `materials`, the beads' in their order.
 
     Where the posterior is much wider than the Gaussian of the fit, as along a valley that bends, by many
     draws or by what is told in their place, its width is the error.
@@ -187,18 +188,20 @@ def parameters(
             told = error if width <= BENT * error else width
             values[name] = Value(value=float(c.value(u)), sigma=_finite(told))
         if component.effect.places:
-            values[component.effect.places] = _place(component, drawn)
+            values[component.effect.places] = _place(component, drawn, materials)
         first += len(component.free)
         result[component.effect.id] = values
     return result
 
 
-def _place(component, drawn):
-    """The place of an effect, and how far off it may be."""
+def _place(component, drawn, materials):
+    """The place of an effect, and how far off it may be; of a material its name."""
     one, along = component.effect, component.effect.places in ALONG
     wide = [d for d in drawn if (d.effect, d.parameter) == (one.id, one.places)] if along else []
     off = [float(d.weight @ np.square(d.value - component.place)) for d in wide]
-    return Value(value=float(component.place), sigma=math.sqrt(sum(off)))
+    named = materials and one.places == "material"
+    name = materials[component.place] if named else UNSET
+    return Value(value=float(component.place), sigma=math.sqrt(sum(off)), name=name)
 
 
 def nuisances(forward: Forward, fit: Fit, found: Sequence[Rival] = ()) -> dict[str, Known] | UnsetType:
@@ -243,10 +246,12 @@ def model(found: Investigation, law: FreeLaw | None = None) -> Model:
     e, layout = forward.experiment, forward.layout
     effects = present(forward, fit) | fit.hypothesis.values(fit.u)
     effects |= {law.component.effect.id: law.parameters} if law else {}
+    sits = [c for c in fit.hypothesis.components if c.effect.places == "material"]
+    named = {c.effect.id: {c.effect.places: e.materials[c.place]} for c in sits}
     shift = fit.nu[: layout.size] * forward.nuisance_sigma
     return Model(
         record=e.name,
-        effects={k: {n: float(v) for n, v in p.items()} for k, p in effects.items()},
+        effects={k: {n: float(v) for n, v in p.items()} | named.get(k, {}) for k, p in effects.items()},
         speed_ratio={r.id: float(np.exp(shift[layout.speed(k)])) for k, r in enumerate(e.runs)},
         trigger_us={r.id: float((r.shift + shift[layout.trigger(k)]) * 1e6) for k, r in enumerate(e.runs)},
         gain={g.id: float(g.gain * np.exp(shift[at])) for g, at in zip(e.gauges, layout.gains, strict=True)},

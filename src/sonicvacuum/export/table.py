@@ -55,7 +55,7 @@ def coefficients(subject: Subject, verdict: Verdict | None, catalogue: Catalogue
         one = catalogue.effect(name)
         told = verdict.parameters.get(name, {}) if verdict else {}
         for key, value in given.items():
-            if key != one.places:
+            if key != one.sits:
                 sigma = told[key].sigma if key in told else None
                 unit = one.parameter(key).unit
                 rows.append(
@@ -73,7 +73,7 @@ def limits(verdict: Verdict | None, catalogue: Catalogue) -> list[Limit]:
             rows += [
                 Limit(effect=name, parameter=key, limit=value, unit=one.parameter(key).unit)
                 for key, value in given.items()
-                if key != one.places
+                if key != one.sits
             ]
     return rows
 

@@ -35,7 +35,7 @@ def write_table(folder: Path, catalogue: Catalogue = CATALOGUE) -> Path:
         for name, values in given
         for one in (catalogue.effect(name),)
         for key, found in values.items()
-        if key != one.places
+        if key != one.sits
     )
     write_csv(path, (*COLUMNS, *INTERVAL), cells)
     return path

@@ -9,6 +9,7 @@ from sonicvacuum.discover import draws, given, quantities
 from sonicvacuum.discover.compare import check_source
 from sonicvacuum.discover.verdict import Model, Verdict
 from sonicvacuum.effects import CATALOGUE, Catalogue
+from sonicvacuum.effects.whereabouts import materials_of
 from sonicvacuum.files import read_json, reading, replacing
 from sonicvacuum.report import bench, inline, misfit, origin, plots, rows, words
 from sonicvacuum.report.sketch import sketch
@@ -96,9 +97,11 @@ def _origin(inputs, records, verdict, model):
 def _told(folder, verdict, model, tables, catalogue, records):
     name, quantities_of = verdict.record, rows.quantities(_quantities(folder), records)
     gauges = [g.id for g in records[0].gauges] if records else []
+    materials = materials_of(records[0].specimen) if records else ()
     drawn = draws.read(folder)
     candidates = [
-        r | {"parameters": rows.placed(r["parameters"], gauges, catalogue)} for r in tables["candidates"]
+        r | {"parameters": rows.placed(r["parameters"], gauges, catalogue, materials)}
+        for r in tables["candidates"]
     ]
     shrinking = (misfit.gap(verdict, len(model.speed_ratio)), misfit.goodness(verdict))
     return {
@@ -111,7 +114,7 @@ def _told(folder, verdict, model, tables, catalogue, records):
         "quantities": quantities_of,
         "common": sorted({name for r in quantities_of for name in r["common"]}),
         "moved": any(r["nominal"] != r["extended"] for r in quantities_of),
-        "effects": rows.effects(verdict, catalogue, drawn, gauges),
+        "effects": rows.effects(verdict, catalogue, drawn, gauges, materials),
         "drawn": words.drawn(drawn),
         "tests_nothing": verdict.sees_nothing,
         "odds": rows.odds(verdict, catalogue, tables["candidates"]),

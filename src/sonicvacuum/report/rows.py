@@ -132,14 +132,14 @@ def in_words(parameters, catalogue):
     return "; ".join(told)  # help texts hold commas
 
 
-def placed(parameters: str, gauges, catalogue) -> str:
-    """Parameters of candidates.csv, with a gauge, which it counts from 0, by its name."""
-    told = []
+def placed(parameters: str, gauges, catalogue, materials=()) -> str:
+    """Parameters of candidates.csv, with a gauge or material, which it counts from 0, by its name."""
+    known, told = {"sensor": gauges, "material": materials}, []
     for part in parameters.split("; "):
         effect, _, rest = part.partition(" ")
-        where = rest.removeprefix("sensor ")
-        if gauges and where != rest and effect in catalogue and catalogue.effect(effect).places == "sensor":
-            part = f"{effect} gauge {gauges[int(where)]}"
+        key, _, where = rest.partition(" ")
+        if known.get(key) and effect in catalogue and catalogue.effect(effect).sits == key:
+            part = f"{effect} {'gauge' if key == 'sensor' else key} {known[key][int(where)]}"
         told.append(part)
     return "; ".join(told)
 
@@ -173,7 +173,7 @@ def _round(name, catalogue):
     return "nominal model" if name == "nominal" else f"with {plain(name, catalogue)}"
 
 
-def effects(verdict, catalogue, draws, gauges=()) -> list[dict]:
+def effects(verdict, catalogue, draws, gauges=(), materials=()) -> list[dict]:
     """What was named: title, equation, source, and its parameters with errors.
 
     Args:
@@ -181,13 +181,14 @@ def effects(verdict, catalogue, draws, gauges=()) -> list[dict]:
         catalogue: knows the effects of the verdict.
         draws: as in `draws.read`.
         gauges: names of the record's gauges in its order; () where they are not known.
+        materials: names of the beads' materials likewise.
     """
     found = []
     for name, given in verdict.parameters.items():
         one = catalogue.effect(name)
         parameters = [
-            _place(key, value, draws.get((name, key)), gauges)
-            if key == one.places
+            _place(key, value, draws.get((name, key)), {"sensor": gauges, "material": materials}.get(key))
+            if key == one.sits
             else _parameter(one.parameter(key), value, draws.get((name, key)))
             for key, value in given.items()
         ]
@@ -204,17 +205,18 @@ def effects(verdict, catalogue, draws, gauges=()) -> list[dict]:
     return found
 
 
-def _place(key, found, draws, gauges):
-    """Row of the place of an effect, and how likely it and others are; a gauge, which verdicts count from 0,
-    by its name.
+def _place(key, found, draws, names):
+    """Row of the place of an effect, and how likely it and others are; a gauge or material, which verdicts
+    count from 0, by its name.
     """
 
     def name(place):
-        return gauges[int(place)] if key == "sensor" and gauges else f"{place:g}"
+        return names[int(place)] if names else f"{place:g}"
 
     told = [f"{name(place)}\N{NO-BREAK SPACE}({share(p)})" for place, p in _likely(found.value, draws)]
-    where = "gauge" if key == "sensor" and gauges else key
-    row = {"name": f"sits at {where}", "value": name(found.value), "searched": "", "off": ""}
+    where = "gauge" if key == "sensor" and names else key
+    said = key if key == "material" else f"sits at {where}"
+    row = {"name": said, "value": name(found.value), "searched": "", "off": ""}
     return row | {"interval": ", ".join(told), "odds": True}
 
 

@@ -84,13 +84,19 @@ def plain(explanation: str, catalogue: Catalogue = CATALOGUE) -> str:
 
 
 def placed(explanation: str, places: Mapping[str, int | str], catalogue: Catalogue = CATALOGUE) -> str:
-    """The same with the bead, contact or gauge of each effect that has one in `places`."""
+    """The same with the bead, contact, gauge or material of each effect that has one in `places`."""
     said = []
     for name in explanation.split("+"):
-        where = catalogue.effect(name).places if name in places else None
-        word = "gauge" if where == "sensor" else where
-        said.append(plain(name, catalogue) + (f" at {word} {places[name]}" if where else ""))
+        where = catalogue.effect(name).sits if name in places else None
+        said.append(plain(name, catalogue) + (_at(where, places[name]) if where else ""))
     return joined(said)
+
+
+def _at(where, place):
+    """Where an effect sits, in words."""
+    if where == "material":
+        return f" of {place}"
+    return f" at {'gauge' if where == 'sensor' else where} {place}"
 
 
 def _title(name, catalogue):

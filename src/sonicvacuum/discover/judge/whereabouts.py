@@ -17,11 +17,11 @@ from sonicvacuum.discover.fit import evidence, places
 from sonicvacuum.discover.fit.refit import Fit, fit
 from sonicvacuum.discover.judge.rivals import LEAST, Rival
 from sonicvacuum.discover.model import abreast
+from sonicvacuum.discover.model.experiment import Experiment
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.search import strengths
 from sonicvacuum.discover.search.starts import setup_of
 from sonicvacuum.effects import Effect, Setup
-from sonicvacuum.gauges import Gauge
 
 # Strengths tried at another place, over that of the neighbour: alike, or the other way round.
 FACTORS = (0.6, 1.0, 1.6, -1.0)
@@ -86,21 +86,34 @@ def of_each(rivals: Iterable[Rival], told: Fit) -> list[tuple[Effect, np.ndarray
     return result
 
 
-def doubts(rivals: Sequence[Rival], told: Fit, gauges: Sequence[Gauge]) -> list[str]:
+def doubts(rivals: Sequence[Rival], told: Fit, e: Experiment) -> list[str]:
     """What is said of both: `unsure` and `instead`."""
-    return [*unsure(rivals, told, gauges), *instead(rivals, told)]
+    return [*unsure(rivals, told, e), *instead(rivals, told)]
 
 
-def unsure(rivals: Iterable[Rival], told: Fit, gauges: Sequence[Gauge]) -> list[str]:
-    """What is said of effects whose place the data leave open; a gauge by its name."""
+def called(effect: Effect, place: int, e: Experiment) -> int | str:
+    """What a place of an effect is called: name of a gauge or material, number of a bead or contact."""
+    if effect.places == "material":
+        return e.materials[place]
+    return e.gauges[place].id if effect.places == "sensor" else place
+
+
+def unsure(rivals: Iterable[Rival], told: Fit, e: Experiment) -> list[str]:
+    """What is said of effects whose place the data leave open, a gauge or material by its name; of those of
+    one material of several, of which it is.
+    """
     lines = []
     for effect, at, share in of_each(rivals, told):
-        if share[0] < SURE:
-            names = [gauges[place].id for place in at] if effect.places == "sensor" else at
+        sure, material = share[0] >= SURE, effect.places == "material"
+        if material and sure:
+            lines.append(f"{effect.id}: of {called(effect, at[0], e)}")
+        if not sure:
+            names = [called(effect, place, e) for place in at]
             order = [0, *(1 + np.argsort(-share[1:], kind="stable"))]
             likely = [f"{names[k]} ({share[k]:.2f})" for k in order if share[k] >= 0.005]
             where = "gauge" if effect.places == "sensor" else effect.places
-            lines.append(f"{effect.id} sits at {where} {' or '.join(likely)}")
+            sits = ": of" if material else f" sits at {where}"
+            lines.append(f"{effect.id}{sits} {' or '.join(likely)}")
     return lines
 
 
@@ -135,10 +148,10 @@ def where_open(rivals: Iterable[Rival], told: Fit) -> list[Rival]:
     return [] if sure else [r for r in rivals if same(r.fit, told)]
 
 
-def named(one: Fit, gauges: Sequence[Gauge]) -> dict[str, int | str]:
-    """Effect → where it sits: number of its bead or contact, or name of its gauge."""
+def named(one: Fit, e: Experiment) -> dict[str, int | str]:
+    """Effect → where it sits: number of its bead or contact, or name of its gauge or material."""
     at = [(c.effect, c.place) for c in one.hypothesis.components if c.place is not None]
-    return {e.id: gauges[place].id if e.places == "sensor" else place for e, place in at}
+    return {effect.id: called(effect, place, e) for effect, place in at}
 
 
 def _log_weight(told, one):

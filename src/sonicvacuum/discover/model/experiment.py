@@ -9,11 +9,13 @@ that it is divided out of all of them at once (`divided`).
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
 from sonicvacuum.discover.model.nuisances import Shared
 from sonicvacuum.effects import CATALOGUE, Catalogue
+from sonicvacuum.effects.whereabouts import materials_of
 from sonicvacuum.gauges import Gauge
 from sonicvacuum.laboratory.bodies import Bodies
 from sonicvacuum.physics.chain import Chain
@@ -232,6 +234,11 @@ class Experiment:
     def beads(self) -> int:
         """Number of beads."""
         return self.batches[0].chain.beads
+
+    @cached_property
+    def materials(self) -> tuple[str, ...]:
+        """Contact materials of the beads, the first bead's first."""
+        return materials_of(self.batches[0].chain)
 
     @property
     def coupled(self) -> bool:

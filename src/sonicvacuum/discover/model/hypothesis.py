@@ -19,7 +19,7 @@ class Component:
         effect: of the catalogue.
         free: coordinates of the searched parameters.
         fixed: values of the others (a strength that is left out is off).
-        place: bead, contact or sensor, None where the effect has none.
+        place: bead, contact, sensor or material, None where the effect has none.
     """
 
     effect: Effect

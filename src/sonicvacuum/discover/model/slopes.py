@@ -3,6 +3,8 @@
 Speeds, moduli and masses take a simulation each; times, gains and shared errors act on readings alone.
 """
 
+from functools import cached_property
+
 import numpy as np
 
 from sonicvacuum.discover.model import scalars
@@ -77,22 +79,32 @@ class Slopes:
         Args:
             acts_like: see `effects.Parameter`.
             run: index of the run.
-            place: (n,) gauges where the effect sits; of no account but for gains.
+            place: (n,) gauges or materials where the effect sits; of no account for speeds.
 
         Returns:
             (n,) places in the layout and (n, 1) standard errors, relative; None where the nuisance is known
-            exactly.
+            exactly, or one of those that these places ask for.
         """
         sigma = self.sigma
+        if acts_like == "modulus":
+            own = self._moduli[place]
+            errors = np.where(own < 0, 0.0, sigma[own])
+            return (own, errors[:, None]) if np.all(errors > 0.0) else None
         if acts_like == "gain":
             errors = sigma[self.layout.gains]
             return (self.layout.gains[place], errors[place][:, None]) if np.all(errors > 0.0) else None
         common = self.layout.other("speed-common")
-        known = {"modulus": [self.layout.modulus], "speed": [self.layout.speed(run), *common]}[acts_like]
-        own = next((k for k in known if sigma[k]), None)
+        own = next((k for k in (self.layout.speed(run), *common) if sigma[k]), None)
         if own is None:
             return None
         return np.full(len(place), own), np.full((len(place), 1), sigma[own])
+
+    @cached_property
+    def _moduli(self) -> np.ndarray:
+        """(materials,) places in the layout of the moduli of the beads' materials, -1 of what is exact."""
+        known = {self.layout.named(k): k for k in self.layout.other("modulus")}
+        others = [known.get(name, -1) for name in self.experiment.materials[1:]]
+        return np.array([self.layout.modulus, *others])
 
     def _like_nuisances(self, hypothesis, run, places, slopes, nuisances):
         """Take the slopes of parameters that act exactly as a nuisance does from its column.
@@ -104,8 +116,10 @@ class Slopes:
             place = np.full(len(slopes), component.place or 0) if places is None else places[:, k]
             for column, c in enumerate(component.free, start=own.start):
                 like = c.parameter.acts_like
-                if like and (found := self.nuisance_column(like, run, place)):
-                    slopes[:, column] = nuisances[lanes, among(local, found[0])] / found[1]
+                for at in np.unique(place) if like else ():
+                    own = lanes[place == at]
+                    if found := self.nuisance_column(like, run, place[own]):
+                        slopes[own, column] = nuisances[own, among(local, found[0])] / found[1]
 
 
 def among(places: np.ndarray, wanted: np.ndarray) -> np.ndarray:

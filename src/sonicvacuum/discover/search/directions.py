@@ -5,6 +5,7 @@ A direction is an effect of the catalogue at a place and with a shape, at a stre
 readings to answer in proportion, and large enough to stand clear of numerical error.
 """
 
+import itertools
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -65,12 +66,16 @@ class Family:
 
 
 def of_effect(effect: Effect, setup: Setup) -> list[Family]:
-    """The families of one effect: one for each of its strengths."""
+    """The families of one effect: one for each of its strengths, and of effects of one material for each of
+    these: the modulus of one may be known exactly while that of another is a nuisance (`like_nuisance`).
+    """
     places = effect.candidates(setup) if effect.places else (None,)
+    groups = [(place,) for place in places] if effect.places == "material" else [places]
     families = []
-    for strength in (p for p in effect.parameters if p.switches):
+    switches = [p for p in effect.parameters if p.switches]
+    for strength, group in itertools.product(switches, groups):
         two_sided = coordinate(strength, setup).two_sided
-        grid = [(place, shape) for place in places for shape in shape_grid(effect)]
+        grid = [(place, shape) for place in group for shape in shape_grid(effect)]
         directions = tuple(
             Direction(effect.id, strength.name, tuple(shape.items()), place, two_sided, strength.scale)
             for place, shape in grid

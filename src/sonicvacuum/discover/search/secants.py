@@ -32,6 +32,11 @@ def applies(effect: Effect) -> bool:
     return effect.places in PLACES or any(p.tried_at_once for p in effect.parameters)
 
 
+def local(effect: Effect) -> bool:
+    """Whether an effect sits at one bead, contact or gauge; one of a material acts all along the chain."""
+    return effect.places not in (None, "material")
+
+
 @dataclass(frozen=True)
 class Secant:
     """One trial.

@@ -78,7 +78,7 @@ def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
 
     def follow(branch, effect):
         far = effect.id in best and abs(scores.strength[best[effect.id]]) > FAR
-        grid = nonlinear or (loose and far and not effect.places)
+        grid = nonlinear or (loose and far and not secants.local(effect))
         # Most are far behind another; near the nominal model, those that are not are finished once all
         # are known. Far from it the last steps are as good as any.
         effort = Effort(grid, steps, finish=loose)
@@ -98,7 +98,7 @@ def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
         elif err == ERR and not loose and wide.leaves_much(forward, null.objective - achieved):
             err = ERR_FAR
         elif err == ERR and not loose and _unforeseen(leading, gains):
-            placed = leading.fit.hypothesis.components[0].effect.places
+            placed = secants.local(leading.fit.hypothesis.components[0].effect)
             best_gain, err = (best_gain, ERR_PLACED) if placed else (achieved, ERR_FAR)
         else:
             break
@@ -189,16 +189,16 @@ def _once_more(forward, null, found, setup):
             return c
         return restart.alone(null, one, c, ("bound",) * bool(one.at_bound().any()))
 
-    def local(c):
+    def inside(c):
         component = c.fit.hypothesis.components[0]
         return component.effect.places in secants.PLACES and of_one_strength(component.free)
 
-    rest = [c for c in found if not local(c)]
-    return rest + abreast.each(forward, denser, [c for c in found if local(c)], "effects at one place")
+    rest = [c for c in found if not inside(c)]
+    return rest + abreast.each(forward, denser, [c for c in found if inside(c)], "effects at one place")
 
 
 def _all_over(forward, null, scores, found, effects, setup):
-    """The same with effects that have one strength and no place tried all over its range, where all that was
+    """The same with effects of one strength all along the chain tried all over its range, where all that was
     found leaves more than noise: slopes and running integrals may lead to another minimum. Followed are those
     of which a trial promises more than they have gained, and a share of what the best has.
     """
@@ -213,11 +213,11 @@ def _all_over(forward, null, scores, found, effects, setup):
         for free in filter(of_one_strength, variants(effect, setup)):
             trials = _trials(branch, null, Component(effect, free), setup)
             if trials and trials[0].gain >= least:
-                u, nu = (np.array(x) for x in zip(*((t.u, t.nu) for t in trials), strict=True))
-                near.append((free, Starts(u, nu)))
+                u, nu, at = (np.array(x) for x in zip(*((t.u, t.nu, [t.place]) for t in trials), strict=True))
+                near.append((free, Starts(u, nu, at if effect.places else None)))
         return candidate(branch, null, scores, effect, Effort(True, ITERATIONS), near)
 
-    more = abreast.each(forward, elsewhere, [e for e in effects if not e.places], "effects all over")
+    more = abreast.each(forward, elsewhere, [e for e in effects if not secants.local(e)], "effects all over")
     better = [c for c in more if c is not None and c.gain > gains.get(c.effect, -np.inf)]
     return list(({c.effect: c for c in found} | {c.effect: c for c in better}).values())
 

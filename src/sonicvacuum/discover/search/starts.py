@@ -47,7 +47,7 @@ def within(free, rows) -> np.ndarray:
 
 def kept(effect: Effect, free, grid: bool) -> int:
     """How many starts are followed: all of the striker's mass, which nuisances hide at first."""
-    if _tried(effect, free) and not effect.places:
+    if _tried(effect, free) and not secants.local(effect):
         return 8
     return 5 if grid else 3
 
