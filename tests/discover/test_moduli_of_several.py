@@ -1,21 +1,31 @@
 """A modulus off in one of a chain's materials, from the screen to the model that is read back."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from made_records import block, made
 
+import sonicvacuum as sv
+from sonicvacuum.card import ModelBlock
 from sonicvacuum.discover import session, verdict
 from sonicvacuum.discover.compare import compare, hypothesis, read_model
+from sonicvacuum.discover.draws import PLACES, Draws
+from sonicvacuum.discover.extended import extended
 from sonicvacuum.discover.fit import wide
 from sonicvacuum.discover.judge import whereabouts
+from sonicvacuum.discover.judge.rivals import Rival
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.problem import experiment
 from sonicvacuum.discover.search import directions, singles
 from sonicvacuum.discover.search.screen import screen
 from sonicvacuum.discover.search.starts import setup_of
+from sonicvacuum.discover.verdict import Model
+from sonicvacuum.effects import CATALOGUE
 from sonicvacuum.files import InputError
+from sonicvacuum.report import rows, words
+from sonicvacuum.simulation import set_up
 
 EFFECT = "dynamic-modulus"
 
@@ -139,3 +149,50 @@ def test_moduli_that_any_contact_shows_are_open():
     assert open_moduli(dimer("ptfe", "bearing-steel")) == ["bearing-steel", "stainless-steel"]
     assert "bearing-steel" not in open_moduli(dimer("ptfe", "bearing-steel", wall="ptfe"))
     assert "bearing-steel" in open_moduli(dimer("ptfe", "bearing-steel", "bearing-steel", wall="ptfe"))
+
+
+def test_materials_that_the_data_do_not_tell_apart_are_told_with_their_odds(stiff, found):
+    told, e = found.found.final, experiment(stiff)
+    other = replace(told, hypothesis=told.hypothesis.with_places([0]))
+    rivals = [Rival(0.6, told), Rival(0.4, other)]
+    assert whereabouts.unsure(rivals, told, e) == [f"{EFFECT}: of parylene-c (0.60) or delrin (0.40)"]
+    assert [whereabouts.named(r.fit, e)[EFFECT] for r in rivals] == ["parylene-c", "delrin"]
+    assert words.placed(EFFECT, {EFFECT: "delrin"}).endswith("dynamic modulus of delrin")
+
+
+def test_the_page_has_the_material_by_its_name(found):
+    odds = {
+        (EFFECT, "material"): Draws(EFFECT, "material", PLACES, np.array([1.0, 0.0]), np.array([0.6, 0.4]))
+    }
+    (one,) = rows.effects(found.verdict, CATALOGUE, odds, materials=("delrin", "parylene-c"))
+    row = one["parameters"][-1]
+    assert (row["name"], row["value"]) == ("material", "parylene-c")
+    assert "delrin\N{NO-BREAK SPACE}(0.40)" in row["interval"]
+    told = rows.placed(f"{EFFECT} material 1", (), CATALOGUE, ("delrin", "parylene-c"))
+    assert told == f"{EFFECT} material parylene-c"
+
+
+def test_a_card_takes_the_modulus_of_that_material():
+    big, small = (sv.bead(diameter_mm=8.0, material=m) for m in ("bearing-steel", "ptfe"))
+    chain = sv.chain(pattern=[big, small], beads=6, wall="ptfe")
+    card = sv.case(chain, sv.striker(big, speed_m_s=0.5), [sv.gauge("wall")], duration_us=300.0)
+    rest = {"record": "r", "speed_ratio": {}, "trigger_us": {}, "gain": {}, "modulus_ratio": 1.1}
+
+    def taken(**given):
+        return extended(card, Model(effects={EFFECT: {"modulus_ratio": 2.0, **given}}, **rest))
+
+    def ratios(changed):
+        moduli = zip((*changed.pattern, changed.wall), (*card.pattern, card.wall), strict=True)
+        return [getattr(a, "surface", a).modulus_Pa / getattr(b, "surface", b).modulus_Pa for a, b in moduli]
+
+    assert taken(material="ptfe").effects == {}
+    assert ratios(taken(material="ptfe")) == pytest.approx([1.1, 2.0, 2.0])
+    assert ratios(taken()) == pytest.approx([2.2, 1.0, 1.0])
+    # A number stays an effect of the card, and does the same; what no bead is made of is refused.
+    one, other = (set_up(taken(material=m)).chain.stiffnesses(7) for m in (1.0, "ptfe"))
+    np.testing.assert_allclose(one, other, rtol=1e-12)  # rounding
+    with pytest.raises(InputError, match="possible here: bearing-steel, ptfe"):
+        set_up(taken(material="brass"))
+    elsewhere = ModelBlock(record="r", specimen="other")
+    brass = Model(effects={EFFECT: {"modulus_ratio": 2.0, "material": "brass"}}, **rest)
+    assert extended(card, brass, elsewhere).effects == {}
