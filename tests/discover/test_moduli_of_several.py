@@ -164,6 +164,7 @@ def test_the_page_has_the_material_by_its_name(found):
     odds = {
         (EFFECT, "material"): Draws(EFFECT, "material", PLACES, np.array([1.0, 0.0]), np.array([0.6, 0.4]))
     }
+    assert "What is missing: Dynamic modulus of parylene-c (" in words.headline(found.verdict)
     (one,) = rows.effects(found.verdict, CATALOGUE, odds, materials=("delrin", "parylene-c"))
     row = one["parameters"][-1]
     assert (row["name"], row["value"]) == ("material", "parylene-c")

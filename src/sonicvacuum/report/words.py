@@ -121,7 +121,7 @@ def headline(verdict: Verdict, catalogue: Catalogue = CATALOGUE) -> str:
             f"nor any set of them that was tried, explains. That it is none of them is "
             f"{in_words(odds.get('unknown', 0.0))}."
         )
-    told = [f"{e.title} ({e.id}): {e.missing}" for e in map(catalogue.effect, found)]
+    told = [_told(catalogue.effect(name), verdict) for name in found]
     if len(found) == 1 and verdict.confusable:
         text = _one_of(verdict, told[0], catalogue)
     elif len(found) == 1:
@@ -137,6 +137,12 @@ def headline(verdict: Verdict, catalogue: Catalogue = CATALOGUE) -> str:
             else f" That is {in_words(sure)}."
         )
     return text + (" Even so, a misfit is left that nothing of the catalogue explains." if unknown else "")
+
+
+def _told(one, verdict):
+    """An effect with what is missing; of one material of several with its name."""
+    names = [value.name for value in verdict.parameters.get(one.id, {}).values() if value.name]
+    return f"{one.title}{''.join(f' of {name}' for name in names)} ({one.id}): {one.missing}"
 
 
 def _nearest_set(verdict, told, found):
