@@ -77,6 +77,13 @@ def gauges_at(record: Record, beads: Mapping[str, int]) -> Record:
     return _block(record, sensors=moved)
 
 
+def gauge_seated(record: Record, id: str, bead: int | None) -> Record:
+    """A force gauge embedded in a bead, or, where that is None, at the wall."""
+    given = {"kind": "wall" if bead is None else "embedded", "bead": bead}
+    changed = [msgspec.structs.replace(s, **given) if s.id == id else s for s in record.block.sensors]
+    return _block(record, sensors=changed)
+
+
 def gauges_swapped(record: Record, one: str, two: str) -> Record:
     """The readings of two gauges exchanged; noise and gain stay with the cables."""
     return gauges_renamed(record, {one: two, two: one})

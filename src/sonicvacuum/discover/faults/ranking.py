@@ -21,6 +21,7 @@ from sonicvacuum.discover.faults.judged import (
 )
 from sonicvacuum.discover.faults.judging import Judge
 from sonicvacuum.discover.faults.lines import drifts
+from sonicvacuum.discover.faults.seats import seats
 from sonicvacuum.discover.faults.slips import Slip, hypotheses
 from sonicvacuum.discover.faults.starts import FACTORS, run_clock, run_clocks, with_starts
 from sonicvacuum.discover.faults.table import FAULTS
@@ -31,7 +32,7 @@ from sonicvacuum.discover.fit.refit import polish
 from sonicvacuum.discover.fit.wide import nominal
 from sonicvacuum.discover.model.experiment import Experiment
 from sonicvacuum.discover.model.forward import Forward
-from sonicvacuum.discover.model.nominal import predicted
+from sonicvacuum.discover.model.nominal import predicted, read_at
 from sonicvacuum.discover.model.problem import together
 from sonicvacuum.discover.rounds import Investigation
 from sonicvacuum.discover.search.unknown import raw
@@ -121,6 +122,7 @@ class Ranking:
         every = hypotheses(record)
         slips = [*with_starts(every, record, seen, model), *late_runs(record, model, seen)]
         slips += run_clocks(record, seen)
+        slips += seats(record, seen, lambda gauges: read_at(self.make(model.bench), gauges, self.threads))
         slips = [*(s for s in slips if (s.fault, s.run, s.sensor) not in done), *self.factors(every)]
         slips = _possible(slips, model)
         read = _read(model)

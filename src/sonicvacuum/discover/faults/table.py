@@ -21,6 +21,7 @@ class Fault:
         curved: whether no nuisance is like it, so that beside strong pulses slopes mislead on its size.
         of_table: what it is where it concerns values of a table, `{quantity}`; "" where `says` does.
         look_up: what to look at there.
+        valueless: what it is where it has no value; "" where `says` does.
     """
 
     id: str
@@ -34,6 +35,7 @@ class Fault:
     curved: bool = False
     of_table: str = ""
     look_up: str = ""
+    valueless: str = ""
 
 
 FAULTS: dict[str, Fault] = {
@@ -97,7 +99,8 @@ FAULTS: dict[str, Fault] = {
         Fault(
             "gauge-misplaced",
             "gauge {sensor} seems to sit in bead {value}",
-            "count the beads from the struck end",
+            "count the beads from the struck end, and look whether the gauge is in a bead or at the wall",
+            valueless="gauge {sensor} seems to sit at the wall",
         ),
         Fault(
             "gain-common",

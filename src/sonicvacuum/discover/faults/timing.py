@@ -21,10 +21,11 @@ ARRIVED = 0.1
 
 def shifts(record: Record, predicted) -> dict[str, float]:
     """Run → by how many us its traces lie before the model's, all gauges together."""
-    return {k: _lag(record, k, predicted, s.readings) for k, s in record.signals.items() if predicted.get(k)}
+    return {k: lag(record, k, predicted, s.readings) for k, s in record.signals.items() if predicted.get(k)}
 
 
-def _lag(record, run, predicted, ids):
+def lag(record: Record, run: str, predicted, ids) -> float:
+    """By how many us the traces of some gauges of a run lie before the model's, together."""
     signals, total = record.signals[run], 0.0
     for id in ids:
         if id in predicted[run]:
@@ -132,7 +133,7 @@ def gauge_delay(slip: Slip, record: Record, predicted) -> float:
     runs = [k for k, s in record.signals.items() if slip.sensor in s.readings and predicted.get(k)]
     others = {k: [i for i in record.signals[k].readings if i != slip.sensor] for k in runs}
     lags = [
-        _lag(record, k, predicted, others[k]) - _lag(record, k, predicted, (slip.sensor,))
+        lag(record, k, predicted, others[k]) - lag(record, k, predicted, (slip.sensor,))
         for k in runs
         if others[k]
     ]
