@@ -188,3 +188,11 @@ def test_a_file_that_was_taken_for_two_runs_is_told():
     (one_run, traces), (other, _) = list(record.signals.items())[:2]
     (said,) = copies(replace(record, signals={**record.signals, other: traces}))
     assert said.startswith(f"run {other}: holds the same samples as run {one_run}")
+
+
+def test_a_trace_that_was_taken_for_two_runs_is_told():
+    record = made()
+    (one_run, traces), (other, own) = list(record.signals.items())[:2]
+    mixed = replace(own, readings=own.readings | {"far": traces.readings["far"]})
+    (said,) = copies(replace(record, signals={**record.signals, other: mixed}))
+    assert said.startswith(f"run {other}: gauge far reads the same samples as in run {one_run}")

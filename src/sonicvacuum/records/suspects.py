@@ -49,17 +49,26 @@ def suspects(record: Record, expected: Expected) -> list[str]:
 
 def copies(record: Record) -> list[str]:
     """Runs whose traces are another run's, sample by sample; of noise that cannot be."""
-    return [
-        f"run {b}: holds the same samples as run {a}, to the last digit: one file was taken for both"
-        for a, b in itertools.combinations(record.signals, 2)
-        if _same(record.signals[a].readings, record.signals[b].readings)
-    ]
+    return [_copy(record, *one) for one in copied(record)]
 
 
-def _same(one, other) -> bool:
-    """Whether two runs share traces, and these are the same and not constant."""
-    shared = [(one[id], other[id]) for id in one if id in other]
-    return bool(shared) and all(np.array_equal(a, b) and np.ptp(a) > 0.0 for a, b in shared)
+def _copy(record, a, b, ids):
+    """A sentence on traces of one run that are those of an earlier one."""
+    if all(id in ids for id in record.signals[b].readings if id in record.signals[a].readings):
+        return f"run {b}: holds the same samples as run {a}, to the last digit: one file was taken for both"
+    gauges = f"gauge {ids[0]} reads" if len(ids) == 1 else f"gauges {', '.join(ids)} read"
+    return f"run {b}: {gauges} the same samples as in run {a}, to the last digit: a trace was taken for both"
+
+
+def copied(record: Record) -> Iterator[tuple[str, str, list[str]]]:
+    """A run, a later one, and the gauges whose traces are the same in both, sample by sample, and not
+    constant.
+    """
+    for a, b in itertools.combinations(record.signals, 2):
+        one, other = record.signals[a].readings, record.signals[b].readings
+        same = [id for id in one if id in other and np.array_equal(one[id], other[id])]
+        if ids := [id for id in same if np.ptp(one[id]) > 0.0]:
+            yield a, b, ids
 
 
 @dataclass(frozen=True)

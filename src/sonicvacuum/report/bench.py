@@ -61,6 +61,8 @@ def slip(one: Fault) -> str:
     says, number = header.of_table if _tabled(one) else header.says, one.value
     if number is not None and number < 0.0 and header.negative:
         says, number = header.negative, -number
+    if one.sensor and header.of_gauge and not _tabled(one):
+        says = header.of_gauge
     if number is None and header.valueless:
         says = header.valueless
     value = "some" if number is None else f"{number:.4g}"

@@ -122,6 +122,18 @@ def runs_swapped(record: Record, one: str, two: str) -> Record:
     return _block(record, runs=runs)
 
 
+def traces_swapped(record: Record, id: str, one: str, two: str) -> Record:
+    """The traces of one gauge in two runs exchanged."""
+    other = {one: two, two: one}
+
+    def exchanged(run, signals):
+        if run not in other:
+            return signals
+        return Signals(signals.time_us, {**signals.readings, id: record.signals[other[run]].readings[id]})
+
+    return replace(record, signals={k: exchanged(k, s) for k, s in record.signals.items()})
+
+
 def gains(record: Record, log_ratio: float) -> Record:
     """All readings over a ratio, with the errors that are in their unit: noise, offset and drift."""
     ratio = math.exp(-log_ratio)

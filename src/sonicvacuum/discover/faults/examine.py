@@ -8,6 +8,7 @@ import msgspec
 import numpy as np
 
 from sonicvacuum.discover.faults import changes, expected, policy, traces
+from sonicvacuum.discover.faults.exchanges import taken_twice
 from sonicvacuum.discover.faults.found import Bench, Finding
 from sonicvacuum.discover.faults.pulses import pulses
 from sonicvacuum.discover.faults.table import FAULTS
@@ -39,6 +40,7 @@ def examine(
     for run in runs:
         look.samples(run)
     look.pulses()
+    look.copies()
     for gauge in record.gauges:
         look.pickup(gauge)
     for run in runs:
@@ -76,6 +78,8 @@ class _Look:
         self.lost, self.seen, self.rests = {}, defaultdict(dict), defaultdict(dict)
         self.levels, self.stretches = defaultdict(dict), defaultdict(dict)
         self.silent, self.blank, self.lines = set(), [], {}
+        # As `taken_twice` yields them.
+        self.twice = []
         # Gauge → what is known of its level and of its drift only so well, in its unit.
         self.unsure = defaultdict(dict)
 
@@ -164,6 +168,11 @@ class _Look:
             for run in runs:
                 self.readings[run][id] = -self.readings[run][id]
 
+    def copies(self):
+        """Traces that are another run's: they are left out of the one that they do not fit."""
+        self.twice = list(taken_twice(self.record, self.predicted)) if self.predicted else []
+        self.silent |= {(run, id) for _, _, run, ids in self.twice for id in ids}
+
     def _quiet_slips(self, run, gauge):
         """What the stretch before the pulse shows: a slope, a level, the size of the noise."""
         trace = self.readings[run.id][gauge.id]
@@ -216,7 +225,7 @@ class _Look:
         gone = [k for k in self.record.signals if k not in signals]
         lost = {at: rows for at, rows in self.lost.items() if at not in self.silent}
         lines = {at: line for at, line in self.lines.items() if at not in self.silent and at[0] in signals}
-        changed = bool(self.seen) or bool(gone)
+        changed = bool(self.seen) or bool(gone) or bool(self.twice)
         if not changed:
             return Bench(self.record, lost)
         return Bench(changes.looser(_without_runs(self.record, signals, gone), self.unsure), lost, lines)
@@ -276,6 +285,10 @@ class _Look:
         result = [
             Finding("run-without-impact", run, probability=policy.PLAIN, corrected=True) for run in self.blank
         ]
+        for a, b, _, ids in self.twice:
+            whole = set(ids) >= set(self.record.signals[a].readings) & set(self.record.signals[b].readings)
+            for id in [None] if whole else ids:
+                result.append(Finding("runs-swapped", f"{a} and {b}", id, None, policy.PLAIN, True))
         for (fault, id), runs in self.seen.items():
             having = [k for k, s in self.record.signals.items() if id in s.readings and k not in self.blank]
             everywhere = len(runs) == len(having)

@@ -111,7 +111,7 @@ def exchanged(judged: Judged, model: Model) -> bool:
     """Whether two runs that look exchanged are struck, in the nominal fit, each at about the speed stated for
     the other: whatever leads it so far from what is stated, for both, is no effect.
     """
-    if judged.slip.fault != "runs-swapped" or judged.slip.of_values:
+    if judged.slip.fault != "runs-swapped" or judged.slip.of_values or judged.slip.sensor:
         return False
     stated = {run.id: math.log(run.striker.speed_m_s) for run in model.bench.record.block.runs}
     pairs = itertools.combinations(stated, 2)

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 from sonicvacuum import stages
 from sonicvacuum.discover.faults import policy, tables
+from sonicvacuum.discover.faults.exchanges import exchanged_traces
 from sonicvacuum.discover.faults.found import Bench, Finding
 from sonicvacuum.discover.faults.judged import (
     Judged,
@@ -122,6 +123,7 @@ class Ranking:
         every = hypotheses(record)
         slips = [*with_starts(every, record, seen, model), *late_runs(record, model, seen)]
         slips += run_clocks(record, seen)
+        slips += exchanged_traces(record, seen)
         slips += seats(record, seen, lambda gauges: read_at(self.make(model.bench), gauges, self.threads))
         slips = [*(s for s in slips if (s.fault, s.run, s.sensor) not in done), *self.factors(every)]
         slips = _possible(slips, model)

@@ -21,6 +21,7 @@ class Fault:
         curved: whether no nuisance is like it, so that beside strong pulses slopes mislead on its size.
         of_table: what it is where it concerns values of a table, `{quantity}`; "" where `says` does.
         look_up: what to look at there.
+        of_gauge: what it is where it concerns one gauge only; "" where `says` does.
         valueless: what it is where it has no value; "" where `says` does.
     """
 
@@ -35,6 +36,7 @@ class Fault:
     curved: bool = False
     of_table: str = ""
     look_up: str = ""
+    of_gauge: str = ""
     valueless: str = ""
 
 
@@ -110,8 +112,9 @@ FAULTS: dict[str, Fault] = {
         ),
         Fault(
             "runs-swapped",
-            "runs {run} look exchanged",
+            "runs {run} look exchanged, or one of them taken for both",
             "check which file belongs to which striker speed",
+            of_gauge="the traces of {sensor} in runs {run} look exchanged, or one of them taken for both",
             of_table="{quantity} of runs {run} look exchanged",
             look_up="check the rows of both runs",
         ),

@@ -1,0 +1,97 @@
+"""Traces of one gauge that belong to another run: exchanged with that run's, or taken for both."""
+
+import itertools
+import math
+from collections.abc import Collection, Iterator, Mapping
+from functools import partial
+
+import numpy as np
+
+from sonicvacuum.discover.faults import changes
+from sonicvacuum.discover.faults.slips import Slip, constant
+from sonicvacuum.records import Record
+from sonicvacuum.records.suspects import copied
+
+# Run → gauge → (T,) readings.
+Readings = Mapping[str, Mapping[str, np.ndarray]]
+# A gauge's peaks over the model's, beside those of other gauges, differ between runs by as much (in
+# logarithms), and by less than this share of it were two of its traces exchanged.
+OFF, MENDED = math.log(1.1), 0.5
+# Models of peaks that are as near each other do not tell which of two runs a trace belongs to.
+APART = math.log(1.05)
+
+
+def exchanged_traces(record: Record, predicted: Readings) -> list[Slip]:
+    """The slips that two traces of one gauge are in each other's run, where their heights beside those of
+    other gauges would be right so.
+
+    Args:
+        record: as far as it was put right.
+        predicted: what the nominal model reads.
+    """
+    highest, found = _higher(record, predicted), []
+    alternatives = math.comb(len(highest), 2) * len(record.gauges)
+    for gauge in record.gauges:
+        id, own, traces = gauge.id, {}, {}
+        for run, all_ in highest.items():
+            if others := [value for g, value in all_.items() if g != id and id in all_]:
+                own[run], traces[run] = all_[id] - float(np.median(others)), record.signals[run]
+        before = _spread(own)
+        for a, b in itertools.combinations(own, 2) if before > OFF else ():
+            # The model's peaks and those of other gauges stay with their runs.
+            more = math.log(np.ptp(traces[b].readings[id]) / np.ptp(traces[a].readings[id]))
+            after = _spread(own | {a: own[a] + more, b: own[b] - more})
+            if after < MENDED * before and _same_times(traces[a], traces[b]):
+                change, value = partial(_exchanged, id, a, b), partial(constant, None)
+                found.append(Slip("runs-swapped", change, f"{a} and {b}", id, alternatives, value=value))
+    return found
+
+
+def _spread(own):
+    return max(own.values()) - min(own.values()) if own else 0.0
+
+
+def _exchanged(id, a, b, record, _size):
+    return changes.traces_swapped(record, id, a, b)
+
+
+def _same_times(one, other):
+    """Whether two runs were sampled at the same times."""
+    return one.samples == other.samples and bool(np.allclose(one.time_us, other.time_us))
+
+
+def _higher(record, predicted, left_out: Collection[tuple[str, str]] = ()):
+    """Run → gauge → logarithm of its peak over the model's."""
+    found = {}
+    for run, model in predicted.items():
+        read = record.signals[run].readings
+        peaks = {g: (np.ptp(read[g]), np.ptp(m)) for g, m in model.items() if g in read}
+        found[run] = {
+            g: math.log(own / of)
+            for g, (own, of) in peaks.items()
+            if own > 0.0 and of > 0.0 and (run, g) not in left_out
+        }
+    return found
+
+
+def taken_twice(record: Record, predicted: Readings) -> Iterator[tuple[str, str, str | None, list[str]]]:
+    """Traces that two runs share sample by sample, and the run of the two that they do not belong to, as
+    their height beside that of all others is farther from the model's.
+
+    Nothing is said of runs struck alike.
+
+    Yields:
+        Run, a later one, that of both in which they are another's, and gauges.
+    """
+    shared = list(copied(record))
+    doubtful = {(run, id) for a, b, ids in shared for run in (a, b) for id in ids}
+    every, sound = _higher(record, predicted), _higher(record, predicted, doubtful)
+    usual = [value for own in sound.values() for value in own.values()]
+    for a, b, ids in shared:
+        off = {}
+        for run in (a, b):
+            near = list(sound.get(run, {}).values()) or usual or [0.0]
+            own = [every[run][id] - float(np.median(near)) for id in ids if id in every.get(run, {})]
+            off[run] = float(np.median(own)) if own else math.nan
+        if abs(off[a] - off[b]) > APART:
+            yield a, b, max(off, key=lambda run: abs(off[run])), ids

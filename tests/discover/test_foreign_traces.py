@@ -1,0 +1,92 @@
+"""Traces of one gauge that belong to another run: exchanged, or one file taken for both; unknown before."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from made_records import made
+from made_slips import altered
+
+from sonicvacuum.discover import session
+from sonicvacuum.discover.faults import changes, exchanges
+from sonicvacuum.discover.faults.examine import examine
+from sonicvacuum.discover.model.nominal import predicted
+from sonicvacuum.discover.model.problem import experiment
+from sonicvacuum.records import Signals
+from sonicvacuum.report.bench import slip
+
+SPEEDS = (0.3, 0.5, 0.9)
+
+
+@pytest.fixture(scope="module")
+def sound():
+    """Three speeds."""
+    return made(seed=12, speeds=SPEEDS)[0]
+
+
+def asked(record):
+    """What is asked of a record."""
+    return exchanges.exchanged_traces(record, predicted(experiment(record)))
+
+
+def told(record):
+    """Slips that are sure, and what is named."""
+    v = session.discover(record).verdict
+    sure = [f for f in v.faults if f.probability > 0.9]
+    return [(f.fault, f.run, f.sensor) for f in sure], v.named, [slip(f) for f in sure]
+
+
+def test_nothing_is_asked_of_traces_in_their_places(sound):
+    assert asked(sound) == []
+    # What all gauges show is another run's as a whole.
+    assert asked(changes.runs_swapped(sound, "v0", "v2")) == []
+
+
+@pytest.mark.parametrize(("gauge", "runs"), [("g4", ("v0", "v2")), ("wall", ("v1", "v2"))])
+def test_traces_of_one_gauge_in_each_others_run_are_told(sound, gauge, runs):
+    mixed = changes.traces_swapped(sound, gauge, *runs)
+    (one,) = asked(mixed)
+    assert one.change(mixed, 0.0).signals["v2"].readings[gauge] is sound.signals["v2"].readings[gauge]
+    found, named, (said,) = told(mixed)
+    pair = " and ".join(runs)
+    assert found == [("runs-swapped", pair, gauge)]
+    assert named == []
+    assert said == f"the traces of {gauge} in runs {pair} look exchanged, or one of them taken for both"
+
+
+def test_traces_at_other_times_are_not_exchanged(sound):
+    mixed = changes.traces_swapped(sound, "g4", "v0", "v2")
+    later = Signals(mixed.signals["v2"].time_us + 5.0, mixed.signals["v2"].readings)
+    assert asked(replace(mixed, signals={**mixed.signals, "v2": later})) == []
+
+
+@pytest.mark.parametrize(("of", "to"), [("v0", "v1"), ("v2", "v0")])
+def test_a_trace_taken_for_two_runs_is_left_out_of_the_wrong_one(sound, of, to):
+    copy = altered(sound, "g7", lambda _: sound.signals[of].readings["g7"], to)
+    bench, findings = examine(copy, predicted(experiment(copy)))
+    ((a, b),) = [f.run.split(" and ") for f in findings]
+    assert ({a, b}, findings[0].sensor) == ({of, to}, "g7")
+    lacking = [run for run, s in bench.record.signals.items() if "g7" not in s.readings]
+    assert lacking == [to]
+
+
+def test_a_file_taken_for_two_runs_is_left_out_of_the_wrong_one(sound):
+    record = replace(sound, signals={**sound.signals, "v1": sound.signals["v2"]})
+    found, named, (said,) = told(record)
+    assert found == [("runs-swapped", "v1 and v2", None)]
+    assert named == []
+    assert said == "runs v1 and v2 look exchanged, or one of them taken for both"
+    bench, _ = examine(record, predicted(experiment(record)))
+    assert list(bench.record.signals) == ["v0", "v2"]
+
+
+def test_of_runs_struck_alike_nobody_knows_whose_a_trace_is():
+    alike = made(seed=12, speeds=(0.5, 0.5))[0]
+    copy = replace(alike, signals={"v0": alike.signals["v0"], "v1": alike.signals["v0"]})
+    assert examine(copy, predicted(experiment(copy)))[1] == []
+
+
+def test_constant_traces_are_nobodys(sound):
+    flat = {run: {**s.readings, "g7": np.zeros(s.samples)} for run, s in sound.signals.items()}
+    record = replace(sound, signals={k: Signals(sound.signals[k].time_us, flat[k]) for k in flat})
+    assert list(exchanges.taken_twice(record, predicted(experiment(record)))) == []
