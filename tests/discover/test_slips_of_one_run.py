@@ -1,5 +1,6 @@
 """A run that was triggered at another moment than the others, or struck far from its stated speed."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -9,8 +10,10 @@ from sonicvacuum.discover import session
 from sonicvacuum.discover.faults import changes, judged
 from sonicvacuum.discover.faults.competition import Search
 from sonicvacuum.discover.faults.found import Bench
-from sonicvacuum.discover.faults.slips import Slip
+from sonicvacuum.discover.faults.slips import Slip, hypotheses
+from sonicvacuum.discover.faults.timing import gauge_delay
 from sonicvacuum.effects import CATALOGUE
+from sonicvacuum.records import Signals
 from sonicvacuum.report import bench
 
 
@@ -81,3 +84,18 @@ def test_a_gauge_at_one_bead_or_another_is_not_the_same_slip():
     beads = [Slip("gauge-misplaced", None, sensor="g4", value=lambda _, bead=b: bead) for b in (3.0, 5.0)]
     both = [judged.Judged(slip, 0.0, 0.0, log) for slip, log in zip(beads, (9.0, 8.0), strict=True)]
     assert judged.each_once(both) == both
+
+
+def test_a_gauge_is_not_put_right_by_as_much_as_its_record_lasts(empty):
+    """Where a clock cuts most pulses off, traces fit where they meet the model's least."""
+    slip = next(s for s in hypotheses(empty) if s.fault == "gauge-delayed" and s.sensor == "wall")
+    pulse = np.exp(-(((np.arange(700) - 30.0) / 5.0) ** 2))
+    seen = {run: {"g4": pulse, "wall": pulse} for run in empty.signals}
+
+    def late(by):
+        readings = {"g4": pulse, "wall": np.roll(pulse, by)}
+        signals = {run: Signals(s.time_us, readings) for run, s in empty.signals.items()}
+        return gauge_delay(slip, replace(empty, signals=signals), seen)
+
+    assert late(100) == pytest.approx(100.0)
+    assert late(600) == 0.0  # of 700

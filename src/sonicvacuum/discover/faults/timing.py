@@ -15,6 +15,8 @@ from sonicvacuum.records import Record
 FAR = 8.0
 # A run's own time zero is asked for where the fit has moved it by so many standard errors.
 STRAINED = 3.0
+# No gauge is late by more than this share of a record.
+MOST = 0.5
 # A pulse has arrived where it exceeds this share of its peak, as a scope's trigger level would have it.
 ARRIVED = 0.1
 
@@ -137,4 +139,10 @@ def gauge_delay(slip: Slip, record: Record, predicted) -> float:
         for k in runs
         if others[k]
     ]
-    return float(np.median(lags)) if lags else 0.0
+    late = float(np.median(lags)) if lags else 0.0
+    # Put right by more, a trace would hardly hold a reading.
+    return late if abs(late) < MOST * min((_span_us(record.signals[k]) for k in runs), default=0.0) else 0.0
+
+
+def _span_us(signals):
+    return 1e6 * signals.samples * signals.interval_s
