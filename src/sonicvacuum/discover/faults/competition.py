@@ -24,6 +24,7 @@ from sonicvacuum.discover.faults.judged import (
     most_of,
     obvious,
     of_one_run,
+    other_clock,
     scatter,
     suspicious,
     without_slip,
@@ -187,6 +188,8 @@ class Search(Searching):
         rest = excess(model) - judged.gain
         leaves = rest > max(policy.SURE_GAIN, policy.REST * excess(model))
         if not (FAULTS[judged.slip.fault].stretches or judged.slip.of_values or leaves):
+            return False
+        if not leaves and other_clock(judged, model):
             return False
         found = self._alone.beside(model)
         self._matching = {c.effect for c in found if c.gain > judged.gain - ALIKE}

@@ -107,6 +107,14 @@ def of_one_run(judged: Judged, model: Model) -> bool:
     return bool(alone) and judged.gain > least and not FAULTS[slip.fault].alias
 
 
+def other_clock(judged: Judged, model: Model) -> bool:
+    """Whether a slip makes all times so much longer or shorter as no effect does: where forces are known,
+    even a modulus that did would betray itself by them.
+    """
+    slip, known = judged.slip, any(gauge.calibrated for gauge in model.forward.experiment.gauges)
+    return slip.fault == "clock" and not slip.run and known and abs(judged.size) > policy.OTHER_CLOCK
+
+
 def exchanged(judged: Judged, model: Model) -> bool:
     """Whether two runs that look exchanged are struck, in the nominal fit, each at about the speed stated for
     the other: whatever leads it so far from what is stated, for both, is no effect.

@@ -56,6 +56,9 @@ PLAIN_GAIN, PLAIN_RATIO = 100.0, 10.0
 # Δχ² that the best of all slips and effects gains by chance in values whose errors are as large as their
 # misfit says; what gains more is no such chance, and errors are asked for beside it.
 CHANCE = 12.0
+# Times of all runs that are off by more than this factor (its logarithm) are no effect's: contacts would have
+# to be sixteen times as stiff or as soft. To ask every effect so far from the data takes minutes.
+OTHER_CLOCK = math.log(3.0)
 # Power of the striker's speed with which values go, at most or about.
 SPEED_POWER = 1.5
 # The speed of a run that a table asks for is off by no more, in its logarithm.

@@ -24,7 +24,7 @@ from sonicvacuum.discover.faults.judging import Judge
 from sonicvacuum.discover.faults.lines import drifts
 from sonicvacuum.discover.faults.seats import seats
 from sonicvacuum.discover.faults.slips import Slip, hypotheses
-from sonicvacuum.discover.faults.starts import FACTORS, run_clock, run_clocks, with_starts
+from sonicvacuum.discover.faults.starts import FACTORS, run_clock, run_clocks, unfinished, with_starts
 from sonicvacuum.discover.faults.table import FAULTS
 from sonicvacuum.discover.faults.timing import late_runs, time_zero
 from sonicvacuum.discover.faults.weights import ALIKE
@@ -33,7 +33,7 @@ from sonicvacuum.discover.fit.refit import polish
 from sonicvacuum.discover.fit.wide import nominal
 from sonicvacuum.discover.model.experiment import Experiment
 from sonicvacuum.discover.model.forward import Forward
-from sonicvacuum.discover.model.nominal import predicted, read_at
+from sonicvacuum.discover.model.nominal import predicted, read_at, read_to_the_end
 from sonicvacuum.discover.model.problem import together
 from sonicvacuum.discover.rounds import Investigation
 from sonicvacuum.discover.search.unknown import raw
@@ -121,8 +121,9 @@ class Ranking:
         seen = predicted(self.make(model.bench), self.threads)
         done = {(f.fault, f.run, f.sensor) for f in self.findings}
         every = hypotheses(record)
-        slips = [*with_starts(every, record, seen, model), *late_runs(record, model, seen)]
-        slips += run_clocks(record, seen)
+        whole = self._whole(model.bench, seen)
+        slips = [*with_starts(every, record, seen, model, whole), *late_runs(record, model, seen)]
+        slips += run_clocks(record, whole)
         slips += exchanged_traces(record, seen)
         slips += seats(record, seen, lambda gauges: read_at(self.make(model.bench), gauges, self.threads))
         slips = [*(s for s in slips if (s.fault, s.run, s.sensor) not in done), *self.factors(every)]
@@ -151,6 +152,10 @@ class Ranking:
         if far and not any(obvious(j, model) for j in followed):
             followed += judge.follow_all([j for j in apart if j not in worth])
         return self._kept(judge, followed)
+
+    def _whole(self, bench: Bench, seen):
+        """What the nominal model reads, with whole pulses where the record ends before they have passed."""
+        return read_to_the_end(self.make(bench), self.threads) if unfinished(bench.record, seen) else seen
 
     def _of_table(self, judge: Judge, slips: list[Slip]) -> list[Judged]:
         """The same of a table: the best of each kind are fitted."""

@@ -26,32 +26,56 @@ WEIGHED = ("bead-mass", "bead-size", "striker-mass")
 STRETCHED = math.log(1.15)
 # What all runs and gauges share: put right before any effect is known, which may have led its size.
 FACTORS = ("gain-common", "clock")
+# A pulse stands out of a trace by so many standard deviations of its noise.
+CLEAR = 10.0
 # Sizes below so many prior widths are found from none.
 NEAR = {"gauge-delayed": 1.0, "run-off": 2.0, "gain-common": 2.0, "clock": 3.0}
 
 
-def with_starts(slips: list[Slip], record: Record, predicted: Predicted, model: Model) -> list[Slip]:
+def unfinished(record: Record, predicted: Predicted) -> bool:
+    """Whether the record ends before most of the model's pulses have passed, though it has whole pulses: what
+    is high and how long of those that are cut off tells nothing.
+    """
+    gauges = [(run, gauge) for run in predicted for gauge in record.gauges if gauge.id in predicted[run]]
+    found = [
+        _length(predicted[run][gauge.id]) is None
+        for run, gauge in gauges
+        if _shows(record.signals[run].readings.get(gauge.id), gauge.sigma)
+    ]
+    return 2 * sum(found) > len(found)
+
+
+def _shows(trace, sigma):
+    """Whether a trace has a whole pulse that stands out of its noise."""
+    return trace is not None and trace.max() > CLEAR * sigma and _length(trace) is not None
+
+
+def with_starts(
+    slips: list[Slip], record: Record, predicted: Predicted, model: Model, whole: Predicted | None = None
+) -> list[Slip]:
     """Delays of single gauges start where the gauge's own traces fit best, a run's speed where the fit has
     led it, or where its peaks are as high as the traces'; a factor that all gauges share (a termination, a
     probe) where peaks of all runs are, and the recorder's time where pulses are as long. Sizes and masses of
     balls are asked for once more from where these weigh what their material does.
+
+    `whole` are the predicted readings, read on until the pulses have passed, where they were cut off.
     """
     weighed = [(s, _weighed(record, s.fault)) for s in slips if s.fault in WEIGHED]
-    started = [_started(s, record, predicted, model) for s in slips]
+    started = [_started(s, record, predicted, model, whole or predicted) for s in slips]
     return started + [replace(s, start=start, expected=start) for s, start in weighed if start]
 
 
-def _started(slip, record, predicted, model):
+def _started(slip, record, predicted, model, whole):
     if slip.fault not in NEAR:
         return slip
     if slip.fault == "gauge-delayed":
         start = gauge_delay(slip, record, predicted)
     elif slip.fault == "gain-common":
-        start = _of_runs((_higher(record, run, predicted) for run in predicted), FARTHEST_GAIN)
+        start = _of_runs((_higher(record, run, whole) for run in whole), FARTHEST_GAIN)
     elif slip.fault == "clock":
-        start = _of_runs((_longer(record, run, predicted) for run in predicted), FARTHEST)
+        start = _of_runs((_longer(record, run, whole) for run in whole), FARTHEST)
     else:
-        start = _speed(slip.run, record, predicted, model)
+        start = _speed(slip.run, record, whole, model)
     return replace(slip, start=start) if abs(start) > NEAR[slip.fault] * slip.width else slip
 
 
