@@ -27,8 +27,8 @@ FURTHER = 9.0
 # Pairs are asked for although the best single effect leaves nothing, where slopes at the nominal model
 # promise a Δχ² of so much more than it gains: in 157 records with one effect they promised 14 more at most.
 PROMISED = 20.0
-# One run may be predicted worse by this share of what a single effect that leaves nothing gains on all of them:
-# by chance one run of three lost 6.2 of 33 to a gap that is there.
+# One run may be predicted worse by this share of what a single effect that leaves nothing gains on all: by
+# chance one run of three lost 6.2 of 33 to a gap that is there.
 BY_CHANCE = 0.25
 # Beside what is left, effects are named where they are so many times likelier than all else together.
 CLEAR = 1.0
