@@ -9,7 +9,7 @@ from made_records import made
 import sonicvacuum as sv
 from sonicvacuum.discover.compare import read_model
 from sonicvacuum.effects import CATALOGUE
-from sonicvacuum.effects.base import FAINTEST, FAR
+from sonicvacuum.effects.parameter import FAINTEST, FAR
 from sonicvacuum.files import InputError
 
 NUISANCES = {"speed_ratio": {"r1": 1.0}, "trigger_us": {"r1": 0.0}, "gain": {"g": 1.0}, "modulus_ratio": 1.0}

@@ -10,7 +10,7 @@ from effect_cases import PLACES, SWITCHES, nominal, place_of, run, values
 
 from sonicvacuum.effects import CATALOGUE, IDS, effect
 from sonicvacuum.effects.base import PLACES as KINDS_OF_PLACE
-from sonicvacuum.effects.base import PRIORS
+from sonicvacuum.effects.parameter import PRIORS
 from sonicvacuum.gauges import Gauge
 
 CANONICAL = [

@@ -11,7 +11,8 @@ from dataclasses import fields
 
 import numpy as np
 
-from sonicvacuum.effects.base import NUISANCES, PLACES, PRIORS, Effect, Parameter, Setup
+from sonicvacuum.effects.base import PLACES, Effect, Parameter, Setup
+from sonicvacuum.effects.parameter import NUISANCES, PRIORS
 from sonicvacuum.gauges import Gauge
 from sonicvacuum.physics.bodies import Body, Elastic
 from sonicvacuum.physics.chain import Chain
