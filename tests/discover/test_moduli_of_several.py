@@ -88,10 +88,10 @@ def test_a_material_in_a_model_is_a_name_or_a_whole_number(tmp_path):
     rest = {"record": "r", "speed_ratio": {}, "trigger_us": {}, "gain": {}, "modulus_ratio": 1.0}
     path = tmp_path / "model.json"
     path.write_text(json.dumps({**rest, "effects": {EFFECT: {"modulus_ratio": 2.0, "material": 0.5}}}))
-    with pytest.raises(InputError, match=r"material is 0\.5; use a whole number"):
+    with pytest.raises(InputError, match=r"material: is 0\.5; give the material's name or a whole number"):
         read_model(path)
     path.write_text(json.dumps({**rest, "effects": {"mass-defect": {"mass_ratio": 2.0, "bead": "three"}}}))
-    with pytest.raises(InputError, match="bead is 'three'; use a whole number"):
+    with pytest.raises(InputError, match="bead: is 'three'; give a whole number"):
         read_model(path)
     path.write_text(json.dumps({**rest, "effects": {EFFECT: {"modulus_ratio": 2.0}}}))
     old = read_model(path)

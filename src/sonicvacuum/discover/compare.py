@@ -117,8 +117,9 @@ def _check_values(path, one, given):
     if isinstance(at, str) and one.of_several:
         return  # a name, of which no more is known without a chain
     if isinstance(at, str) or at is None or not (0.0 <= at <= ranges.BEADS.high and at.is_integer()):
-        told = "is missing" if at is None else f"is {at if isinstance(at, str) else f'{at:g}'}"
-        raise InputError(f"{path}: effects.{one.id}.{one.sits}: {told}; give a whole number, zero or more")
+        told = "is missing" if at is None else f"is {at!r}" if isinstance(at, str) else f"is {at:g}"
+        name = f"the {one.sits}'s name or " if one.of_several else ""
+        raise InputError(f"{path}: effects.{one.id}.{one.sits}: {told}; give {name}a whole number from 0 on")
 
 
 def _check_nuisances(path, found):
