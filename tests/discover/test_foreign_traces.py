@@ -1,4 +1,6 @@
-"""Traces of one gauge that belong to another run: exchanged, or one file taken for both; unknown before."""
+"""Traces that belong to another run or gauge: exchanged, in another order, or one file or column taken for
+both. Most ended as `unknown` before.
+"""
 
 from dataclasses import replace
 
@@ -90,3 +92,46 @@ def test_constant_traces_are_nobodys(sound):
     flat = {run: {**s.readings, "g7": np.zeros(s.samples)} for run, s in sound.signals.items()}
     record = replace(sound, signals={k: Signals(sound.signals[k].time_us, flat[k]) for k in flat})
     assert list(exchanges.taken_twice(record, predicted(experiment(record)))) == []
+
+
+def ordered(record):
+    """The order of runs that is asked for."""
+    return exchanges.other_order(record, predicted(experiment(record)))
+
+
+def test_runs_that_are_in_another_order_than_their_strikers_are_told(sound):
+    turned = changes.runs_struck(sound, {"v0": "v1", "v1": "v2", "v2": "v0"})
+    (one,) = ordered(turned)
+    assert one.change(turned, 0.0).block.runs == sound.block.runs
+    found, named, (said,) = told(turned)
+    assert found == [("runs-swapped", "v0, v1 and v2", None)]
+    assert named == []
+    assert said == "runs v0, v1 and v2 look exchanged, or one of them taken for both"
+
+
+def test_no_order_is_asked_of_runs_that_are_in_theirs_or_of_two_exchanged(sound):
+    assert ordered(sound) == []
+    assert ordered(changes.runs_swapped(sound, "v0", "v2")) == []  # a slip of its own
+    alike = made(seed=12, speeds=(0.5, 0.51, 0.9))[0]
+    assert ordered(changes.runs_struck(alike, {"v0": "v1", "v1": "v2", "v2": "v0"})) == []
+
+
+def twin(record, of, to):
+    """The record with the traces of one gauge taken for another's as well."""
+    taken = {run: Signals(s.time_us, {**s.readings, to: s.readings[of]}) for run, s in record.signals.items()}
+    return replace(record, signals=taken)
+
+
+@pytest.mark.parametrize(("of", "to"), [("g4", "g7"), ("g7", "g4"), ("wall", "g4")])
+def test_a_column_taken_for_two_gauges_is_left_out_of_the_wrong_one(sound, of, to):
+    record = twin(sound, of, to)
+    bench, (found,) = examine(record, predicted(experiment(record)))
+    assert (found.fault, set(found.sensor)) == ("gauges-swapped", {of, to})
+    assert all(to not in s.readings and of in s.readings for s in bench.record.signals.values())
+
+
+def test_a_column_taken_for_two_gauges_is_told(sound):
+    found, named, (said,) = told(twin(sound, "g7", "g4"))
+    assert found == [("gauges-swapped", None, ["g4", "g7"])]
+    assert named == []
+    assert said == "gauges g4 and g7 look swapped, or one of them taken for both"

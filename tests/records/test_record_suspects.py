@@ -196,3 +196,16 @@ def test_a_trace_that_was_taken_for_two_runs_is_told():
     mixed = replace(own, readings=own.readings | {"far": traces.readings["far"]})
     (said,) = copies(replace(record, signals={**record.signals, other: mixed}))
     assert said.startswith(f"run {other}: gauge far reads the same samples as in run {one_run}")
+
+
+def test_a_column_that_was_taken_for_two_gauges_is_told():
+    record = made()
+    one, two = (gauge.id for gauge in record.gauges[:2])
+    taken = {k: replace(s, readings={**s.readings, two: s.readings[one]}) for k, s in record.signals.items()}
+    (said,) = copies(replace(record, signals=taken))
+    assert said == (
+        f"gauge {two}: reads the same samples as gauge {one}, to the last digit: a column was taken for both"
+    )
+    run = next(iter(taken))
+    (said,) = copies(replace(record, signals={**record.signals, run: taken[run]}))
+    assert f", in run {run}: a column" in said

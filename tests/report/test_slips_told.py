@@ -25,7 +25,8 @@ def test_every_slip_has_words_for_the_bench(fault):
 def test_the_sentence_names_slips_first():
     text = _sentence(verdict(faults=[SWAPPED]))
     assert text.startswith(
-        "check first: gauges g9 and g5 look swapped (probability above 0.99); missing: kuwabara"
+        "check first: gauges g9 and g5 look swapped, or one of them taken for both (probability above 0.99); "
+        "missing: kuwabara"
     )
 
 
@@ -36,7 +37,7 @@ def test_the_page_says_what_to_check_first_and_escapes_it(tmp_path):
     write_json(verdict(faults=[SWAPPED, odd], reasons=reasons), folder / "verdict.json")
     text = record.write_page(folder).read_text()
     assert text.index("Check your set-up first") < text.index("Where they disagree")
-    assert "Gauges g9 and g5 look swapped: check the cables" in text
+    assert "Gauges g9 and g5 look swapped, or one of them taken for both: check the cables" in text
     assert "<b>v1</b>" not in text
     assert "All else is of the record put right: gauges swapped." in text
 

@@ -48,8 +48,8 @@ def suspects(record: Record, expected: Expected) -> list[str]:
 
 
 def copies(record: Record) -> list[str]:
-    """Runs whose traces are another run's, sample by sample; of noise that cannot be."""
-    return [_copy(record, *one) for one in copied(record)]
+    """Runs and gauges whose traces are those of another, sample by sample; of noise that cannot be."""
+    return [*(_copy(record, *one) for one in copied(record)), *(_twin(record, *one) for one in twins(record))]
 
 
 def _copy(record, a, b, ids):
@@ -58,6 +58,14 @@ def _copy(record, a, b, ids):
         return f"run {b}: holds the same samples as run {a}, to the last digit: one file was taken for both"
     gauges = f"gauge {ids[0]} reads" if len(ids) == 1 else f"gauges {', '.join(ids)} read"
     return f"run {b}: {gauges} the same samples as in run {a}, to the last digit: a trace was taken for both"
+
+
+def _twin(record, one, two, runs):
+    """A sentence on a gauge whose traces are an earlier one's."""
+    said = f"gauge {two}: reads the same samples as gauge {one}, to the last digit"
+    if len(runs) < len(record.signals):
+        said += f", in {'run' if len(runs) == 1 else 'runs'} {', '.join(runs)}"
+    return f"{said}: a column was taken for both"
 
 
 def copied(record: Record) -> Iterator[tuple[str, str, list[str]]]:
@@ -69,6 +77,17 @@ def copied(record: Record) -> Iterator[tuple[str, str, list[str]]]:
         same = [id for id in one if id in other and np.array_equal(one[id], other[id])]
         if ids := [id for id in same if np.ptp(one[id]) > 0.0]:
             yield a, b, ids
+
+
+def twins(record: Record) -> Iterator[tuple[str, str, list[str]]]:
+    """A gauge, a later one, and the runs in which both have the same trace, sample by sample, that is not
+    constant.
+    """
+    for one, two in itertools.combinations([g.id for g in record.gauges], 2):
+        both = {run: s.readings for run, s in record.signals.items() if {one, two} <= s.readings.keys()}
+        same = [run for run, own in both.items() if np.array_equal(own[one], own[two])]
+        if runs := [run for run in same if np.ptp(both[run][one]) > 0.0]:
+            yield one, two, runs
 
 
 @dataclass(frozen=True)

@@ -113,10 +113,14 @@ def _renamed(run, names):
 
 def runs_swapped(record: Record, one: str, two: str) -> Record:
     """The strikers of two runs exchanged."""
+    return runs_struck(record, {one: two, two: one})
+
+
+def runs_struck(record: Record, others: Mapping[str, str]) -> Record:
+    """Runs with the strikers of others: run → the one whose striker it has."""
     strikers_ = {r.id: r.striker for r in record.block.runs}
-    names = {one: two, two: one}
     runs = [
-        msgspec.structs.replace(r, striker=strikers_[names[r.id]]) if r.id in names else r
+        msgspec.structs.replace(r, striker=strikers_[others[r.id]]) if r.id in others else r
         for r in record.block.runs
     ]
     return _block(record, runs=runs)

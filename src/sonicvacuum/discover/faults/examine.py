@@ -8,7 +8,7 @@ import msgspec
 import numpy as np
 
 from sonicvacuum.discover.faults import changes, expected, policy, traces
-from sonicvacuum.discover.faults.exchanges import taken_twice
+from sonicvacuum.discover.faults.exchanges import read_twice, taken_twice
 from sonicvacuum.discover.faults.found import Bench, Finding
 from sonicvacuum.discover.faults.pulses import pulses
 from sonicvacuum.discover.faults.table import FAULTS
@@ -78,8 +78,8 @@ class _Look:
         self.lost, self.seen, self.rests = {}, defaultdict(dict), defaultdict(dict)
         self.levels, self.stretches = defaultdict(dict), defaultdict(dict)
         self.silent, self.blank, self.lines = set(), [], {}
-        # As `taken_twice` yields them.
-        self.twice = []
+        # As `taken_twice` and `read_twice` yield them.
+        self.twice, self.read_twice = [], []
         # Gauge → what is known of its level and of its drift only so well, in its unit.
         self.unsure = defaultdict(dict)
 
@@ -169,9 +169,11 @@ class _Look:
                 self.readings[run][id] = -self.readings[run][id]
 
     def copies(self):
-        """Traces that are another run's: they are left out of the one that they do not fit."""
+        """Traces that are another run's or gauge's: they are left out of the one that they do not fit."""
         self.twice = list(taken_twice(self.record, self.predicted)) if self.predicted else []
         self.silent |= {(run, id) for _, _, run, ids in self.twice for id in ids}
+        self.read_twice = list(read_twice(self.record, self.predicted)) if self.predicted else []
+        self.silent |= {(run, id) for *_, id in self.read_twice for run in self.record.signals}
 
     def _quiet_slips(self, run, gauge):
         """What the stretch before the pulse shows: a slope, a level, the size of the noise."""
@@ -225,7 +227,7 @@ class _Look:
         gone = [k for k in self.record.signals if k not in signals]
         lost = {at: rows for at, rows in self.lost.items() if at not in self.silent}
         lines = {at: line for at, line in self.lines.items() if at not in self.silent and at[0] in signals}
-        changed = bool(self.seen) or bool(gone) or bool(self.twice)
+        changed = bool(self.seen) or bool(gone) or bool(self.twice) or bool(self.read_twice)
         if not changed:
             return Bench(self.record, lost)
         return Bench(changes.looser(_without_runs(self.record, signals, gone), self.unsure), lost, lines)
@@ -289,6 +291,8 @@ class _Look:
             whole = set(ids) >= set(self.record.signals[a].readings) & set(self.record.signals[b].readings)
             for id in [None] if whole else ids:
                 result.append(Finding("runs-swapped", f"{a} and {b}", id, None, policy.PLAIN, True))
+        for one, two, _ in self.read_twice:
+            result.append(Finding("gauges-swapped", None, (one, two), None, policy.PLAIN, True))
         for (fault, id), runs in self.seen.items():
             having = [k for k, s in self.record.signals.items() if id in s.readings and k not in self.blank]
             everywhere = len(runs) == len(having)

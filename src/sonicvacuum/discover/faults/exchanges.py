@@ -1,4 +1,6 @@
-"""Traces of one gauge that belong to another run: exchanged with that run's, or taken for both."""
+"""Traces that belong elsewhere: to another run, where those of one gauge are exchanged or one was taken for
+both runs, or where all runs are in another order than their strikers; or to another gauge of their run.
+"""
 
 import itertools
 import math
@@ -9,8 +11,9 @@ import numpy as np
 
 from sonicvacuum.discover.faults import changes
 from sonicvacuum.discover.faults.slips import Slip, constant
+from sonicvacuum.discover.faults.timing import lag
 from sonicvacuum.records import Record
-from sonicvacuum.records.suspects import copied
+from sonicvacuum.records.suspects import copied, twins
 
 # Run → gauge → (T,) readings.
 Readings = Mapping[str, Mapping[str, np.ndarray]]
@@ -19,6 +22,8 @@ Readings = Mapping[str, Mapping[str, np.ndarray]]
 OFF, MENDED = math.log(1.1), 0.5
 # Models of peaks that are as near each other do not tell which of two runs a trace belongs to.
 APART = math.log(1.05)
+# Of two gauges with the same trace it is that one's where it comes so many times nearer to when it should.
+SOONER = 3.0
 
 
 def exchanged_traces(record: Record, predicted: Readings) -> list[Slip]:
@@ -45,6 +50,41 @@ def exchanged_traces(record: Record, predicted: Readings) -> list[Slip]:
                 change, value = partial(_exchanged, id, a, b), partial(constant, None)
                 found.append(Slip("runs-swapped", change, f"{a} and {b}", id, alternatives, value=value))
     return found
+
+
+def other_order(record: Record, predicted: Readings) -> list[Slip]:
+    """The slip that runs, three or more, are in another order than their strikers, as where files are counted
+    from another one: the striker by which the model's pulses are highest made the highest, and so on.
+
+    Nothing is said where runs that would change places are struck alike.
+    """
+    runs = [run.id for run in record.block.runs if predicted.get(run.id)]
+    highest = _higher(record, {run: predicted[run] for run in runs})
+    everywhere = set.intersection(*(set(own) for own in highest.values())) if highest else set()
+    if not everywhere:
+        return []
+
+    def heights(readings):
+        return {
+            run: float(np.median([math.log(np.ptp(readings[run][g])) for g in everywhere])) for run in runs
+        }
+
+    read, model = heights({run: record.signals[run].readings for run in runs}), heights(predicted)
+    struck = dict(zip(sorted(runs, key=read.__getitem__), sorted(runs, key=model.__getitem__), strict=True))
+    others = {run: other for run, other in struck.items() if run != other}
+    apart = [abs(own[a] - own[b]) for own in (read, model) for a, b in itertools.combinations(others, 2)]
+    before = _spread({run: read[run] - model[run] for run in runs})
+    after = _spread({run: read[run] - model[struck[run]] for run in runs})
+    if len(others) < 3 or min(apart) < APART or before < OFF or after > MENDED * before:
+        return []
+    *first, last = sorted(others, key=runs.index)
+    change, where = partial(_struck, others), f"{', '.join(first)} and {last}"
+    count = math.factorial(len(runs))
+    return [Slip("runs-swapped", change, where, None, count, value=partial(constant, None))]
+
+
+def _struck(others, record, _size):
+    return changes.runs_struck(record, others)
 
 
 def _spread(own):
@@ -95,3 +135,28 @@ def taken_twice(record: Record, predicted: Readings) -> Iterator[tuple[str, str,
             off[run] = float(np.median(own)) if own else math.nan
         if abs(off[a] - off[b]) > APART:
             yield a, b, max(off, key=lambda run: abs(off[run])), ids
+
+
+def read_twice(record: Record, predicted: Readings) -> Iterator[tuple[str, str, str]]:
+    """Two gauges that share their traces sample by sample, and that of both whose traces do not come when the
+    model's do, beside those of all others.
+
+    Nothing is said where both would come as well, or in a part of the runs only.
+    """
+    for one, two, runs in twins(record):
+        seen = [run for run in runs if one in predicted.get(run, {}) and two in predicted[run]]
+        if len(runs) < len(record.signals) or not seen:
+            continue
+        early = {
+            id: float(np.median([_early(record, run, predicted, id, (one, two)) for run in seen]))
+            for id in (one, two)
+        }
+        wrong, right = sorted((one, two), key=lambda id: -abs(early[id]))
+        if abs(early[wrong]) > SOONER * max(abs(early[right]), 1e6 * record.signals[seen[0]].interval_s):
+            yield one, two, wrong
+
+
+def _early(record, run, predicted, id, doubtful):
+    """By how many us a gauge's trace lies before the model's, beside those that are beyond doubt."""
+    sound = [g for g in record.signals[run].readings if g not in doubtful and g in predicted[run]]
+    return lag(record, run, predicted, [id]) - (lag(record, run, predicted, sound) if sound else 0.0)

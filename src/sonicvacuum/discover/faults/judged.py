@@ -4,7 +4,6 @@ Records that differ in a slip differ in their data and in their noise, so that n
 compared: χ², the penalty of the nuisances, and the logarithm of the noise of every sample that counts.
 """
 
-import itertools
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
@@ -116,22 +115,27 @@ def other_clock(judged: Judged, model: Model) -> bool:
 
 
 def exchanged(judged: Judged, model: Model) -> bool:
-    """Whether two runs that look exchanged are struck, in the nominal fit, each at about the speed stated for
-    the other: whatever leads it so far from what is stated, for both, is no effect.
+    """Whether runs that look exchanged are struck, in the nominal fit, each at about the speed stated for the
+    run whose striker it would have: whatever leads it so far from what is stated, for all, is no effect.
     """
     if judged.slip.fault != "runs-swapped" or judged.slip.of_values or judged.slip.sensor:
         return False
-    stated = {run.id: math.log(run.striker.speed_m_s) for run in model.bench.record.block.runs}
-    pairs = itertools.combinations(stated, 2)
-    one, two = next((a, b) for a, b in pairs if f"{a} and {b}" == judged.slip.run)
+    record = model.bench.record
+    stated, struck = (_speeds(one) for one in (record, judged.slip.change(record, 0.0)))
     places = [run.id for run in model.forward.experiment.runs]
-    for own, other in ((one, two), (two, one)):
-        way, place = stated[other] - stated[own], places.index(own)
+    moved = [run for run in stated if struck[run] != stated[run]]
+    for run in moved:
+        way, place = struck[run] - stated[run], places.index(run)
         sigma = model.forward.nuisance_sigma[place]
         missed = abs(model.fit.nu[place] * sigma - way)
         if abs(way) <= policy.FAR_APART * sigma or missed > policy.EXCHANGED * abs(way):
             return False
-    return True
+    return bool(moved)
+
+
+def _speeds(record):
+    """Run → logarithm of its striker's stated speed."""
+    return {run.id: math.log(run.striker.speed_m_s) for run in record.block.runs}
 
 
 def without_slip(judged: Judged, model: Model) -> Model | None:

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from sonicvacuum import stages
 from sonicvacuum.discover.faults import policy, tables
-from sonicvacuum.discover.faults.exchanges import exchanged_traces
+from sonicvacuum.discover.faults.exchanges import exchanged_traces, other_order
 from sonicvacuum.discover.faults.found import Bench, Finding
 from sonicvacuum.discover.faults.judged import (
     Judged,
@@ -124,7 +124,8 @@ class Ranking:
         whole = self._whole(model.bench, seen)
         slips = [*with_starts(every, record, seen, model, whole), *late_runs(record, model, seen)]
         slips += run_clocks(record, whole)
-        slips += exchanged_traces(record, seen)
+        order = other_order(record, seen)
+        slips += [*exchanged_traces(record, seen), *order]
         slips += seats(record, seen, lambda gauges: read_at(self.make(model.bench), gauges, self.threads))
         slips = [*(s for s in slips if (s.fault, s.run, s.sensor) not in done), *self.factors(every)]
         slips = _possible(slips, model)
@@ -145,7 +146,7 @@ class Ranking:
         # Slopes know nothing of a pulse that comes a bead earlier, or with another run's speed.
         apart = [j for j in looked if not (j.slip.continuous or j in worth or out_of_reach(j, model))]
         if far:
-            pairs = both_off(worth)
+            pairs = both_off(worth) | {slip.run for slip in order}
             worth += [j for j in apart if of_the_chain(j.slip) or j.slip.each or j.slip.run in pairs]
         whole = judge.look_at([s for s in shown if (s.fault, s.run, s.sensor) not in done])
         followed = judge.follow_all([*worth, *whole])

@@ -77,7 +77,7 @@ FAULTS: dict[str, Fault] = {
         ),
         Fault(
             "gauges-swapped",
-            "gauges {sensor} look swapped",
+            "gauges {sensor} look swapped, or one of them taken for both",
             "check the cables and the channels' names",
             of_table="{quantity} of gauges {sensor} look exchanged",
             look_up="check the rows of that run",
