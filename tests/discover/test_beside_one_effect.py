@@ -1,5 +1,6 @@
 """A slip without a size beside one strong effect is put right before sets of effects are asked for."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
@@ -64,6 +65,23 @@ def test_a_slip_that_an_effect_hides_is_asked_for_where_nothing_else_will_do(
     behind = [slip("gauges-swapped", NOISE), slip("bead-count", GROSS)]
     found = alone.Kept().explained([slip("gauge-misplaced", ranked)], model(leaves * SIZE), behind)
     assert (found and found.slip.fault) == chosen
+
+
+@pytest.mark.parametrize("hidden", [False, True])
+@pytest.mark.parametrize(("leaves", "chosen"), [(1.5, True), (9.0, True), (1.1, False)])
+def test_a_slip_that_traces_show_is_asked_for_beside_effects_that_leave_little(
+    monkeypatch, leaves, chosen, hidden
+):
+    """A gauge at the wall stated in the last bead is hidden by damping, and much like one off centre."""
+    monkeypatch.setattr(alone, "alone", lambda m, only=(): (best(m.leaves), 0))
+    one = slip("gauge-misplaced", NOISE)
+    one = replace(one, slip=replace(one.slip, shown=True))
+    others = [slip("bead-count", GROSS)]
+    given = (others, [one]) if hidden else ([*others, one], [])
+    found = alone.Kept().explained(given[0], model(leaves * SIZE), given[1])
+    assert (found is one) is chosen
+    unshown = alone.Kept().explained([slip("gauge-misplaced", NOISE)], model(1.5 * SIZE))
+    assert unshown is None
 
 
 @pytest.mark.parametrize(("share", "every"), [(0.9, True), (0.03, False)])

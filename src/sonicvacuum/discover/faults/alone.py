@@ -62,19 +62,23 @@ class Kept:
         Args:
             ranked: slips that gain by themselves, the likeliest first.
             model: of the record as it is.
-            behind: some that do not: asked where none of the others will do, and what is left is gross.
+            behind: some that do not: asked where none of the others will do, and what is left is gross, or
+                traces show them.
         """
         found, size = self.beside(model), data(model.forward)
         left, leading = _left(found, size), {c.effect for c in found[:LEADING]}
-        if left < max(policy.GROSS * size, policy.SURE_GAIN):
+        shown = [j for j in wholes([*ranked, *behind]) if j.slip.shown][: policy.FOLLOWED]
+        if left < max((scatter(size) if shown else policy.GROSS * size), policy.SURE_GAIN):
             return None
-        slips = wholes(ranked)[: policy.FOLLOWED]
+        slips = wholes(ranked)[: policy.FOLLOWED] if left > policy.GROSS * size else shown
         # What explains the record as it is says little of what acts beside a slip that explains most of it.
         most = slips[:1] if slips and slips[0].gain > policy.MOSTLY * excess(model) else []
         fitting = self._leaving_noise(most, frozenset(), size)
         fitting += self._leaving_noise(slips[len(most) :], leading, size)
-        if not fitting and left > policy.BURIED * size:
-            fitting = self._leaving_noise(wholes(behind), leading, size)
+        if not fitting and left > policy.GROSS * size:
+            buried = left > policy.BURIED * size
+            rest = [j for j in wholes(behind) if buried or j.slip.shown]
+            fitting = self._leaving_noise(rest, leading, size)
         return fitting[0] if len(fitting) == 1 else None
 
     def _leaving_noise(self, slips, leading, size):

@@ -200,7 +200,8 @@ class Search(Searching):
     def _beside_one_effect(self, ranked: list[Judged], model: Model) -> Judged | None:
         """A slip beside which one effect explains the record, see `alone`."""
         gross = excess(model) > max(policy.SURE_GAIN, policy.BURIED * data(model.forward))
-        if excess(model) < policy.SURE_GAIN or not (wholes(ranked) or gross):
+        shown = any(judged.slip.shown for judged in self.behind)
+        if excess(model) < policy.SURE_GAIN or not (wholes(ranked) or gross or shown):
             return None
         one = self._beside_the_leading(model)
         return one or self._alone.explained(ranked, model, self.behind)

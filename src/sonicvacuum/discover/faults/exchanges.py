@@ -48,7 +48,8 @@ def exchanged_traces(record: Record, predicted: Readings) -> list[Slip]:
             after = _spread(own | {a: own[a] + more, b: own[b] - more})
             if after < MENDED * before and _same_times(traces[a], traces[b]):
                 change, value = partial(_exchanged, id, a, b), partial(constant, None)
-                found.append(Slip("runs-swapped", change, f"{a} and {b}", id, alternatives, value=value))
+                where = f"{a} and {b}", id, alternatives
+                found.append(Slip("runs-swapped", change, *where, value=value, shown=True))
     return found
 
 

@@ -79,7 +79,8 @@ class Ranking:
         threads: processors to use.
         findings: slips that are told of.
         simulations: chains simulated so far.
-        behind: gauges exchanged, fitted beside the last model, which gain nothing by themselves.
+        behind: gauges exchanged, and slips that traces show, fitted beside the last model, which gain nothing
+            by themselves.
     """
 
     def __init__(self, bench: Bench, catalogue: Catalogue, threads: int, plain: list[Finding]):
@@ -174,7 +175,11 @@ class Ranking:
         """Those that gain enough, the likeliest first."""
         self.simulations += judge.simulations
         kept = [j for j in followed if j.gain > policy.LEAST_GAIN and j.log_odds > 0.0]
-        self.behind = [j for j in followed if j.slip.fault == "gauges-swapped" and j.gain < 0.0]
+        self.behind = [
+            j
+            for j in followed
+            if (j.slip.fault == "gauges-swapped" and j.gain < 0.0) or (j.slip.shown and j not in kept)
+        ]
         return sorted(kept, key=lambda j: -j.log_odds)
 
     def as_small(self, model: Model, found: Investigation) -> list[Judged]:

@@ -72,6 +72,7 @@ def _slip(id: str, bead: int | None, alternatives: int) -> Slip:
         sensor=id,
         alternatives=alternatives,
         value=partial(constant, None if bead is None else float(bead)),
+        shown=True,
     )
 
 

@@ -51,6 +51,8 @@ class Slip:
         seen: fitted model → value that is said, where the size does not tell it.
         known: whether it was put right already, and only its size is asked for once more.
         each: gauge → value, where several gauges are each told of.
+        shown: whether traces show by themselves, before anything is fitted, that it may have been made: it is
+            asked for beside effects as well where it gains nothing without them.
         expected: size that other numbers of the record speak for; 0 where none do.
     """
 
@@ -72,6 +74,7 @@ class Slip:
     seen: Callable[..., float | None] | None = None
     known: bool = False
     each: Mapping[str, float] = field(default_factory=dict)
+    shown: bool = False
     expected: float = 0.0
 
     @property
