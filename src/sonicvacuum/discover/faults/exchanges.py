@@ -11,7 +11,7 @@ import numpy as np
 
 from sonicvacuum.discover.faults import changes
 from sonicvacuum.discover.faults.slips import Slip, constant
-from sonicvacuum.discover.faults.timing import lag
+from sonicvacuum.discover.faults.timing import arrival, lag
 from sonicvacuum.records import Record
 from sonicvacuum.records.suspects import copied, twins
 
@@ -81,7 +81,7 @@ def other_order(record: Record, predicted: Readings) -> list[Slip]:
     *first, last = sorted(others, key=runs.index)
     change, where = partial(_struck, others), f"{', '.join(first)} and {last}"
     count = math.factorial(len(runs))
-    return [Slip("runs-swapped", change, where, None, count, value=partial(constant, None))]
+    return [Slip("runs-swapped", change, where, None, count, value=partial(constant, None), shown=True)]
 
 
 def _struck(others, record, _size):
@@ -148,16 +148,24 @@ def read_twice(record: Record, predicted: Readings) -> Iterator[tuple[str, str, 
         seen = [run for run in runs if one in predicted.get(run, {}) and two in predicted[run]]
         if len(runs) < len(record.signals) or not seen:
             continue
-        early = {
-            id: float(np.median([_early(record, run, predicted, id, (one, two)) for run in seen]))
+        off = {
+            id: float(np.median([_off(record, run, predicted, id, (one, two)) for run in seen]))
             for id in (one, two)
         }
-        wrong, right = sorted((one, two), key=lambda id: -abs(early[id]))
-        if abs(early[wrong]) > SOONER * max(abs(early[right]), 1e6 * record.signals[seen[0]].interval_s):
+        right, wrong = sorted((one, two), key=off.__getitem__)
+        if off[wrong] > SOONER * max(off[right], 1e6 * record.signals[seen[0]].interval_s):
             yield one, two, wrong
 
 
-def _early(record, run, predicted, id, doubtful):
-    """By how many us a gauge's trace lies before the model's, beside those that are beyond doubt."""
-    sound = [g for g in record.signals[run].readings if g not in doubtful and g in predicted[run]]
-    return lag(record, run, predicted, [id]) - (lag(record, run, predicted, sound) if sound else 0.0)
+def _off(record, run, predicted, id, doubtful):
+    """By how many us a gauge's trace comes when it should not, as far as those beyond doubt tell: they come
+    early or late because all do, or because the wave is fast or slow.
+    """
+    own, time = predicted[run], record.signals[run].time_us
+    sound = [g for g in record.signals[run].readings if g not in doubtful and g in own]
+    early = lag(record, run, predicted, [id])
+    if not sound:
+        return abs(early)
+    usual = lag(record, run, predicted, sound)
+    way = arrival(time, own[id]) / max(float(np.median([arrival(time, own[g]) for g in sound])), 1e-300)
+    return min(abs(early - usual), abs(early - usual * way))

@@ -15,7 +15,7 @@ import numpy as np
 from sonicvacuum.discover.correlation import correlated
 from sonicvacuum.discover.faults import changes
 from sonicvacuum.discover.faults.slips import Slip, constant
-from sonicvacuum.discover.faults.timing import lag
+from sonicvacuum.discover.faults.timing import arrival, lag
 from sonicvacuum.gauges import Gauge
 from sonicvacuum.records import Record
 
@@ -104,17 +104,12 @@ def _alike(record, gauge, predicted, model):
         trace, time = signals.readings[gauge.id], signals.time_us
         others = [id for id in signals.readings if id != gauge.id and id in predicted.get(run, {})]
         early = lag(record, run, predicted, others) if others else 0.0
-        usual = np.median([_arrival(time, predicted[run][id]) for id in others]) if others else 1.0
+        usual = np.median([arrival(time, predicted[run][id]) for id in others]) if others else 1.0
         for place, own in enumerate(model[run].values()):
             size = max(float(np.linalg.norm(own) * np.linalg.norm(trace)), 1e-300)
             products = correlated(own, trace) / size
             # Others' traces are early or late because all are, or because the wave is fast or slow.
-            shifts = (early, early * _arrival(time, own) / max(usual, 1e-300))
+            shifts = (early, early * arrival(time, own) / max(usual, 1e-300))
             at = [len(trace) - 1 + round(shift / (1e6 * signals.interval_s)) for shift in shifts]
             alike[place] += max(products[np.clip(at, 0, len(products) - 1)])
     return alike
-
-
-def _arrival(time_us, reading):
-    """When a reading is highest in us."""
-    return float(time_us[int(np.argmax(np.abs(reading)))])

@@ -26,6 +26,11 @@ def shifts(record: Record, predicted) -> dict[str, float]:
     return {k: lag(record, k, predicted, s.readings) for k, s in record.signals.items() if predicted.get(k)}
 
 
+def arrival(time_us, reading) -> float:
+    """When a reading (T,) at times (T,) is highest, in us."""
+    return float(time_us[int(np.argmax(np.abs(reading)))])
+
+
 def lag(record: Record, run: str, predicted, ids) -> float:
     """By how many us the traces of some gauges of a run lie before the model's, together."""
     signals, total = record.signals[run], 0.0
