@@ -135,3 +135,10 @@ def test_a_column_taken_for_two_gauges_is_told(sound):
     assert found == [("gauges-swapped", None, ["g4", "g7"])]
     assert named == []
     assert said == "gauges g4 and g7 look swapped, or one of them taken for both"
+
+
+def test_a_dead_gauge_that_reads_the_same_in_all_runs_is_dead(sound):
+    noise = 0.02 * np.random.default_rng(3).normal(size=700)
+    dead = altered(sound, "g7", lambda _: noise)
+    _, findings = examine(dead, predicted(experiment(dead)))
+    assert [(f.fault, f.run, f.sensor) for f in findings] == [("gauge-dead", None, "g7")]

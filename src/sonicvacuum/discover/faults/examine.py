@@ -170,9 +170,11 @@ class _Look:
 
     def copies(self):
         """Traces that are another run's or gauge's: they are left out of the one that they do not fit."""
-        self.twice = list(taken_twice(self.record, self.predicted)) if self.predicted else []
+        if not self.predicted:
+            return
+        self.twice = list(taken_twice(self.record, self.predicted, self.silent))
         self.silent |= {(run, id) for _, _, run, ids in self.twice for id in ids}
-        self.read_twice = list(read_twice(self.record, self.predicted)) if self.predicted else []
+        self.read_twice = list(read_twice(self.record, self.predicted, self.silent))
         self.silent |= {(run, id) for *_, id in self.read_twice for run in self.record.signals}
 
     def _quiet_slips(self, run, gauge):

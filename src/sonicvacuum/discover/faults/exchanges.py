@@ -115,16 +115,21 @@ def _higher(record, predicted, left_out: Collection[tuple[str, str]] = ()):
     return found
 
 
-def taken_twice(record: Record, predicted: Readings) -> Iterator[tuple[str, str, str | None, list[str]]]:
+def taken_twice(
+    record: Record, predicted: Readings, silent: Collection[tuple[str, str]] = ()
+) -> Iterator[tuple[str, str, str, list[str]]]:
     """Traces that two runs share sample by sample, and the run of the two that they do not belong to, as
     their height beside that of all others is farther from the model's.
 
-    Nothing is said of runs struck alike.
+    Nothing is said of runs struck alike, nor of traces without a pulse, `silent` (run, gauge).
 
     Yields:
         Run, a later one, that of both in which they are another's, and gauges.
     """
-    shared = list(copied(record))
+    loud = [
+        (a, b, [id for id in ids if not {(a, id), (b, id)} & set(silent)]) for a, b, ids in copied(record)
+    ]
+    shared = [one for one in loud if one[2]]
     doubtful = {(run, id) for a, b, ids in shared for run in (a, b) for id in ids}
     every, sound = _higher(record, predicted), _higher(record, predicted, doubtful)
     usual = [value for own in sound.values() for value in own.values()]
@@ -138,13 +143,18 @@ def taken_twice(record: Record, predicted: Readings) -> Iterator[tuple[str, str,
             yield a, b, max(off, key=lambda run: abs(off[run])), ids
 
 
-def read_twice(record: Record, predicted: Readings) -> Iterator[tuple[str, str, str]]:
+def read_twice(
+    record: Record, predicted: Readings, silent: Collection[tuple[str, str]] = ()
+) -> Iterator[tuple[str, str, str]]:
     """Two gauges that share their traces sample by sample, and that of both whose traces do not come when the
     model's do, beside those of all others.
 
-    Nothing is said where both would come as well, or in a part of the runs only.
+    Nothing is said where both would come as well, or in a part of the runs only, nor of traces without a
+    pulse, `silent` (run, gauge).
     """
     for one, two, runs in twins(record):
+        if any({(run, one), (run, two)} & set(silent) for run in runs):
+            continue
         seen = [run for run in runs if one in predicted.get(run, {}) and two in predicted[run]]
         if len(runs) < len(record.signals) or not seen:
             continue
