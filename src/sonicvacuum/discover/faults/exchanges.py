@@ -10,7 +10,7 @@ from functools import partial
 import numpy as np
 
 from sonicvacuum.discover.faults import changes
-from sonicvacuum.discover.faults.slips import Slip, constant
+from sonicvacuum.discover.faults.slips import Slip, constant, ignoring
 from sonicvacuum.discover.faults.timing import arrival, lag
 from sonicvacuum.records import Record
 from sonicvacuum.records.suspects import copied, twins
@@ -47,7 +47,7 @@ def exchanged_traces(record: Record, predicted: Readings) -> list[Slip]:
             more = math.log(np.ptp(traces[b].readings[id]) / np.ptp(traces[a].readings[id]))
             after = _spread(own | {a: own[a] + more, b: own[b] - more})
             if after < MENDED * before and _same_times(traces[a], traces[b]):
-                change, value = partial(_exchanged, id, a, b), partial(constant, None)
+                change, value = partial(ignoring, changes.traces_swapped, id, a, b), partial(constant, None)
                 where = f"{a} and {b}", id, alternatives
                 found.append(Slip("runs-swapped", change, *where, value=value, shown=True))
     return found
@@ -79,21 +79,13 @@ def other_order(record: Record, predicted: Readings) -> list[Slip]:
     if len(others) < 3 or min(apart) < APART or before < OFF or after > MENDED * before:
         return []
     *first, last = sorted(others, key=runs.index)
-    change, where = partial(_struck, others), f"{', '.join(first)} and {last}"
+    change, where = partial(ignoring, changes.runs_struck, others), f"{', '.join(first)} and {last}"
     count = math.factorial(len(runs))
     return [Slip("runs-swapped", change, where, None, count, value=partial(constant, None), shown=True)]
 
 
-def _struck(others, record, _size):
-    return changes.runs_struck(record, others)
-
-
 def _spread(own):
     return max(own.values()) - min(own.values()) if own else 0.0
-
-
-def _exchanged(id, a, b, record, _size):
-    return changes.traces_swapped(record, id, a, b)
 
 
 def _same_times(one, other):

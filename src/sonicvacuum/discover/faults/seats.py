@@ -14,7 +14,7 @@ import numpy as np
 
 from sonicvacuum.discover.correlation import correlated
 from sonicvacuum.discover.faults import changes
-from sonicvacuum.discover.faults.slips import Slip, constant
+from sonicvacuum.discover.faults.slips import Slip, constant, ignoring
 from sonicvacuum.discover.faults.timing import arrival, lag
 from sonicvacuum.gauges import Gauge
 from sonicvacuum.records import Record
@@ -68,16 +68,12 @@ def _slip(id: str, bead: int | None, alternatives: int) -> Slip:
     """The slip that a gauge sits in a bead, or, where that is None, at the wall."""
     return Slip(
         "gauge-misplaced",
-        partial(_seated, id, bead),
+        partial(ignoring, changes.gauge_seated, id, bead),
         sensor=id,
         alternatives=alternatives,
         value=partial(constant, None if bead is None else float(bead)),
         shown=True,
     )
-
-
-def _seated(id, bead, record, _size):
-    return changes.gauge_seated(record, id, bead)
 
 
 def _higher(record, id, predicted):

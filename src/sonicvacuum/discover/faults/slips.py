@@ -131,7 +131,7 @@ def _discrete(record):
             continue
         yield Slip(
             "gauge-misplaced",
-            partial(_ignoring, changes.gauge_moved, g.id, by),
+            partial(ignoring, changes.gauge_moved, g.id, by),
             sensor=g.id,
             alternatives=len(moves),
             value=partial(constant, float(g.bead + by)),
@@ -144,7 +144,7 @@ def swaps(ids):
     """Every two gauges in each other's place."""
     pairs = list(itertools.combinations(ids, 2))
     for one, two in pairs:
-        change = partial(_ignoring, changes.gauges_swapped, one, two)
+        change = partial(ignoring, changes.gauges_swapped, one, two)
         yield Slip("gauges-swapped", change, None, (one, two), len(pairs), value=partial(constant, None))
 
 
@@ -154,7 +154,7 @@ def _cycles(ids):
         return
     rounds = [(a, *rest) for a, b, c in itertools.combinations(ids, 3) for rest in ((b, c), (c, b))]
     for one, two, three in rounds:
-        change = partial(_ignoring, changes.gauges_renamed, {one: two, two: three, three: one})
+        change = partial(ignoring, changes.gauges_renamed, {one: two, two: three, three: one})
         value = partial(constant, None)
         yield Slip("gauges-swapped", change, None, (one, two, three), 2 * len(rounds), value=value)
 
@@ -176,7 +176,7 @@ def _counted_otherwise(record, embedded):
             continue
         yield Slip(
             "gauge-misplaced",
-            partial(_ignoring, changes.gauges_at, moved),
+            partial(ignoring, changes.gauges_at, moved),
             sensor=tuple(moved),
             alternatives=len(ways),
             value=partial(constant, float(next(iter(moved.values())))),
@@ -191,7 +191,7 @@ def _counts(record, embedded):
     for by, from_wall in itertools.product((-1, 1), ends):
         places = [g.bead + (by if from_wall else 0) for g in embedded]
         if all(1 <= p <= record.beads + by for p in places):
-            change = partial(_ignoring, changes.bead_count, by, from_wall)
+            change = partial(ignoring, changes.bead_count, by, from_wall)
             value = partial(constant, float(record.beads + by))
             yield Slip("bead-count", change, alternatives=2 * len(ends), value=value)
 
@@ -203,7 +203,7 @@ def _exchanged(record):
         if a.signals and b.signals and a.striker != b.striker
     ]
     for a, b in pairs:
-        change = partial(_ignoring, changes.runs_swapped, a.id, b.id)
+        change = partial(ignoring, changes.runs_swapped, a.id, b.id)
         value = partial(constant, None)
         yield Slip("runs-swapped", change, f"{a.id} and {b.id}", None, len(pairs), value=value)
 
@@ -235,8 +235,8 @@ def _runs_off(record):
             yield _sized("run-off", partial(_one_speed, run), len(runs), run=run, instead="speed")
 
 
-def _ignoring(change, *given):
-    """Call with the record between what was given and a size that does not exist."""
+def ignoring(change: Callable[..., Record], *given) -> Record:
+    """A change of a record by what was given; last come the record and a size, which does not exist."""
     *arguments, record, _ = given
     return change(record, *arguments)
 

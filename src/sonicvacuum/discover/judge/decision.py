@@ -119,16 +119,21 @@ class Case:
                 passed, start, lowest = self._passing(tried, needed, most, alarms, seen)
         return passed or self._set(needed, most, shape, alarms, start, lowest, tried)
 
+    @property
+    def _two_promised(self) -> bool:
+        """Whether slopes promise of two effects far more than the best single one gains."""
+        return bool(self.found) and planes.promised(self.scores) > self.found[0].gain + policy.PROMISED
+
     def _opposed(self, seen: Left) -> Decision | None:
         """A pair where no single effect passes, as each of the two takes back most of what the other does."""
-        if not self.found:
+        if not self._two_promised:
             return None
         needed, most = self.scores.threshold(policy.FALSE_ALARM), unknown.simplest(self.forward, self.null)[1]
         return self._pair_instead(needed, most, {"none": seen.p}, seen)
 
     def _pair_instead(self, needed, most, alarms, seen: Left) -> Decision | None:
         """A pair instead of one effect that leaves nothing but stands for both, where slopes promise more."""
-        if planes.promised(self.scores) <= self.found[0].gain + policy.PROMISED:
+        if not self._two_promised:
             return None
         tried = pairs.Pairs(self.forward, self.null, self.scores, self.found).search()
         passed = self._passing(tried, needed, most, dict(alarms), seen)[0]
