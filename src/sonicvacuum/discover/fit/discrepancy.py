@@ -17,6 +17,8 @@ from sonicvacuum.discover.model.experiment import Experiment, Part
 
 # Distance of bumps in their length.
 _APART = 0.75
+# Directions that bumps hardly take, as a share of what they do along the first, do not count.
+FAINT = 1e-3
 # Kernels that are tried however long a record is: with and without something alike in all runs.
 FEWEST = 2
 
@@ -136,9 +138,11 @@ class _Trace:
         nothing = np.zeros((len(alone), len(e.runs[self.run].scalars)))
         own = slice(self.s * self.samples, (self.s + 1) * self.samples)
         white = e.whiten(self.run, alone, nothing)[:, own]
-        u, values, shares = np.linalg.svd(white.T, full_matrices=False)
-        kept = values > 1e-3 * values.max()
-        return u[:, kept], values[kept, None] * shares[kept]
+        # By their products, in half the time: rounding is far below the squares of what is kept.
+        squares, axes = np.linalg.eigh(white @ white.T)
+        kept = squares > FAINT**2 * squares.max()
+        size, axes = np.sqrt(squares[kept]), axes[:, kept]
+        return white.T @ (axes / size), (axes * size).T
 
     def _bumps(self, begins, rises, length):
         """(T, K) bumps whose squares add up to 1 once the pulse is there, each at its time from the peak."""
