@@ -233,12 +233,13 @@ def _likely(told, draws):
 
 def _parameter(p, found, draws):
     """Row of a parameter: what, value with its error, 90 % interval, range searched, value without effect."""
+    unit, interval = unit_of(p.unit), _interval(found.value, found.sigma, draws)
     return {
         "name": p.help,
         "odds": False,
-        "value": with_error(found.value, found.sigma) + unit_of(p.unit),
-        "interval": _interval(found.value, found.sigma, draws),
-        "searched": f"{number(p.low)} to {number(p.high)}",
+        "value": with_error(found.value, found.sigma) + unit,
+        "interval": interval and interval + unit,
+        "searched": f"{number(p.low)} to {number(p.high)}{unit}",
         "off": off(p),
     }
 
