@@ -98,11 +98,14 @@ class Together:
         """What is known of each lane's pulse, its time and its height."""
         if sensor not in self._found:
             s, known = self._place[sensor], np.zeros((len(self), 5), dtype=np.int64)
-            _find_tops(self._signals, s, known)
+            signals = self._signals[:, s]
+            # Of whole rows by NumPy, eight samples at a time; a sum is finite if all forces are.
+            largest = np.where(np.isfinite(signals.sum(axis=1)), signals.max(axis=1), 0.0)
+            _find_tops(self._signals, s, largest, known)
             time, height = self._summits(s, known)
             if self._goes_on:
                 stays = known[:, _RIGHT] < self._signals.shape[2] - AHEAD
-                stays &= self._signals[:, s].max(axis=1) <= HIGHER * height
+                stays &= largest <= HIGHER * height
                 time[~stays], height[~stays], known[~stays, _USUAL] = np.nan, np.nan, 0
             self._found[sensor] = known, time, height
         return self._found[sensor]
@@ -148,19 +151,15 @@ def _with(function, **callees):
     return FunctionType(function.__code__, names, function.__name__)
 
 
-def _tops(signals, s, found):
-    """As `pulse.main_pulse` of each lane, up to the fit of the top."""
+def _tops(signals, s, largest, found):
+    """As `pulse.main_pulse` of each lane, up to the fit of the top; `largest` is 0 where it has none."""
     samples = signals.shape[2]
     for lane in range(len(signals)):
         force = signals[lane, s]
-        largest, finite = force[0], True
-        for t in range(samples):
-            finite = finite and np.isfinite(force[t])
-            largest = max(largest, force[t])
-        if not (finite and largest > 0.0):
+        if not largest[lane] > 0.0:
             continue
         seen = 0
-        while not force[seen] >= MAIN * largest:
+        while not force[seen] >= MAIN * largest[lane]:
             seen += 1
         peak, highest = seen, force[seen]
         while seen < samples and not force[seen] < highest - PROMINENCE * highest:
