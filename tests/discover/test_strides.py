@@ -115,3 +115,15 @@ def test_bumps_are_nothing_beside_a_gross_misfit(two):
 
 def test_slopes_that_cannot_be_taken_tell_of_no_bumps(two):
     assert not strides.rough(settled(Bumpy(high=1.0), two, 3).normal, None, 3)
+
+
+@pytest.mark.parametrize("steps", [0, refit.ITERATIONS])
+def test_last_steps_are_taken_anew_only_where_further_ones_lead_lower(two, steps, monkeypatch):
+    forward, start = Bumpy(high=0.0), MIDDLE[None] + 0.02
+    one = refit.fit(forward, two, start, np.zeros((1, forward.layout.size)), iterations=steps, finish=False)
+    taken = []
+    last = refit._finished
+    monkeypatch.setattr(refit, "_finished", lambda *at: taken.append(at) or last(*at))
+    again = refit.polish(forward, replace(one, finished=True))
+    assert again.u == pytest.approx(MIDDLE, abs=1e-3)  # a twentieth of its error
+    assert bool(taken) == (steps == 0)

@@ -170,7 +170,9 @@ def polish(forward: Forward, one: Fit, iterations: int = ITERATIONS, finish: boo
     """The same fit, followed further; without `finish` but for the last steps."""
     enough = NEARLY if one.normal.free else SETTLED
     now, settled, _ = descend(forward, one.hypothesis, one.normal.take([0]), None, iterations, enough=enough)
-    last = _finished(forward, one.hypothesis, now) if finish else now
+    # Where more steps have led nowhere, the last ones would only be taken once more.
+    anew = finish and not (one.finished and one.objective - now.objective[0] < NEARLY)
+    last = _finished(forward, one.hypothesis, now) if anew else now
     return Fit(one.hypothesis, last, bool(settled[0]), one.others, one.elsewhere, finish)
 
 

@@ -81,7 +81,7 @@ def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
         grid = nonlinear or (loose and far and not secants.local(effect))
         # Most are far behind another; near the nominal model, those that are not are finished once all
         # are known. Far from it the last steps are as good as any.
-        effort = Effort(grid, steps, finish=loose)
+        effort = Effort(grid, steps, finish=loose, shaped=ITERATIONS)
         effort = Effort(True, ITERATIONS, halved=wide.FIRST) if grid and rough else effort
         return candidate(branch, null, scores, effect, effort)
 
@@ -259,7 +259,9 @@ def _strained(forward: Forward, null: Fit) -> bool:
 class Effort:
     """How an effect is searched: `grid` adds starts over the whole range to those of the screen; all are
     followed for so many `steps`, on integrals of the traces for `coarse` steps before. `halved` and `finish`:
-    see `fit`; without `finish` those with a shape are finished all the same, if `shapes` are.
+    see `fit`; without `finish` those with a shape are finished all the same, if `shapes` are. These are
+    followed for `shaped` steps at least: their last steps take longer than all others, and would have to be
+    taken again.
     """
 
     grid: bool
@@ -268,6 +270,7 @@ class Effort:
     halved: int = 0
     finish: bool = True
     shapes: bool = True
+    shaped: int = 0
 
 
 def begun(forward, null: Fit, scores: Screen, effect: Effect, effort: Effort):
@@ -291,9 +294,10 @@ def candidate(forward, null: Fit, scores: Screen, effect: Effect, effort: Effort
         u, nu, places = one.u, one.nu, one.places
         hypothesis = Hypothesis((Component(effect, free),))
         keep = kept(effect, free, effort.grid)
-        how = (keep, effort.steps, effort.coarse, effort.halved)
         # The evidence of a shape asks for its error, and so for slopes to second order.
         shaped = effort.shapes and any(c.parameter.known or not c.parameter.switches for c in free)
+        steps = max(effort.steps, effort.shaped * shaped)
+        how = (keep, steps, effort.coarse, effort.halved)
         one = fit(forward, hypothesis, u, nu, places, *how, finish=effort.finish or shaped)
         if not np.isfinite(one.objective):
             continue
