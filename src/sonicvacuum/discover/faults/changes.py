@@ -138,6 +138,13 @@ def traces_swapped(record: Record, id: str, one: str, two: str) -> Record:
     return replace(record, signals={k: exchanged(k, s) for k, s in record.signals.items()})
 
 
+def trace_scaled(record: Record, run: str, id: str, ratio: float) -> Record:
+    """One trace times a ratio; without it where that is 0."""
+    own = record.signals[run]
+    readings = {g: v * ratio if g == id else v for g, v in own.readings.items() if ratio or g != id}
+    return replace(record, signals={**record.signals, run: Signals(own.time_us, readings)})
+
+
 def gains(record: Record, log_ratio: float) -> Record:
     """All readings over a ratio, with the errors that are in their unit: noise, offset and drift."""
     ratio = math.exp(-log_ratio)

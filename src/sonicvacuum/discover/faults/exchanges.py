@@ -34,7 +34,7 @@ def exchanged_traces(record: Record, predicted: Readings) -> list[Slip]:
         record: as far as it was put right.
         predicted: what the nominal model reads.
     """
-    highest, found = _higher(record, predicted), []
+    highest, found = higher(record, predicted), []
     alternatives = math.comb(len(highest), 2) * len(record.gauges)
     for gauge in record.gauges:
         id, own, traces = gauge.id, {}, {}
@@ -60,7 +60,7 @@ def other_order(record: Record, predicted: Readings) -> list[Slip]:
     Nothing is said where runs that would change places are struck alike.
     """
     runs = [run.id for run in record.block.runs if predicted.get(run.id)]
-    highest = _higher(record, {run: predicted[run] for run in runs})
+    highest = higher(record, {run: predicted[run] for run in runs})
     everywhere = set.intersection(*(set(own) for own in highest.values())) if highest else set()
     if not everywhere:
         return []
@@ -93,7 +93,7 @@ def _same_times(one, other):
     return one.samples == other.samples and bool(np.allclose(one.time_us, other.time_us))
 
 
-def _higher(record, predicted, left_out: Collection[tuple[str, str]] = ()):
+def higher(record, predicted, left_out: Collection[tuple[str, str]] = ()):
     """Run → gauge → logarithm of its peak over the model's."""
     found = {}
     for run, model in predicted.items():
@@ -123,7 +123,7 @@ def taken_twice(
     ]
     shared = [one for one in loud if one[2]]
     doubtful = {(run, id) for a, b, ids in shared for run in (a, b) for id in ids}
-    every, sound = _higher(record, predicted), _higher(record, predicted, doubtful)
+    every, sound = higher(record, predicted), higher(record, predicted, doubtful)
     usual = [value for own in sound.values() for value in own.values()]
     for a, b, ids in shared:
         off = {}

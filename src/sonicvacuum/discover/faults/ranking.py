@@ -10,6 +10,7 @@ from sonicvacuum import stages
 from sonicvacuum.discover.faults import policy, tables
 from sonicvacuum.discover.faults.exchanges import exchanged_traces, other_order
 from sonicvacuum.discover.faults.found import Bench, Finding
+from sonicvacuum.discover.faults.gains import beside, gains_of_one, rough_gains
 from sonicvacuum.discover.faults.judged import (
     Judged,
     Model,
@@ -36,7 +37,6 @@ from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.nominal import predicted, read_at, read_to_the_end
 from sonicvacuum.discover.model.problem import together
 from sonicvacuum.discover.rounds import Investigation
-from sonicvacuum.discover.search.unknown import raw
 from sonicvacuum.effects import Catalogue
 
 # Slopes foresee this share of what a small slip gains, or more: of beads a tenth too heavy, which gained 31
@@ -50,24 +50,18 @@ def _as_well(judged: Judged, plain: Judged) -> bool:
     return same and judged.gain > plain.gain - ALIKE
 
 
+def _one_gain(ranked: list[Judged]) -> list[Judged]:
+    """Slips, the likeliest first, with one gain of each trace: by a step of a range, or by any factor."""
+    seen = [j.slip.at if j.slip.fault == "gauge-gain" else None for j in ranked]
+    return [j for k, j in enumerate(ranked) if seen[k] is None or seen[k] not in seen[:k]]
+
+
 def _possible(slips: list[Slip], model: Model) -> list[Slip]:
     """Slips without those that move an effect: in a chain of another length the place of one at a bead or a
     contact would be another one, or none.
     """
     placed = any(c.effect.places in ("bead", "contact") for c in model.fit.hypothesis.components)
     return [s for s in slips if not (placed and of_the_chain(s))]
-
-
-def _read(model: Model):
-    """Run id → gauge id → (T,) reading beside effects; None where there are none."""
-    if not model.fit.hypothesis.components:
-        return None
-    experiment, read = model.forward.experiment, raw(model.forward, model.fit)
-    return {
-        run.id: {g.id: own for g, own in zip(experiment.gauges, readings, strict=True)}
-        for run, readings in zip(experiment.runs, read, strict=True)
-        if run.has_signals
-    }
 
 
 class Ranking:
@@ -107,11 +101,14 @@ class Ranking:
         self.simulations += forward.chains
         return Model(self.bench, forward, found)
 
-    def factors(self, slips: list[Slip]) -> list[Slip]:
-        """Factors that were put right before, asked for once more; `slips` are all of a record."""
+    def factors(self, slips: list[Slip], model: Model) -> list[Slip]:
+        """Factors that were put right before, asked for once more beside a model; `slips` are all of a
+        record.
+        """
         rough = [f for f in self.findings if f.corrected and f.fault in FACTORS]
         common = {f.fault for f in rough if not f.run}
         again = [s for s in slips if s.fault in common] + [run_clock(f.run) for f in rough if f.run]
+        again += rough_gains(self.findings, model)
         return [replace(s, known=True) for s in again]
 
     def ranked(self, model: Model, afar: bool = False) -> list[Judged]:
@@ -128,10 +125,11 @@ class Ranking:
         order = other_order(record, seen)
         slips += [*exchanged_traces(record, seen), *order]
         slips += seats(record, seen, lambda gauges: read_at(self.make(model.bench), gauges, self.threads))
-        slips = [*(s for s in slips if (s.fault, s.run, s.sensor) not in done), *self.factors(every)]
+        slips = [*(s for s in slips if (s.fault, s.run, s.sensor) not in done), *self.factors(every, model)]
         slips = _possible(slips, model)
-        read = _read(model)
+        read = beside(model) if model.fit.hypothesis.components else None
         shown = [*time_zero(record, seen), *drifts(record, read or seen, known=bool(read))]
+        shown += gains_of_one(record, whole)
         stages.begin("slips of the laboratory")
         far = excess(model) > policy.SURE_GAIN
         looked = judge.look_at(slips)
@@ -180,7 +178,7 @@ class Ranking:
             for j in followed
             if (j.slip.fault == "gauges-swapped" and j.gain < 0.0) or (j.slip.shown and j not in kept)
         ]
-        return sorted(kept, key=lambda j: -j.log_odds)
+        return _one_gain(sorted(kept, key=lambda j: -j.log_odds))
 
     def as_small(self, model: Model, found: Investigation) -> list[Judged]:
         """Slips that explain what is as small as to be no misfit by itself, and was named an effect.

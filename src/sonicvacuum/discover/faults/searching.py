@@ -52,7 +52,7 @@ class Led:
 def _sized_anew(said: Finding, judged: Judged) -> Finding:
     """What is said of a factor that was put right, times what it is off by."""
     slip = judged.slip
-    if not said.corrected or (said.fault, said.run) != (slip.fault, slip.run):
+    if not said.corrected or (said.fault, said.run, said.sensor) != (slip.fault, slip.run, slip.sensor):
         return said
     return replace(said, value=said.value * slip.value(judged.size))
 
@@ -79,8 +79,10 @@ class Searching(Ranking):
                 told = judged.findings(p)
                 self.findings += [replace(finding, corrected=judged is chosen) for finding in told]
         self.bench = chosen.model.bench
-        if chosen.slip.fault == "gauges-swapped" and self.bench.record.signals:
-            self.findings = with_noise_of(self.findings, self.bench.record, chosen.slip.sensor)
+        sensor, mixed = chosen.slip.sensor, chosen.slip.fault in ("gauges-swapped", "gauge-gain")
+        if mixed and self.bench.record.signals:
+            gauges = (sensor,) if isinstance(sensor, str) else sensor
+            self.findings = with_noise_of(self.findings, self.bench.record, gauges)
 
     def _effects_instead(self, found: Investigation) -> Investigation:
         """The effects of the record as it was before the slip put right last, where one that alone explains
@@ -115,10 +117,11 @@ class Searching(Ranking):
         """The effects, where beside them a factor that was put right has another size with that: damping
         takes a part of every pulse, as less gain of all gauges would.
         """
-        again = [] if found.final is found.null else self.factors(hypotheses(self.bench.record))
+        model = Model(self.bench, found.forward, found.final)
+        again = self.factors(hypotheses(self.bench.record), model) if found.final is not found.null else []
         if not again:
             return found
-        judge = Judge(Model(self.bench, found.forward, found.final), self.judged)
+        judge = Judge(model, self.judged)
         near = [j for j in judge.look_at(again) if j.gain > policy.OTHER_SIZE]
         better = [j for j in judge.follow_all(near) if j.gain > policy.OTHER_SIZE]
         self.simulations += judge.simulations

@@ -18,6 +18,7 @@ WIDTH = {
     "striker-mass": 0.1,
     "speed-common": 0.05,
     "gain-common": 0.1,
+    "gauge-gain": 1.0,
     "run-off": 0.1,
     "clock": 0.01,
     "gauge-delayed": 20.0,

@@ -111,6 +111,11 @@ FAULTS: dict[str, Fault] = {
             stretches=True,
         ),
         Fault(
+            "gauge-gain",
+            "gauge {sensor} reads {value} times the force in run {run}",
+            "check the range, attenuation and probe that were set for that run",
+        ),
+        Fault(
             "runs-swapped",
             "runs {run} look exchanged, or one of them taken for both",
             "check which file belongs to which striker speed",
