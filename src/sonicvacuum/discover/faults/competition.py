@@ -37,6 +37,7 @@ from sonicvacuum.discover.faults.weights import (
     NUISANCES,
     acts_like,
     alias,
+    as_likely,
     hollow,
     odds_of,
     part_without,
@@ -243,7 +244,12 @@ class Search(Searching):
         final = Model(self.bench, found.forward, found.final)
         if found.final is not found.null and (left or suspicious(final)):
             rivals += self._beside(found)
-        return self.weighed(found, each_once(rivals), left) if rivals else None
+        rivals = each_once(rivals)
+        better = self.weighed(found, rivals, left) if rivals else None
+        if better is None and left and len(as_likely(rivals)) > 1:
+            # Slips that are as likely beside a wrong effect need not be so beside the right one.
+            better = self.weighed(found, rivals[1:], left)
+        return better
 
     def _beside(self, found: Investigation) -> list[Judged]:
         """Slips beside the effects that were found, as if beside the nominal model: their gain included."""

@@ -27,7 +27,7 @@ from sonicvacuum.discover.faults.seats import seats
 from sonicvacuum.discover.faults.slips import Slip, hypotheses
 from sonicvacuum.discover.faults.starts import FACTORS, run_clock, run_clocks, unfinished, with_starts
 from sonicvacuum.discover.faults.table import FAULTS
-from sonicvacuum.discover.faults.timing import late_runs, time_zero
+from sonicvacuum.discover.faults.timing import late_runs, time_zero, unknown_zeros
 from sonicvacuum.discover.faults.weights import ALIKE
 from sonicvacuum.discover.fit import smooth
 from sonicvacuum.discover.fit.refit import polish
@@ -121,7 +121,7 @@ class Ranking:
         every = hypotheses(record)
         whole = self._whole(model.bench, seen)
         slips = [*with_starts(every, record, seen, model, whole), *late_runs(record, model, seen)]
-        slips += run_clocks(record, whole)
+        slips += [*run_clocks(record, whole), *unknown_zeros(record, seen)]
         order = other_order(record, seen)
         slips += [*exchanged_traces(record, seen), *order]
         slips += seats(record, seen, lambda gauges: read_at(self.make(model.bench), gauges, self.threads))

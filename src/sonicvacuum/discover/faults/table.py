@@ -169,6 +169,7 @@ FAULTS: dict[str, Fault] = {
             "us",
             negative="the stated time zero is {value} us before the impact",
             stretches=True,
+            valueless="time zeros are not known as well as stated, each run having its own",
         ),
     )
 }

@@ -8,7 +8,7 @@ import numpy as np
 from sonicvacuum.discover.correlation import correlated
 from sonicvacuum.discover.faults import changes
 from sonicvacuum.discover.faults.judged import Model
-from sonicvacuum.discover.faults.slips import WIDTH, Slip
+from sonicvacuum.discover.faults.slips import WIDTH, Slip, constant, ignoring
 from sonicvacuum.records import Record
 
 # A run is shifted where its traces fit best so many standard errors of its trigger off.
@@ -67,6 +67,21 @@ def time_zero(record: Record, predicted) -> list[Slip]:
             occam=occam,
         )
     ]
+
+
+def unknown_zeros(record: Record, predicted) -> list[Slip]:
+    """The slip that time zeros of the runs are not known as well as stated: each run has its own, somewhere
+    within a pulse's width of the stated one.
+    """
+    sigma = record.trigger_sigma_s * 1e6
+    runs = [k for k in record.signals if predicted.get(k)]
+    width = max((_width(record.signals[k], predicted[k]) for k in runs), default=0.0)
+    if not FAR * sigma < width:
+        return []
+    interval = max(record.signals[k].interval_s for k in runs) * 1e6
+    change = partial(ignoring, changes.time_zero, {}, width)
+    occam = -len(runs) * math.log(width / interval)
+    return [Slip("time-zero", change, value=partial(constant, None), occam=occam)]
 
 
 def late_runs(record: Record, model: Model, predicted) -> list[Slip]:

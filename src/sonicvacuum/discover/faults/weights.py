@@ -97,6 +97,11 @@ def hollow(found: Investigation, after: Investigation) -> bool:
     return now > policy.LEFT * before
 
 
+def as_likely(rivals: Sequence[Judged]) -> list[Judged]:
+    """Those of some slips, the likeliest first, that explain as well as the first."""
+    return [j for j in rivals if j.log_odds > rivals[0].log_odds - 0.5 * ALIKE]
+
+
 def parts(rivals: Sequence[Judged], like: Judged | None) -> np.ndarray:
     """Parts of the probability that slips have, and last an effect that is `like` one of them."""
     odds = np.array([j.log_odds for j in rivals] + ([like.log_odds] if like else []))

@@ -1,0 +1,54 @@
+"""Time zeros that are stated as exact, or nearly, and are not: no verdict for minutes before."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import msgspec
+import pytest
+from made_records import DAMPING, made
+
+from sonicvacuum.discover import session
+from sonicvacuum.discover.faults import changes, timing
+from sonicvacuum.discover.faults.weights import as_likely
+from sonicvacuum.discover.model.nominal import predicted
+from sonicvacuum.discover.model.problem import experiment
+from sonicvacuum.report.bench import slip
+
+
+def off(record, late_us, stated=0.0):
+    """The record with each run's time zero off by so many us, and stated as known."""
+    later = changes.time_zero(record, dict(zip(record.signals, late_us, strict=True)), 0.0)
+    return replace(later, block=msgspec.structs.replace(later.block, trigger_sigma_us=stated))
+
+
+def asked(record):
+    """What is asked of a record."""
+    return timing.unknown_zeros(record, predicted(experiment(record)))
+
+
+def test_nothing_is_asked_where_time_zeros_are_not_known(empty):
+    assert asked(off(empty, (0.0, 0.0), 50.0)) == []
+    assert asked(off(empty, (0.0, 0.0), "unknown")) == []
+
+
+def test_time_zeros_count_as_known_to_a_pulse(empty):
+    (one,) = asked(off(empty, (5.0, -4.0)))
+    right = one.change(off(empty, (5.0, -4.0)), 0.0)
+    assert 20.0 < right.block.trigger_sigma_us < 100.0
+    assert one.occam < 0.0
+
+
+@pytest.mark.parametrize(("effects", "named"), [((), []), ([("kuwabara-kono", {"time_us": DAMPING})], None)])
+@pytest.mark.parametrize("stated", [0.0, 0.01])
+def test_time_zeros_of_runs_that_are_stated_as_exact_are_told(effects, named, stated):
+    record = off(made(effects, seed=12, speeds=(0.3, 0.5, 0.9))[0], (5.0, -4.0, 3.0), stated)
+    v = session.discover(record).verdict
+    ((fault, run, value),) = [(f.fault, f.run, f.value) for f in v.faults if f.probability > 0.9]
+    assert (fault, run, value) == ("time-zero", None, None)
+    assert v.named == (["kuwabara-kono"] if named is None else named)
+    assert slip(v.faults[0]) == "time zeros are not known as well as stated, each run having its own"
+
+
+def test_slips_as_likely_as_the_first_are_those_that_explain_alike():
+    rivals = [SimpleNamespace(log_odds=odds) for odds in (487.8, 487.6, 456.3)]
+    assert as_likely(rivals) == rivals[:2]
