@@ -107,3 +107,12 @@ def test_noise_that_becomes_less_is_no_gain(sound):
     samples = sound.signals["v2"].samples
     one = gains._by(alone, "v2", "g7", np.log(10.0))
     assert one.occam == pytest.approx(-0.5 * samples, rel=0.05)
+
+
+def test_noise_tells_nothing_of_a_factor_beside_a_step(sound):
+    doubled = changes.trace_scaled(sound, "v2", "g7", 2.0)
+    samples = sound.signals["v2"].samples
+    more, less = (gains._price(doubled, "v2", "g7", np.log(2.0) + sign * 0.2) for sign in (1.0, -1.0))
+    # Over 2.44 the noise of so many samples has a third less of χ² than over 2, over 1.64 half more.
+    square = gains._noise(doubled, "v2", "g7", np.log(2.0)) ** 2
+    assert more - less == pytest.approx(-0.5 * samples * square * (np.exp(0.4) - np.exp(-0.4)), rel=0.01)

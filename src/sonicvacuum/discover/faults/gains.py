@@ -53,13 +53,18 @@ def _slips(record, run, id, off, alternatives):
     if _noise(record, run, id, off) > NOISE_FACTOR:
         return [replace(_left_out(record, run, id), start=off, **where)]
     plain, height = (_by(record, run, id, one) for one in (_step(off), off))
-    return [replace(plain, **where), replace(height, **where, occam=height.occam + _price(record, run, id))]
+    price = plain.occam + _price(record, run, id, off)
+    return [replace(plain, **where), replace(height, **where, occam=price)]
 
 
-def _price(record, run, id):
-    """Log of the Occam factor of a factor that a trace's height tells, as well as its noise lets it."""
+def _price(record, run, id, off):
+    """Log of the Occam factor of a factor that a trace's height tells, as well as its noise lets it, and of
+    what its noise has less, or more, than with the nearest step: that tells nothing of a factor.
+    """
     trace = record.signals[run].readings[id]
-    return min(0.0, math.log(max(flicker(trace) / float(np.ptp(trace)), 1e-12) / WIDTH["gauge-gain"]))
+    by_step, by_height = (_noise(record, run, id, one) ** 2 for one in (_step(off), off))
+    known = math.log(max(flicker(trace) / float(np.ptp(trace)), 1e-12) / WIDTH["gauge-gain"])
+    return min(0.0, known) - 0.5 * len(trace) * (by_step - by_height)
 
 
 def _step(off):
