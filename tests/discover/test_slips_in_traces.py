@@ -16,6 +16,7 @@ from sonicvacuum.discover.model.masks import cut, spikes
 from sonicvacuum.discover.model.noise import noise
 from sonicvacuum.discover.model.nominal import predicted
 from sonicvacuum.discover.model.problem import together
+from sonicvacuum.records import Signals
 from sonicvacuum.report.bench import slip
 
 TIME = np.arange(700.0)
@@ -75,6 +76,29 @@ def test_a_zero_that_is_off_in_all_runs_is_taken_off(empty, model, stated):
         assert np.abs(left).max() < 0.01  # the mean of the quiet stretch's own noise
     sigma, _ = noise([bench.record])
     assert sigma[1] == pytest.approx(SIGMA, rel=0.1)  # and not the root of noise and zero
+
+
+@pytest.mark.parametrize(("other", "place"), [(0.0, "v1"), (2.0, None)])
+def test_a_level_of_a_run_is_found_where_little_precedes_the_pulse(empty, other, place):
+    """Some thirty quiet samples tell of eight times the noise, and of two runs each counts from 0."""
+    before = {"v0": 60, "v1": 32}
+
+    def late(run, signals):
+        first = int((signals.readings["g4"] > 5.0 * SIGMA).argmax()) - before[run]
+        return Signals(signals.time_us[first:], {id: y[first:] for id, y in signals.readings.items()})
+
+    short = replace(empty, signals={run: late(run, signals) for run, signals in empty.signals.items()})
+    model = predicted(together((short,)))
+    assert examine(short, model)[1] == []
+    levels = {"v0": other * SIGMA, "v1": 8.0 * SIGMA}
+    shifted = short
+    for run, level in levels.items():
+        shifted = altered(shifted, "g4", lambda y, level=level: y + level, run)
+    bench, (one,) = examine(shifted, model)
+    assert (one.fault, one.run, one.sensor) == ("baseline", place, "g4")
+    for run in levels:
+        left = bench.record.signals[run].readings["g4"] - short.signals[run].readings["g4"]
+        assert np.abs(left).max() < SIGMA
 
 
 @pytest.mark.parametrize("ratio", [0.3, 0.08])

@@ -274,11 +274,13 @@ class _Look:
                 continue
             means, errors = np.array(list(sure.values())).T
             common = float(np.average(means, weights=errors**-2.0))
+            others = float(np.median(means))
+            # Two runs that differ do not say which of them is as usual: both count from 0.
+            usual = min(others, common, key=abs) if len(means) > 2 else 0.0
             for run, mean, error in zip(sure, means, errors, strict=True):
-                others = float(np.median(means))
                 if abs(mean - others) > traces.SURE * error and abs(mean) > traces.SURE * error:
                     self.seen["baseline", id][run] = mean
-                    self.readings[run][id] = self.readings[run][id] - (mean - min(others, common, key=abs))
+                    self.readings[run][id] = self.readings[run][id] - (mean - usual)
                     # A level that is another one in each run need not stand still within a run: what looks
                     # like one may be a part of a slow swing, of mains above all.
                     self._unsure(id, "baseline", MOVING * abs(mean))

@@ -183,9 +183,13 @@ def straight(stretch: np.ndarray, sigma: float) -> bool:
 
 
 def rest(stretch: np.ndarray, sigma: float, common: float = 0.0) -> tuple[float, float]:
-    """Mean of a quiet stretch and its standard error, `common` the error that all its samples share."""
+    """Mean of a quiet stretch and its standard error, `common` the error that all its samples share.
+
+    A short stretch tells it where it stands still within its errors, as the foot of a broad pulse does not;
+    where it does not, the error is infinite.
+    """
     if len(stretch) < FEWEST:
-        return 0.0, math.inf
+        return level(stretch, sigma, common, 0.0) or (0.0, math.inf)
     return float(stretch.mean()), _error_of_mean(stretch, sigma, common)
 
 
@@ -194,17 +198,20 @@ def _error_of_mean(stretch, sigma, common):
     return math.hypot(error * coloured.wider(stretch - line(stretch)), common)
 
 
-def level(stretch: np.ndarray, sigma: float, common: float = 0.0) -> tuple[float, float] | None:
+def level(
+    stretch: np.ndarray, sigma: float, common: float = 0.0, moving: float = 0.5
+) -> tuple[float, float] | None:
     """Mean of a quiet stretch and its standard error as in `rest`; None where it is too short, without noise,
-    or does not stand still: the foot of a slow pulse shows in the second half, a level in both.
+    or does not stand still: the foot of a slow pulse shows in the second half, a level in both. `moving` is
+    the share of the mean by which a half may differ beyond its error.
     """
     if len(stretch) < _LEVEL_EACH or not max(sigma, float(np.ptp(stretch))) > 0.0:
         return None
     mean, error = float(stretch.mean()), _error_of_mean(stretch, sigma, common)
     if _foot(stretch) < np.square(stretch - mean).sum():
         return None
-    halves = [float(half.mean()) for half in np.array_split(stretch, 2)]
-    return (mean, error) if max(abs(h - mean) for h in halves) < max(0.5 * abs(mean), 3.0 * error) else None
+    apart = max(abs(float(half.mean()) - mean) for half in np.array_split(stretch, 2))
+    return (mean, error) if apart < max(moving * abs(mean), 3.0 * error) else None
 
 
 def pickup(stretch: np.ndarray, sigma: float = 0.0) -> tuple[float, np.ndarray] | None:
