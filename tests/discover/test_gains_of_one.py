@@ -63,7 +63,7 @@ def test_the_step_of_a_range_is_told(sound, run, gauge, ratio):
     assert plain == (run, gauge, pytest.approx(ratio))
     assert height == (run, gauge, pytest.approx(ratio, rel=0.2))
     ((fault, *where, value),), named, (said,) = told(off)
-    assert (fault, where, named) == ("gauge-gain", [run, gauge], [])
+    assert (fault, where, named) == ("gain-common", [run, gauge], [])
     assert value == pytest.approx(ratio)
     assert said == f"gauge {gauge} reads {value:.4g} times the force in run {run}"
 
@@ -72,7 +72,7 @@ def test_any_factor_is_told_beside_the_effect():
     damped = made([("kuwabara-kono", {"time_us": DAMPING})], seed=12, speeds=SPEEDS)[0]
     found, named, _ = told(changes.trace_scaled(damped, "v1", "g7", 3.3))
     assert named == ["kuwabara-kono"]
-    assert found == [("gauge-gain", "v1", "g7", pytest.approx(3.3, rel=0.03))]
+    assert found == [("gain-common", "v1", "g7", pytest.approx(3.3, rel=0.03))]
 
 
 def test_a_trace_that_is_too_noisy_to_be_put_right_is_left_out(sound):
@@ -80,7 +80,7 @@ def test_a_trace_that_is_too_noisy_to_be_put_right_is_left_out(sound):
     low = altered(sound, "g7", lambda v: 0.1 * v + SIGMA * rng.normal(size=len(v)), "v2")
     assert asked(low) == [("v2", "g7", None)]
     ((fault, *where, value),), named, _ = told(low)
-    assert (fault, where, named) == ("gauge-gain", ["v2", "g7"], [])
+    assert (fault, where, named) == ("gain-common", ["v2", "g7"], [])
     assert value == pytest.approx(0.1, rel=0.1)
 
 

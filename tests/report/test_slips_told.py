@@ -5,7 +5,7 @@ import pytest
 from made_verdicts import KINDS, verdict, write
 
 from sonicvacuum.cli.discover import _sentence
-from sonicvacuum.discover.faults.table import FAULTS
+from sonicvacuum.discover.faults.table import FAULTS, told
 from sonicvacuum.discover.verdict import PUT_RIGHT, Fault, Verdict, write_json
 from sonicvacuum.report import bench, record
 
@@ -14,11 +14,13 @@ SWAPPED = Fault(fault="gauges-swapped", run=None, sensor=["g9", "g5"], probabili
 
 @pytest.mark.parametrize("fault", FAULTS)
 def test_every_slip_has_words_for_the_bench(fault):
-    one = Fault(fault=fault, run="v1", sensor="g4", probability=0.9, value=1.03)
+    # One id for a slip of all gauges in all runs and for that of one in one run.
+    run, sensor = (None, None) if fault in map(told, set(FAULTS) - {fault}) else ("v1", "g4")
+    one = Fault(fault=told(fault), run=run, sensor=sensor, probability=0.9, value=1.03)
     (line,) = bench.slips(verdict(faults=[one]))
     assert FAULTS[fault].check in line
     assert "{" not in line
-    everywhere = Fault(fault=fault, run=None, sensor=None, probability=0.9, value=None)
+    everywhere = Fault(fault=told(fault), run=None, sensor=None, probability=0.9, value=None)
     assert "None" not in bench.slips(verdict(faults=[everywhere]))[0]
 
 

@@ -4,9 +4,9 @@ from typing import Literal
 
 from msgspec import UNSET, Struct, UnsetType
 
-from sonicvacuum.discover.faults.table import FAULTS
+from sonicvacuum.discover.faults.table import FAULTS, told
 
-FaultId = Literal[tuple(FAULTS)]
+FaultId = Literal[tuple(dict.fromkeys(map(told, FAULTS)))]
 
 
 class Part(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

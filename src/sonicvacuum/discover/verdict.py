@@ -14,6 +14,7 @@ from msgspec import UNSET, Struct, UnsetType, field
 
 from sonicvacuum.discover.draws import PROFILE, SAMPLED, VALLEY, Draws
 from sonicvacuum.discover.faults.found import Finding
+from sonicvacuum.discover.faults.table import told
 from sonicvacuum.discover.fit.goodness import Goodness
 from sonicvacuum.discover.fit.heldout import HeldOut
 from sonicvacuum.discover.fit.places import ALONG
@@ -143,7 +144,7 @@ def faults(findings: Iterable[Finding]) -> list[Fault]:
     """Slips as they are written."""
     return [
         Fault(
-            fault=f.fault,
+            fault=told(f.fault),
             run=f.run,
             sensor=list(f.sensor) if isinstance(f.sensor, tuple) else f.sensor,
             probability=float(f.probability),
@@ -156,7 +157,7 @@ def faults(findings: Iterable[Finding]) -> list[Fault]:
 
 def corrections(findings: Iterable[Finding]) -> list[str]:
     """What is said of a record that was put right, one line; nothing of one that was not."""
-    right = dict.fromkeys(f.fault for f in findings if f.corrected)
+    right = dict.fromkeys(told(f.fault) for f in findings if f.corrected)
     return [f"{PUT_RIGHT}: {', '.join(right)}"] if right else []
 
 

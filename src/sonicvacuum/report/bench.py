@@ -8,7 +8,7 @@ import math
 import re
 from collections.abc import Iterator
 
-from sonicvacuum.discover.faults.table import FAULTS
+from sonicvacuum.discover.faults.table import header
 from sonicvacuum.discover.model.nuisances import WORDS
 from sonicvacuum.discover.verdict import PUT_RIGHT, Fault, Model, Verdict
 from sonicvacuum.records import Record
@@ -34,11 +34,11 @@ def slips(verdict: Verdict) -> list[str]:
 
 def _slip(one) -> str:
     # The name of a gauge keeps its spelling.
-    header, said = FAULTS[one.fault], slip(one)
-    if header.says.startswith("{sensor}") and not _tabled(one):
+    kind, said = _header(one), slip(one)
+    if kind.says.startswith("{sensor}") and not _tabled(one):
         said = f"Gauge {said}"
     said = said[0].upper() + said[1:]
-    text = f"{said}: {header.look_up if _tabled(one) else header.check}"
+    text = f"{said}: {kind.look_up if _tabled(one) else kind.check}"
     return f"{text}. That it is so is {in_words(one.probability)}."
 
 
@@ -49,22 +49,26 @@ def corrected(verdict: Verdict) -> str:
     return re.sub(r"(?<=[a-z])-(?=[a-z])", " ", f"{said[0].upper()}{said[1:]}.") if said else ""
 
 
+def _header(one):
+    return header(one.fault, one.run, one.sensor)
+
+
 def _tabled(one) -> bool:
     """Whether a slip concerns values of a table: one quantity or all, or errors of no gauge."""
-    return bool(FAULTS[one.fault].of_table and (one.quantity or (one.sensor is None and not one.run)))
+    return bool(_header(one).of_table and (one.quantity or (one.sensor is None and not one.run)))
 
 
 def slip(one: Fault) -> str:
     """One slip in a few words."""
-    header, quantity = FAULTS[one.fault], one.quantity or "all values"
+    kind, quantity = _header(one), one.quantity or "all values"
     sensors = [one.sensor] if isinstance(one.sensor, str) else (one.sensor or ["a gauge"])
-    says, number = header.of_table if _tabled(one) else header.says, one.value
-    if number is not None and number < 0.0 and header.negative:
-        says, number = header.negative, -number
-    if one.sensor and header.of_gauge and not _tabled(one):
-        says = header.of_gauge
-    if number is None and header.valueless:
-        says = header.valueless
+    says, number = kind.of_table if _tabled(one) else kind.says, one.value
+    if number is not None and number < 0.0 and kind.negative:
+        says, number = kind.negative, -number
+    if one.sensor and kind.of_gauge and not _tabled(one):
+        says = kind.of_gauge
+    if number is None and kind.valueless:
+        says = kind.valueless
     value = "some" if number is None else f"{number:.4g}"
     text = says.format(
         sensor=joined(list(sensors)), run=one.run or "all runs", value=value, quantity=quantity

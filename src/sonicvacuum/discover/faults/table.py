@@ -23,6 +23,8 @@ class Fault:
         look_up: what to look at there.
         of_gauge: what it is where it concerns one gauge only; "" where `says` does.
         valueless: what it is where it has no value; "" where `says` does.
+        told_as: id under which a verdict tells it with its run and gauge, that of a slip which has neither:
+            readers know no others. "" where its own is told.
     """
 
     id: str
@@ -38,6 +40,7 @@ class Fault:
     look_up: str = ""
     of_gauge: str = ""
     valueless: str = ""
+    told_as: str = ""
 
 
 FAULTS: dict[str, Fault] = {
@@ -114,6 +117,7 @@ FAULTS: dict[str, Fault] = {
             "gauge-gain",
             "gauge {sensor} reads {value} times the force in run {run}",
             "check the range, attenuation and probe that were set for that run",
+            told_as="gain-common",
         ),
         Fault(
             "runs-swapped",
@@ -173,3 +177,14 @@ FAULTS: dict[str, Fault] = {
         ),
     )
 }
+
+
+def told(fault: str) -> str:
+    """The id under which a verdict tells a slip."""
+    return FAULTS[fault].told_as or fault
+
+
+def header(fault: str, run: str | None, sensor: str | list[str] | None) -> Fault:
+    """The header of a slip as a verdict tells it, by its id, run and gauges."""
+    single = (one for one in FAULTS.values() if one.told_as == fault)
+    return next(single, FAULTS[fault]) if run and isinstance(sensor, str) else FAULTS[fault]
