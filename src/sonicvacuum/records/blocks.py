@@ -79,6 +79,7 @@ RecordSensorBlock = msgspec.defstruct(
 class TolerancesBlock(_Block, kw_only=True):
     """One standard error each, relative, of what all bodies, all runs or all gauges share; 0: exact.
 
+    `bead_mass_rel` is that of each bead beside the others as well, which need not weigh alike.
     With `coating_rel` the thickness that `coating_um` states is that of the layer, if it acts as one; without
     it the layer's thickness is searched for.
     """

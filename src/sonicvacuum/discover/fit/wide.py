@@ -18,6 +18,7 @@ from sonicvacuum.discover.fit.enough import data
 from sonicvacuum.discover.fit.refit import Fit, fit, simulated
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Hypothesis
+from sonicvacuum.discover.model.nuisances import SCATTER
 
 # Known no better than this, a modulus or a speed may put an echo beside the measured one.
 WIDE = 0.1
@@ -137,8 +138,8 @@ def minima(forward: Forward, null: Fit) -> np.ndarray:
 def nominal(forward: Forward, held: Hypothesis | None = None) -> Fit:
     """The nominal model, or one with effects as they are held, with its nuisances fitted.
 
-    Where much is left, fits start once more from running integrals, and from all over the priors of what is
-    hardly known, or else with other moduli of the beads.
+    Where much is left, fits start once more from running integrals, from beads that weigh alike, and from all
+    over the priors of what is hardly known, or else with other moduli of the beads.
     """
     held = held or Hypothesis()
     start = np.zeros((1, forward.layout.size))
@@ -146,6 +147,8 @@ def nominal(forward: Forward, held: Hypothesis | None = None) -> Fit:
     if not leaves_much(forward, direct.objective):
         return direct
     tried = [direct, fit(forward, held, np.zeros((1, 0)), start, coarse=COARSE)]
+    if forward.layout.other(SCATTER):
+        tried.insert(1, _of_equal_beads(forward, held))
     if direct.objective > 2.0 * data(forward) and wide(forward):
         rows = starts(forward)
         u = np.zeros((len(rows), 0))
@@ -157,6 +160,22 @@ def nominal(forward: Forward, held: Hypothesis | None = None) -> Fit:
     best = min(tried, key=lambda f: f.objective)
     best = best if best.objective < direct.objective - policy.SAME_MINIMUM else direct
     return replace(best, elsewhere=tried[-1].elsewhere)
+
+
+def _of_equal_beads(forward: Forward, held: Hypothesis) -> Fit:
+    """A fit from where beads that weigh alike come nearest the data.
+
+    Pulses that come too early or late are not those of single beads, which may all the same make up for it.
+    """
+    e = forward.experiment
+    alike = tuple(replace(one, sigma=0.0) if one.kind == SCATTER else one for one in e.shared)
+    equal = fit(
+        Forward(replace(e, shared=alike), forward.threads),
+        held,
+        np.zeros((1, 0)),
+        np.zeros((1, forward.layout.size)),
+    )
+    return fit(forward, held, np.zeros((1, 0)), equal.nu[None])
 
 
 def _quicker(forward: Forward, held: Hypothesis, one: Fit) -> np.ndarray:

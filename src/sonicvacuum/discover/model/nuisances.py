@@ -38,10 +38,13 @@ DEFAULTS = Tolerances(
 NEGLIGIBLE = 3e-3
 
 
+# The kind of those that say how single beads differ in mass.
+SCATTER = "bead-scatter"
 # Kind of `Shared` → what it is, in words, where its name does not say.
 WORDS = {
     "bead-mass": "mass of the beads",
     "bead-diameter": "diameter of the beads",
+    SCATTER: "masses of single beads",
     "coating": "thickness of the coating",
     "static-force": "static force on the chain",
     "striker-mass": "mass of the striker",
@@ -55,32 +58,48 @@ class Shared:
     """One nuisance that all runs share.
 
     Attributes:
-        kind: "modulus", "bead-mass", "bead-diameter", "coating", "static-force", "striker-mass",
-            "speed-common", "gain-common", "clock", "delay", "shared" or "law".
+        kind: "modulus", "bead-mass", "bead-diameter", "bead-scatter", "coating", "static-force",
+            "striker-mass", "speed-common", "gain-common", "clock", "delay", "shared" or "law".
         sigma: standard error: of the natural logarithm, of the clock's relative error, in s for delays; of a
             coefficient of the free-form law its prior width; 1 for an error that observables share, whose
             size stands with each of them.
         of: the material of a modulus, the gauge of a delay, the name of a shared error or of a coefficient.
         gauge: index of that gauge.
+        weights: of single beads' masses, the first bead's first (`scatter`).
     """
 
     kind: str
     sigma: float
     of: str = ""
     gauge: int | None = None
+    weights: tuple[float, ...] = ()
 
     @property
     def simulated(self) -> bool:
         """Whether it needs a simulation of its own; the common speed takes that of the single ones."""
-        return self.kind in CHANGES and self.kind != "speed-common"
+        return self.acts and self.kind != "speed-common"
+
+    @property
+    def acts(self) -> bool:
+        """Whether it acts on the chain itself."""
+        return self.kind == SCATTER or self.kind in CHANGES
 
     def change(self, chain: Chain, ratio) -> Chain:
         """The chains with the nuisance at a ratio (lanes,); as they are, where it acts on readings only."""
+        if self.kind == SCATTER:
+            return _unequal(chain, self.weights, ratio)
         return CHANGES[self.kind](chain, self.of, ratio) if self.kind in CHANGES else chain
 
 
 def _heavier(chain, _, ratio):
     return replace(chain, bodies=chain.bodies.replaced(lambda b: replace(b, mass=b.mass * ratio)))
+
+
+def _unequal(chain, weights, ratio):
+    for bead, weight in enumerate(weights[: chain.beads], start=1):
+        if weight and np.any(ratio != 1.0):
+            chain = chain.with_defect("mass", bead, ratio**weight)
+    return chain
 
 
 def _larger(chain, _, ratio):
@@ -167,7 +186,7 @@ class Layout:
     @cached_property
     def of_chain(self) -> list[int]:
         """Places of the ratios of what the chain itself is, its striker's speeds among them."""
-        own = [k for k, one in enumerate(self.others) if one.kind in CHANGES and one.kind != "law"]
+        own = [k for k, one in enumerate(self.others) if one.acts and one.kind != "law"]
         return [*range(self.runs), self.modulus, *(self.modulus + 1 + k for k in own)]
 
     @cached_property

@@ -14,6 +14,7 @@ from sonicvacuum.discover.model.masks import repeated
 from sonicvacuum.discover.model.noise import MODEL_FLOOR, believed, doubtful, noise, rounded, stepped
 from sonicvacuum.discover.model.nuisances import shared
 from sonicvacuum.discover.model.present import acting, stated
+from sonicvacuum.discover.model.scatter import scattered
 from sonicvacuum.discover.model.slow import slow
 from sonicvacuum.discover.model.start import started
 from sonicvacuum.effects import CATALOGUE, Catalogue
@@ -38,7 +39,7 @@ def _ready(data: Experiment, records) -> Experiment:
     is simulated at first.
     """
     unknown = any(not math.isfinite(r.trigger_sigma_s) for r in records)
-    return begun(started(replace(data, slow=slow(data)), unknown))
+    return scattered(begun(started(replace(data, slow=slow(data)), unknown)))
 
 
 def _experiment(record, catalogue):
