@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from made_records import block, made
 
-from sonicvacuum.discover import session
+from sonicvacuum.discover import session, verdict
 from sonicvacuum.discover.faults import changes
 from sonicvacuum.discover.fit.wide import nominal
 from sonicvacuum.discover.model.forward import Forward
@@ -147,6 +147,9 @@ def test_single_beads_differ_in_as_many_directions_in_any_record(empty):
     np.testing.assert_allclose(weights @ weights.T, np.eye(DIRECTIONS), atol=1e-9)
     np.testing.assert_allclose(weights.sum(axis=1), 0.0, atol=1e-9)
     assert not any(one.kind == SCATTER for one in experiment(empty).shared)
+    # What all beads have in common is told, patterns of many that nobody could weigh are not.
+    forward = Forward(open_)
+    assert set(verdict.nuisances(forward, nominal(forward))) == {"bead-mass"}
 
 
 def test_speeds_that_are_high_together_are_no_striker_error_where_that_may_be():

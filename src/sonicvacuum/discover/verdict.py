@@ -26,6 +26,7 @@ from sonicvacuum.discover.judge.locate import Place
 from sonicvacuum.discover.judge.rivals import Rival
 from sonicvacuum.discover.law import Law
 from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.model.nuisances import SCATTER
 from sonicvacuum.discover.parts import (
     CellFit,
     Fault,
@@ -217,6 +218,8 @@ def nuisances(forward: Forward, fit: Fit, found: Sequence[Rival] = ()) -> dict[s
             ratio = float(gauge.gain * np.exp(value[at]))
             known[f"gain {gauge.id}"] = Known(value=ratio, sigma=float(error[at]), prior=None)
     for at, one in enumerate(layout.others, start=layout.modulus + 1):
+        if one.kind == SCATTER:
+            continue  # of many beads at once, which nobody could weigh
         scale = 1e6 if one.kind == "delay" else 1.0
         here = value[at] * scale if one.kind in ("delay", "clock", "shared") else np.exp(value[at])
         name = f"{one.kind} {one.of}".strip()
