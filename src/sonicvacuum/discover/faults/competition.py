@@ -151,6 +151,7 @@ class Search(Searching):
             ranked, looked = [], True
         bench = self.bench
         found = self._factors_anew(self._effects_instead(self._investigate()))
+        found = self._clock_by_a_step(found)
         anew = self.bench is not bench
         if anew or (model.bench is bench and found.null.objective < model.fit.objective - SAME_MINIMUM):
             # What slips gained beside spikes, or on a fit that had stopped short, is none of their own.

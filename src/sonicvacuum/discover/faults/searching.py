@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sonicvacuum.discover.faults import policy
-from sonicvacuum.discover.faults.alone import Kept
+from sonicvacuum.discover.faults import changes, clocks, policy
+from sonicvacuum.discover.faults.alone import Kept, alone
 from sonicvacuum.discover.faults.examine import with_noise_of
 from sonicvacuum.discover.faults.found import Bench, Finding
 from sonicvacuum.discover.faults.judged import Judged, Model, scatter
@@ -20,7 +20,7 @@ from sonicvacuum.discover.faults.judging import Judge
 from sonicvacuum.discover.faults.ranking import Ranking
 from sonicvacuum.discover.faults.slips import hypotheses
 from sonicvacuum.discover.faults.strays import Strays, masked, strays, told
-from sonicvacuum.discover.faults.weights import unexplained, weight_of
+from sonicvacuum.discover.faults.weights import hollow, unexplained, weight_of
 from sonicvacuum.discover.fit.enough import data
 from sonicvacuum.discover.fit.evidence import Candidate
 from sonicvacuum.discover.fit.refit import Fit, fit
@@ -131,6 +131,46 @@ class Searching(Ranking):
         self._accept([best], best)
         self.simulations += found.forward.chains
         return self._investigate()
+
+    def _clock_by_a_step(self, found: Investigation) -> Investigation:
+        """The effects beside a clock that is off by a step, where one that was put right by any factor hides
+        an effect: stiffer beads make all times shorter, and so would a clock; that forces are higher besides
+        is left to others then.
+        """
+        told = next((f for f in self.findings if f.corrected and f.fault == "clock" and not f.run), None)
+        same = clocks.alike(self.catalogue)
+        if told is None or not (unexplained(found) or same & set(found.named)):
+            return found
+        asked = {step: self._beside_clock(step / told.value) for step in clocks.steps_near(told.value)}
+        step, (model, best) = min(asked.items(), key=lambda one: one[1][1])
+        if best > found.null.objective - policy.LEAST_GAIN:
+            clocks.share(found, self.catalogue)
+            return found
+        before, self.bench = self.bench, model.bench
+        after = investigate(self.make(model.bench), self.threads, model.fit)
+        odds = weight_of(after) - weight_of(found) - 0.5 * (after.null.objective - found.null.objective)
+        # Two effects that act alike stand for a clock that is off by another factor.
+        worse = odds + clocks.log_prior(self._led and self._led.slip) < 0.0 or hollow(found, after)
+        if worse or len(same & set(after.named)) > 1:
+            self.bench = before
+            self.simulations += after.forward.chains
+            clocks.share(found, self.catalogue)
+            return found
+        self.simulations += found.forward.chains
+        self.findings = [replace(f, value=step) if f is told else f for f in self.findings]
+        return after
+
+    def _beside_clock(self, ratio: float) -> tuple[Model, float]:
+        """The nominal model beside a clock so many times the one that was put right, and the least that one
+        effect which moves all times or forces leaves beside it.
+        """
+        bench, before = self.bench, self.bench
+        self.bench = replace(bench, record=changes.clock(bench.record, math.log(ratio)))
+        model = self.nominal()
+        self.bench = before
+        found, chains = alone(model, clocks.alike(self.catalogue))
+        self.simulations += chains
+        return model, min((c.fit.objective for c in found), default=math.inf)
 
     def _investigate(self) -> Investigation:
         """The effects; where spikes that a pulse hid are all that these leave, without them."""
