@@ -44,7 +44,8 @@ def test_a_nominal_fit_that_leaves_much_starts_once_more(monkeypatch, left, agai
 
     experiment = SimpleNamespace(runs=[None], size=lambda run: SIZE)
     monkeypatch.setattr(wide, "fit", fit)
-    found = wide.nominal(SimpleNamespace(experiment=experiment, layout=SimpleNamespace(size=3)))
+    layout = SimpleNamespace(size=3, other=lambda kind: [])
+    found = wide.nominal(SimpleNamespace(experiment=experiment, layout=layout))
     assert found.objective == SIZE + kept
     assert asked == [0, wide.COARSE][:tries]
 

@@ -15,7 +15,7 @@ from sonicvacuum.discover.fit.wide import nominal
 from sonicvacuum.discover.judge import strained
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Hypothesis
-from sonicvacuum.discover.model.nuisances import Layout, Shared
+from sonicvacuum.discover.model.nuisances import SCATTER, Layout, Shared
 from sonicvacuum.discover.model.problem import experiment
 from sonicvacuum.records.blocks import TolerancesBlock
 
@@ -84,6 +84,17 @@ def test_every_kind_has_its_words_and_units(kind, of, sigma, said):
         layout=layout,
         nuisance_sigma=np.full(layout.size, sigma),
     )
+    assert strained._moved(forward, layout.size - 1, 10.0) == said
+
+
+def test_of_beads_that_do_not_weigh_alike_the_one_that_is_farthest_off_is_said():
+    layout = Layout(runs=1, gauges=1, others=(Shared(SCATTER, 0.05, weights=(0.6, -0.8, 0.0)),))
+    forward = SimpleNamespace(
+        experiment=SimpleNamespace(runs=(SimpleNamespace(id="r1"),), gauges=()),
+        layout=layout,
+        nuisance_sigma=np.full(layout.size, 0.05),
+    )
+    said = "beads that do not weigh alike, bead 2 0.67 times what is stated"  # e^(-0.8 * 0.5)
     assert strained._moved(forward, layout.size - 1, 10.0) == said
 
 

@@ -10,7 +10,7 @@ from sonicvacuum.discover import policy
 from sonicvacuum.discover.fit.enough import data
 from sonicvacuum.discover.fit.refit import Fit, simulated
 from sonicvacuum.discover.model.forward import Forward
-from sonicvacuum.discover.model.nuisances import WORDS
+from sonicvacuum.discover.model.nuisances import SCATTER, WORDS
 
 # How the line begins that says so.
 ONLY_WITH = "the nominal model comes so near the data only with"
@@ -84,5 +84,9 @@ def _moved(forward, k, nu):
         return f"the error common to several quantities, {one.of}"
     if one.kind == "clock":
         return f"the recorder's clock off by {100.0 * shift:.2g} %"
+    if one.kind == SCATTER:
+        each = shift * np.array(one.weights)
+        bead = int(np.argmax(np.abs(each)))
+        return f"beads that do not weigh alike, bead {bead + 1} {np.exp(each[bead]):.3g} times what is stated"
     what = WORDS.get(one.kind, one.kind) + f" of {one.of}" * bool(one.of)
     return f"the {what} {time if one.kind == 'delay' else ratio}"
