@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.signal import lfilter
 
+from sonicvacuum.forward import discharge
 from sonicvacuum.gauges import Gauge, contacts_of, needed, position, reading
 from sonicvacuum.gauges.base import Recorded
 from sonicvacuum.gauges.electronics import filtered, high_passed
@@ -194,3 +195,16 @@ def test_a_bandwidth_of_next_to_no_time_changes_nothing_and_overflows_nowhere():
     steps = np.linspace(0.0, 1.0, 20)
     with np.errstate(divide="raise", invalid="raise", over="raise"):
         assert np.array_equal(filtered(steps, 1e-6, lowpass_s=1e-314), steps)
+
+
+@pytest.mark.parametrize("bent", [False, True])
+@pytest.mark.parametrize("shape", [(1,), (2, 3), (5,), (400, 2, 3), (0, 2)])
+def test_simulated_signals_are_filtered_in_one_pass_as_all_others_are(shape, bent):
+    """Of constants that are all alike, or off both ways, and each its own."""
+    rng = np.random.default_rng(np.random.SeedSequence(5))
+    signal = rng.normal(size=shape)
+    own = rng.choice([0.0, 1e-9, 3.0 * INTERVAL, 1e-3, math.inf], size=shape[1:])
+    for tau in (0.0, 3.0 * INTERVAL, math.inf, own):
+        found = discharge.high_passed(signal, INTERVAL, tau, bent)
+        # Sums of 400 numbers of order 1, in another order.
+        np.testing.assert_allclose(found, high_passed(signal, INTERVAL, tau, bent), rtol=0, atol=1e-12)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from sonicvacuum.forward import together
+from sonicvacuum.forward import discharge, together
 from sonicvacuum.physics import resample
 from sonicvacuum.physics.skeleton import alone
 
@@ -10,9 +10,10 @@ from sonicvacuum.physics.skeleton import alone
 @pytest.mark.parametrize(
     ("function", "kinds"),
     [
-        (together._find_tops, ("d3", "q", "q2")),
+        (together._find_tops, ("d3", "q", "d1", "q2")),
         (together._find_crossings, ("d3", "q", "q1", "d1", "q", "d1")),
         (together._climb_all, ("d2", "d2", "d1")),
+        (discharge._compiled, ("d2", "d1", "d1", "d1", "d2")),
         (resample._compiled, ("d3", "q1", "q1", "d2", "d2", "q", "d3")),
     ],
 )

@@ -77,7 +77,9 @@ def _whatever(recorded, chain):
 
 def readings(gauges: tuple[Gauge, ...], motion: Motion, beads: int) -> np.ndarray:
     """(L, S, T) readings of a motion (T, L) with L lanes, each gauge in its own unit."""
+    from sonicvacuum.forward.discharge import high_passed  # compiled, as the stepper is
+
     found = np.empty((motion.lanes, len(gauges), len(motion.time)))
     for s, gauge in enumerate(gauges):
-        found[:, s] = reading(gauge, motion, beads).T
+        found[:, s] = reading(gauge, motion, beads, high_passed).T
     return found

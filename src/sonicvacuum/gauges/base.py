@@ -211,13 +211,16 @@ def position(gauge: Gauge, beads: int, diameter: Bodies | float) -> float:
     return _checked(gauge, beads).what.distance(gauge, beads, diameter)
 
 
-def reading(gauge: Gauge, motion: Motion, beads: int) -> np.ndarray:
+def reading(
+    gauge: Gauge, motion: Motion, beads: int, high_pass: Callable[..., np.ndarray] | None = None
+) -> np.ndarray:
     """What the gauge shows: change from rest → bandwidth and droop → gain.
 
     Args:
         gauge: the gauge.
         motion: what was recorded of `beads` beads. Before its first sample chain and gauge are at rest.
         beads: number of beads.
+        high_pass: as of `filtered`.
 
     Returns:
         (S, ...) in the unit of the gauge's kind.
@@ -227,7 +230,7 @@ def reading(gauge: Gauge, motion: Motion, beads: int) -> np.ndarray:
     """
     felt = _checked(gauge, beads).what.feel(gauge, motion, beads)
     interval = float(motion.time[1] - motion.time[0]) if len(motion.time) > 1 else 1.0
-    return gauge.gain * filtered(felt, interval, gauge.lowpass_s, gauge.droop_s)
+    return gauge.gain * filtered(felt, interval, gauge.lowpass_s, gauge.droop_s, high_pass)
 
 
 @dataclass(frozen=True)
