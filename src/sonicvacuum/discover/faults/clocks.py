@@ -48,7 +48,7 @@ def share(found: Investigation, catalogue: Catalogue) -> None:
         if len(moved := same & set(effects)) != 1:
             continue
         rest = [e for e in effects if e not in moved]
-        for other in same:
+        for other in sorted(same):
             key = explanations.key([*rest, other])
             told[key] = told.get(key, 0.0) + own / len(same) - own * (key == name)
     found.reasons.append(
