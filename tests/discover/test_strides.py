@@ -124,6 +124,9 @@ def test_last_steps_are_taken_anew_only_where_further_ones_lead_lower(two, steps
     taken = []
     last = refit._finished
     monkeypatch.setattr(refit, "_finished", lambda *at: taken.append(at) or last(*at))
-    again = refit.polish(forward, replace(one, finished=True))
+    ended = replace(one, settled=False, finished=True)
+    again = refit.polish(forward, ended)
     assert again.u == pytest.approx(MIDDLE, abs=1e-3)  # a twentieth of its error
     assert bool(taken) == (steps == 0)
+    # Slopes over standard errors are not replaced by those of a step that gained next to nothing.
+    assert (again.normal is ended.normal) == (steps > 0)

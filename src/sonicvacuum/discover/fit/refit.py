@@ -170,9 +170,11 @@ def polish(forward: Forward, one: Fit, iterations: int = ITERATIONS, finish: boo
     """The same fit, followed further; without `finish` but for the last steps."""
     enough = NEARLY if one.normal.free else SETTLED
     now, settled, _ = descend(forward, one.hypothesis, one.normal.take([0]), None, iterations, enough=enough)
-    # Where more steps have led nowhere, the last ones would only be taken once more.
-    anew = finish and not (one.finished and one.objective - now.objective[0] < NEARLY)
-    last = _finished(forward, one.hypothesis, now) if anew else now
+    came_to_rest = one.finished and not one.settled and one.objective - now.objective[0] < NEARLY
+    if finish and came_to_rest:
+        # It had run out of steps, and more lead nowhere: the last ones, and their slopes, stand.
+        return replace(one, settled=bool(settled[0]))
+    last = _finished(forward, one.hypothesis, now) if finish else now
     return Fit(one.hypothesis, last, bool(settled[0]), one.others, one.elsewhere, finish)
 
 
