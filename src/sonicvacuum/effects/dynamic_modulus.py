@@ -27,7 +27,7 @@ EFFECT = Effect(
     missing="the beads' contact material is stiffer (softer) at impact rates than the handbook says",
     equation="E -> s E in every contact of that material",
     energy="stores (2/5) s K delta^{5/2} per contact",
-    reference="Daraio & Nesterenko, Phys. Rev. E 73, 026612 (2006), Sec. III; Nesterenko, Dynamics of "
+    reference="Daraio & Nesterenko, Phys. Rev. E 73, 026612 (2006), Experiments; Nesterenko, Dynamics of "
     "Heterogeneous Materials (Springer, 2001), ch. 1",
     parameters=(
         Parameter(

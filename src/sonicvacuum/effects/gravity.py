@@ -47,7 +47,7 @@ EFFECT = Effect(
             linear=True,
         ),
     ),
-    signature="weak pulses speed up towards the bottom; oscillations in front of and behind them",
+    signature="weak pulses speed up towards the bottom and are followed by ripples",
     when_to_use="soft or heavy beads, weak strikers, long chains",
     when_not="a preload that is the same everywhere: static-preload",
     dissipative=False,

@@ -35,8 +35,8 @@ EFFECT = Effect(
     equation="m u'' = ... - f sgn(u') on the beads (not the striker); for |u'| below 1 mm/s sgn -> s "
     "(3 - s^2)/2, s = u'/(1 mm/s)",
     energy="takes f |u'| per time and bead",
-    reference="Santibanez, Munoz, Caussarieu, Job & Melo, Phys. Rev. E 84, 026604 (2011); chosen here: "
-    "the cubic below 1 mm/s",
+    reference="Coulomb friction; of beads in a chain: Santibanez, Munoz, Caussarieu, Job & Melo, Phys. Rev. "
+    "E 84, 026604 (2011), who name rolling friction; chosen here: the cubic below 1 mm/s",
     parameters=(
         Parameter("force_N", "N", 0.0, 1e-4, 0.1, "log-uniform", 0.01, "friction force on a bead", 0.0),
     ),

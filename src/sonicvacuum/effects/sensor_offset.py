@@ -30,7 +30,9 @@ EFFECT = Effect(
     missing="the gauge is not in the middle of its bead",
     equation="y = (1/2 + e) F_before + (1/2 - e) F_after",
     energy="none: the chain is not touched",
-    reference="Daraio & Nesterenko, Phys. Rev. E 73, 026612 (2006), Sec. II: gauges placed to 1 mm",
+    reference="Daraio & Nesterenko, Phys. Rev. E 73, 026612 (2006), Experiments: gauges placed to 1 mm; "
+    "chosen here: weights linear in the place; a rigid ball cut there would have 3 e/2 - 2 e^3 for e, by "
+    "the masses of its parts",
     parameters=(
         Parameter(
             "offset_fraction", "1", 0.0, -0.5, 0.5, "normal", 0.2, "shift over the bead's diameter", -0.5, 0.5
@@ -38,8 +40,8 @@ EFFECT = Effect(
     ),
     places="sensor",
     choices=embedded,
-    signature="one gauge early (positive) or late by e times the transit time of a bead, at every "
-    "speed in proportion; its peak a little higher",
+    signature="one gauge early (positive) or late, at every speed in proportion: by e times the transit "
+    "time of a bead on average over the pulse, its peak by two to three times that and a little higher",
     when_to_use="gauges glued between halves of beads; a speed that differs between pairs of gauges",
     when_not="a wall sensor; a delay common to all sensors of a run is the trigger",
     dissipative=False,

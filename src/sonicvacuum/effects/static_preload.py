@@ -33,7 +33,7 @@ EFFECT = Effect(
         ),
     ),
     signature="weak pulses travel faster (sound speed as F0^{1/6}), amplitudes grow a little, the "
-    "front loses its foot; strong pulses hardly change",
+    "front has a longer foot; strong pulses hardly change",
     when_to_use="clamped chains, springs, magnets, a load cell at rest above zero",
     when_not="preload that grows along the chain: gravity",
     dissipative=False,

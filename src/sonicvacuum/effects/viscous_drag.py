@@ -28,8 +28,8 @@ EFFECT = Effect(
     missing="each bead is slowed by the medium or holder in proportion to its velocity",
     equation="m u'' = ... - m u'/tau, rate = 1/tau, on the beads (not the striker)",
     energy="takes m u'^2/tau per time and bead",
-    reference="Job, Melo, Sokolow & Sen, Phys. Rev. Lett. 94, 178002 (2005); Rosas, Romero, Nesterenko "
-    "& Lindenberg, Phys. Rev. Lett. 98, 164301 (2007)",
+    reference="Job, Melo, Sokolow & Sen, Phys. Rev. Lett. 94, 178002 (2005); Rosas & Lindenberg, Phys. "
+    "Rev. E 68, 041304 (2003)",
     parameters=(Parameter("rate_per_s", "1/s", 0.0, 1.0, 3e4, "log-uniform", 200.0, "rate of slowing", 0.0),),
     signature="pulses decay in proportion to travel time, so strong (fast) ones less per bead; nothing "
     "changes in the contacts' shape",

@@ -1,7 +1,7 @@
 """A piezoelectric gauge inside a bead: the mean of the two contact forces on it.
 
-Daraio & Nesterenko, PRE 73, 026612 (2006), Sec. II: the gauge is glued between two halves of a bead. Off the
-middle it weighs the nearer contact more.
+Daraio & Nesterenko, PRE 73, 026612 (2006), Experiments: the gauge is glued between two halves of a bead. Off
+the middle it weighs the nearer contact more, linearly in its place.
 """
 
 import numpy as np
