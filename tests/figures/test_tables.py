@@ -120,6 +120,14 @@ def test_fig4_forces_exceed_readings_as_an_averaging_gauge_demands(drawn):
     assert (ratio < 1).all()
 
 
+def test_fig4_puts_the_reading_of_cracks_at_the_contact_force_behind_it(drawn):
+    table, _ = drawn["fig4"]
+    (level,) = table[table.series == "cracks"].itertuples()
+    assert (level.panel, level.gauge_N) == ("a", fig4.CRACKS)
+    # A gauge averages two contacts: the contact bears up to 1/0.6 of what it reads, at least 1/0.75.
+    assert level.gauge_N / 0.75 < level.force_N < level.gauge_N / 0.55
+
+
 def test_fig4_theory_and_simulation_lie_in_the_axes_and_near_each_other(drawn):
     table, _ = drawn["fig4"]
     for panel in "ab":
@@ -127,7 +135,7 @@ def test_fig4_theory_and_simulation_lie_in_the_axes_and_near_each_other(drawn):
         assert part.force_N.between(
             fig4.FORCES[panel][0] * (1 - 1e-8), fig4.FORCES[panel][1] * (1 + 1e-8)
         ).all()
-        assert part.speed_m_s.between(*fig4.SPEEDS[panel]).all()
+        assert part.speed_m_s[part.series != "cracks"].between(*fig4.SPEEDS[panel]).all()
     for (_, modulus, orientation), sweep in table[table.series == "simulated"].groupby(
         ["panel", "model", "orientation"]
     ):

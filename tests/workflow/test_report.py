@@ -229,12 +229,15 @@ def test_the_answer_says_what_the_ledger_in_git_says(pytestconfig):
     metrics = pd.DataFrame(like, columns=["case", "quantity", "value"])
     laws = {"speaks": 4, "of": 4, "ratios": ["1.5", "1.4"], "whole": 4}
     first, _, against, loss, _ = answer.sentences(ledger, metrics, laws)
-    assert first.startswith("The 15 GPa come mostly from the geometry of the layer")
-    assert "contradicts four printed numbers: its pulse is too fast (+3.7 σ), too short (74.6 µs" in against
+    assert first.startswith("If the film is bonded, linear and 50 µm thick, the 15 GPa come mostly from its ")
+    assert "contradicts three printed numbers: its pulse is too fast (+3.7 σ), too short (74.6 µs" in against
+    assert against.endswith(
+        "; too strong as well (4.82 N against about 3), if Fig. 7 tells the largest force of all tests."
+    )
     assert loss.endswith("All four laws of loss agree on both speeds: ratio 1.5 on the layer, 1.4 on Hertz.")
     short = ledger.assign(excluded=ledger["excluded"].where(ledger["claim"] != "fig3a-width", ""))
     *_, against, loss, _ = answer.sentences(short, metrics, laws | {"speaks": 3, "whole": 2})
-    assert "contradicts three printed numbers" in against and "narrow" not in against
+    assert "contradicts two printed numbers" in against and "narrow" not in against
     assert "3 of 4 laws of loss agree" in loss
     assert loss.endswith("the pulse of Fig. 6(b) stays whole on the layer with 2 of them.")
     none = answer.sentences(ledger.assign(excluded="matched_loss"), metrics)[2]

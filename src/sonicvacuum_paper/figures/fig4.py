@@ -6,6 +6,7 @@ force_N, speed_m_s, speed_error_m_s. `force_N` is the contact force above rest, 
 (7) are for the total F_m. `gauge_N` is the mean reading of the two gauges, which is smaller: each
 averages two contacts. Series: `simulated`; `eq6`, `eq7`; `paper` (printed speed at a printed reading,
 taken as the reading that it is), `paper-as-read` (the same with the reading taken as the contact force);
+`cracks` (the reading at which the paper saw cracks, without a speed);
 `digitised` (read off the paper's figure by somebody: `sonicvacuum_paper.digitised`).
 """
 
@@ -47,12 +48,12 @@ POINTS = 81
 _TITLES = {"a": "(a) Coated beads", "b": "(b) Bare steel beads"}
 
 CAPTION = style.paragraph("""
-Speed between the gauges against contact force above rest. Marks: simulated, without losses unless said,
-striker at 0.02 to 1 m/s (open: no weight); thick: Eq. (7); broken: Eq. (6). Red: printed, with 10 % bounds,
-at the contact force (with loss in (a)), open at the gauge reading. Dotted: 3 N. The paper's points are not
+Speed between the gauges against contact force above rest. Marks: simulated, striker at 0.02 to 1 m/s (open:
+no weight); thick: Eq. (7); broken: Eq. (6). Red: printed speeds, 10 % bounds, at the force simulated there
+(with loss in (a)), open at the printed reading. Dotted: gauges read 3 N. The paper's points are not
 available.
 """)
-CRACKS = 3.0  # N, the level at which the paper saw cracks
+CRACKS = 3.0  # N, reading from which on the paper saw cracks
 # Striker of Fig. 3, m/s: where in the sweep the printed speeds stand.
 STRUCK = 0.44
 
@@ -124,6 +125,7 @@ def _paper(rows: pandas.DataFrame):
             yield from _at(sweep, panel, "paper", "striker_speed_m_s", STRUCK, speed)
             if panel == "a":
                 yield from _at(sweep, panel, "paper", "gauge_N", reading, PRINTED.speed_low, gauge_N=reading)
+                yield from _at(sweep, panel, "cracks", "gauge_N", CRACKS, np.nan, gauge_N=CRACKS)
 
 
 def _at(sweep, panel, series, key, value, speed, **where):
@@ -235,13 +237,14 @@ def _paper_marks(axes, table):
             capsize=2.5,
             zorder=4,
         )
-    if (table.panel == "a").all():
-        axes.axvline(CRACKS, ymax=0.68, color=style.GREY, lw=0.8, ls=(0, (1, 1.5)), zorder=0)
+    for level in table[table.series == "cracks"].itertuples():
+        axes.axvline(level.force_N, ymax=0.68, color=style.GREY, lw=0.8, ls=(0, (1, 1.5)), zorder=0)
         axes.annotate(
-            f"{CRACKS:g} N: cracks",
-            (CRACKS, SPEEDS["a"][0]),
-            (3, 5),
+            f"gauges read\n{level.gauge_N:g} N: cracks",
+            (level.force_N, SPEEDS["a"][0]),
+            (-3, 5),
             textcoords="offset points",
+            ha="right",
             color=style.GREY,
         )
 
@@ -255,7 +258,7 @@ def _legend(axes, table):
         face = look.color if orientation == "vertical" else "white"
         mark = {"ls": "none", "marker": look.marker, "ms": 3.4, "mew": 0.8, "color": look.color}
         handles.append(Line2D([], [], **mark, mfc=face, label=label))
-    texts = {"paper": "printed in the paper", "paper-as-read": "the same, reading as contact force"}
+    texts = {"paper": "printed speed, simulated force", "paper-as-read": "the same, at the gauge reading"}
     texts[digitised.SERIES] = "read off the paper's figure"
     for series in (s for s in texts if (table.series == s).any()):
         handles.append(Line2D([], [], ls="none", **_PAPER[series], label=texts[series]))

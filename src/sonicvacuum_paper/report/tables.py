@@ -26,7 +26,7 @@ FIRST = {
     "low-speed": "130 m/s at 0.25 N",
     "fig3a-duration": "130 µs long",
     "fig3a-width": "5.3 diameters wide",
-    "force-level": "forces up to about 3 N",
+    "force-level": "force, about 3 N if Fig. 7 tells the largest",
     "fig3b-speed": "578 m/s, bare steel",
 }
 

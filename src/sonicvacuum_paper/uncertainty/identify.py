@@ -1,9 +1,9 @@
 """Which modulus, thickness and loss of the coating the printed numbers of the text allow.
 
 The bonded layer with a Kuwabara–Kono loss, on a grid of the three; a thickness of several contact radii is
-Hertz. Four printed numbers: 197 m/s, 130 m/s at 0.25 N, 130 µs, and forces of about 3 N at most. Both speeds
-share the error of the gauges' distance. Normal errors, flat in the logarithms of all three: what is drawn is
-how probable a pair is when the third is anything.
+Hertz. Three printed numbers, 197 m/s, 130 m/s at 0.25 N and 130 µs, and a reading of Fig. 7, that about 3 N
+is the largest force. Both speeds share the error of the gauges' distance. Normal errors, flat in the
+logarithms of all three: what is drawn is how probable a pair is when the third is anything.
 """
 
 from itertools import product

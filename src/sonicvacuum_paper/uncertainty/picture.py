@@ -8,9 +8,10 @@ from sonicvacuum.figures import style
 from sonicvacuum_paper.printed import PRINTED
 
 CAPTION = style.paragraph("""
-What 197 m/s, 130 m/s at 0.25 N, 130 µs and forces of about 3 N allow of a coating with a Kuwabara–Kono loss,
-in each panel averaged over the third quantity: inner, 68 %; outer, 95 %. Dots: the printed 50 µm with 2.76
-and 4.75 GPa; triangle: 15 GPa on a coating so thick that the contact is all but Hertz's.
+What 197 m/s, 130 m/s at 0.25 N, 130 µs and at most about 3 N (so Fig. 7 is read) allow of a coating with a
+Kuwabara–Kono loss, in each panel averaged over the third quantity: inner, 68 %; outer, 95 %. Dots: the
+printed 50 µm with 2.76 and 4.75 GPa; triangle: 15 GPa on a coating so thick that the contact is all but
+Hertz's.
 """)
 _TITLES = {
     "modulus_GPa": "Modulus (GPa)",
