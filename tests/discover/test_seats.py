@@ -1,4 +1,6 @@
-"""Gauges stated at the wall that sit in a bead, and the other way round: effects or no verdict before."""
+"""Gauges stated at the wall that sit in a bead, the other way round, and beads away: effects or no verdict
+before.
+"""
 
 import msgspec
 import pytest
@@ -78,3 +80,19 @@ def test_a_gauge_in_the_last_bead_that_is_stated_at_the_wall_is_told():
     found, named, _ = told(changes.gauge_seated(record, "g10", None))
     assert found == {("gauge-misplaced", "g10"): 10.0}
     assert named == []
+
+
+@pytest.mark.parametrize("bead", [2, 5, 7, 10])
+def test_a_gauge_that_is_beads_away_is_told(empty, bead):
+    (own,) = (s.bead for s in empty.block.sensors if s.id == "g4")
+    moved = changes.gauges_at(empty, {"g4": bead})
+    assert ("g4", float(own)) in asked(moved) or abs(bead - own) < 2
+    found, named, (said,) = told(moved)
+    assert found == {("gauge-misplaced", "g4"): float(own)}
+    assert named == []
+    assert said == f"gauge g4 seems to sit in bead {own}"
+
+
+def test_only_beads_away_are_asked_for_beside_the_neighbouring_ones(empty):
+    found = asked(changes.gauges_at(empty, {"g4": 9}))
+    assert found and all(id == "g4" and abs(bead - 9) > 1 for id, bead in found)
