@@ -8,8 +8,9 @@ import msgspec
 from msgspec import Meta, Struct
 
 from sonicvacuum.card import Card, CaseBlock, ModelBlock, Name, merged, resolve, variant_names
-from sonicvacuum.files import InputError, check_values, convert, explain, read_yaml
+from sonicvacuum.files import InputError, check_values, convert, read_yaml
 from sonicvacuum.laboratory.ranges import LaboratoryError
+from sonicvacuum.schema_errors import explain
 
 
 class Config(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

@@ -6,23 +6,27 @@ import math
 import os
 import re
 import stat
-import textwrap
 import zipfile
 import zlib
-from collections.abc import Sequence
+from collections.abc import Mapping
 from contextlib import contextmanager, suppress
-from difflib import get_close_matches
 from pathlib import Path
-from typing import Any, get_args
+from typing import Any
 
 import msgspec
 
-from sonicvacuum.numerals import number_cure
+from sonicvacuum.schema_errors import explain
 
 # No file written by hand comes near: config.yaml expands to 860 values on 9 levels.
 LARGEST_YAML = 4 << 20
 MOST_VALUES = 200_000
 DEEPEST = 50
+# What the YAML library says → what to do about it.
+_YAML_CURES = {
+    r"'\t'": "YAML indents with spaces only: replace the tab by spaces",
+    "<block end>": "begin all keys of one block, and the dashes of one list, in the same column",
+    "but got": "close the bracket, and part entries by commas",
+}
 
 
 # What moves a terminal's cursor or turns its writing round, tabs and new lines aside; halves of characters
@@ -209,15 +213,25 @@ def _check_extent(root, path):
 
 def _not_yaml(path, place, problem):
     told = " ".join(str(problem).split())
-    return InputError(f"{path}{place}: not valid YAML: {told}; quote texts with special characters")
+    cure = next((c for mark, c in _YAML_CURES.items() if mark in told), "quote texts with special characters")
+    return InputError(f"{path}{place}: not valid YAML: {told}; {cure}")
 
 
-def convert(content: Any, kind: type, path: str | os.PathLike, prefix: str = "") -> Any:
-    """`content` as an instance of a msgspec type; InputError names file, key, value and cure."""
+def convert(
+    content: Any,
+    kind: type,
+    path: str | os.PathLike,
+    prefix: str = "",
+    cures: Mapping[str, str] | None = None,
+) -> Any:
+    """`content` as an instance of a msgspec type; InputError names file, key, value and cure.
+
+    `cures` tell what to write at keys, see `schema_errors.explain`.
+    """
     try:
         return msgspec.convert(content, kind)
     except msgspec.ValidationError as error:
-        raise InputError(explain(error, content, path, prefix, kind)) from None
+        raise InputError(explain(error, content, path, prefix, kind, cures)) from None
 
 
 def in_one_line(text: str) -> str:
@@ -244,101 +258,3 @@ def check_values(content: Any, path: str | os.PathLike, place: str = "") -> None
         return
     for key, value in parts:
         check_values(value, path, key)
-
-
-def explain(
-    error: msgspec.ValidationError,
-    content: Any,
-    path: str | os.PathLike,
-    prefix: str = "",
-    kind: type | None = None,
-) -> str:
-    """One sentence for a validation error: file, key, value, what was expected and, where known, the cure.
-
-    With the type that was asked for, keys that users choose (names of materials, say) are named too.
-    """
-    text = str(error)
-    found = re.search(r" - at (`key` in )?`\$([^`]*)`$", text)
-    problem = text[: found.start()] if found else text
-    inner = found.group(2).lstrip(".") if found else ""
-    if kind and "[...]" in inner:
-        inner = _named(inner, content, kind, text)
-    unknown = re.search(r"unknown field `([^`]*)`", problem)
-    missing = re.search(r"missing required field `([^`]*)`", problem)
-    place = ".".join(p for p in (prefix, inner, *(m.group(1) for m in (unknown, missing) if m)) if p)
-    if unknown:
-        near = likely(unknown.group(1), keys_of(kind, inner) if kind else [])
-        meant = f"{near} Otherwise " if near else ""
-        return f"{path}: {place}: unknown key; {meant}check its spelling and its place, or remove it"
-    if missing:
-        return f"{path}: {place}: missing; this key is required"
-    if found and found.group(1):
-        return f"{path}: {place}: a key here is not allowed: {problem[0].lower()}{problem[1:]}"
-    value = _value_at(content, inner)
-    shown = "" if value is _ABSENT else f"is {textwrap.shorten(repr(value), 200)}: "
-    return f"{path}: {place}: {shown}{problem[0].lower()}{problem[1:]}{number_cure(value)}"
-
-
-def likely(name: str, known: Sequence[str]) -> str:
-    """`did you mean X?` with the known name that is nearest to a mistyped one, "" where none is near."""
-    near = get_close_matches(name, known, n=1)
-    return f"did you mean {near[0]}?" if near else ""
-
-
-def keys_of(kind: Any, inner: str) -> list[str]:
-    """Keys that a block may have at a place such as `chain.bead` or `runs[0].striker` of a msgspec type."""
-    blocks = _blocks(kind)
-    for step in re.findall(r"\[[^\]]*\]|[^.\[\]]+", inner):
-        fields = [f for block in blocks for f in msgspec.structs.fields(block) if f.encode_name == step]
-        # A step into a list or a mapping stays with the blocks that it holds.
-        blocks = [b for f in fields for b in _blocks(f.type)] or blocks
-    return [f.encode_name for block in blocks for f in msgspec.structs.fields(block)]
-
-
-def _blocks(kind) -> list[type]:
-    """The msgspec structures that a type is made of, looked for through unions, lists and annotations."""
-    if isinstance(kind, type) and issubclass(kind, msgspec.Struct):
-        return [kind]
-    return [block for part in get_args(kind) for block in _blocks(part)]
-
-
-def _named(inner, content, kind, text):
-    """The place of an error with each `[...]`, which stands for any key, replaced by the key at fault.
-
-    It is the one without the others beside it that gives the same error.
-    """
-    while "[...]" in inner:
-        before = inner[: inner.index("[...]")]
-        for key in mapping if isinstance(mapping := _value_at(content, before), dict) else ():
-            alone = _with_value(content, before, {key: mapping[key]})
-            try:
-                msgspec.convert(alone, kind)
-            except msgspec.ValidationError as error:
-                if str(error) == text:
-                    content, inner = alone, inner.replace("[...]", f".{key}", 1).lstrip(".")
-                    break
-        else:
-            return inner
-    return inner
-
-
-def _with_value(content, inner, value):
-    """A copy of nested mappings and lists with another value at a place."""
-    first, _, rest = inner.partition(".")
-    if not inner:
-        return value
-    if isinstance(content, list):
-        return [_with_value(c, rest, value) if str(k) == first else c for k, c in enumerate(content)]
-    return content | {first: _with_value(content[first], rest, value)}
-
-
-_ABSENT = object()
-
-
-def _value_at(content, inner):
-    for part in re.findall(r"[^.\[\]]+|\[\.\.\.\]", inner):
-        try:
-            content = content[int(part)] if isinstance(content, list) else content[part]
-        except (KeyError, IndexError, ValueError, TypeError):
-            return _ABSENT
-    return content

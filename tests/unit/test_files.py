@@ -1,7 +1,8 @@
 """Files are written whole or not at all; what is wrong with one is said in one line."""
 
+import datetime
 import os
-from typing import Annotated
+from typing import Annotated, Literal
 
 import msgspec
 import pytest
@@ -44,6 +45,11 @@ def test_success_replaces_and_makes_folders(tmp_path):
         ("- 1\n", "found a list"),
         ("", "found nothing"),
         ("a: !!python/object:os.system {}\n", "not valid YAML"),
+        ("a:\n\tb: 1\n", "line 2: not valid YAML: found character '\\t'"),
+        ("a:\n\tb: 1\n", "; YAML indents with spaces only: replace the tab by spaces"),
+        ("a: [1, 2\nb: 3\n", "close the bracket"),
+        ("a:\n  b: 1\n c: 2\n", "in the same column"),
+        ("a: b: c\n", "quote texts with special characters"),
     ],
 )
 def test_bad_yaml_is_one_line(tmp_path, text, hint):
@@ -53,6 +59,28 @@ def test_bad_yaml_is_one_line(tmp_path, text, hint):
         read_yaml(path)
     assert str(path) in str(error.value)
     assert hint in str(error.value)
+
+
+COMMAS = [
+    ("a: {b: 1,6}\n", "line 1: b: is 1,6, which YAML reads as 1 and a key 6; decimals take a point"),
+    ("a: {b: x,\n  c: -0,05, d: 1}\n", "line 2: c: is -0,05"),
+    ("a: {b: 1,5e-3}\n", "b: is 1,5e-3"),
+    ("a: [{b: 10,000, c: 1}]\n", "b: is 10,000, .* thousands no mark"),
+]
+
+
+@pytest.mark.parametrize(("text", "told"), COMMAS)
+def test_a_decimal_comma_within_braces_is_named(tmp_path, text, told):
+    """YAML ends the number there, and takes the rest for a key with nothing in it."""
+    (tmp_path / "c.yaml").write_text(text)
+    with pytest.raises(InputError, match=rf"c\.yaml, .*{told}"):
+        read_yaml(tmp_path / "c.yaml")
+
+
+@pytest.mark.parametrize("text", ["a: {b: 1, 6: 2}", "a: {b: 1, 6: null}", "a: {b: x, 6}", "a: {6, 7}"])
+def test_keys_that_are_numbers_are_keys(tmp_path, text):
+    (tmp_path / "c.yaml").write_text(text)
+    assert 6 in read_yaml(tmp_path / "c.yaml")["a"]
 
 
 def test_half_a_character_is_none():
@@ -161,12 +189,62 @@ class Outer(msgspec.Struct):
         ({"a": {}, "b": {"c": {}, "d": {"size": "2e0"}}}, "parts.b.d.size: is '2e0'.*write 2.0e[+]0"),
         ({"a": {}, "b": {"c": {"size": 1.0}, "d": {"size": -1.0}}}, "parts.b.d.size: is -1.0"),
         ({"a": {"x": {"sise": 1.0}}, "b": {}}, "parts.a.x.sise: unknown key"),
-        ({"a": {3: {}}}, "parts.a: a key here is not allowed"),
+        ({"a": {3: {}}}, "parts.a: a key here is not allowed, 3: expected `str`, got `int`; quote it"),
+        ({"a": {"x": {3: 1}}}, "parts.a.x: a key here is not allowed, 3: .* write decimals with a point"),
     ],
 )
 def test_keys_that_users_choose_are_named(parts, told):
     with pytest.raises(InputError, match=told):
         convert({"parts": parts}, Outer, "c.yaml")
+
+
+class Wide(msgspec.Struct):
+    positive: Annotated[float, msgspec.Meta(gt=0.0)] = 1.0
+    most: Annotated[float, msgspec.Meta(le=0.5)] = 0.0
+    count: Annotated[int, msgspec.Meta(ge=1)] = 1
+    word: Literal["flat", "sphere"] = "flat"
+    either: float | Literal["unknown"] = 0.0
+    text: str = ""
+    day: datetime.date | None = None
+    pair: tuple[float, float] = (0.0, 1.0)
+    several: Annotated[list[float], msgspec.Meta(min_length=1)] | None = None
+    block: Inner | None = None
+    beads: dict[Annotated[int, msgspec.Meta(ge=1)], Inner] = {}
+    names: dict[Annotated[str, msgspec.Meta(pattern="^[a-z]*$")], float] = {}
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "told"),
+    [
+        ("positive", -0.4, "is -0.4: expected `float` > 0.0; write a number above 0"),
+        ("positive", "heavy", "is 'heavy': expected `float`, got `str`; write a number"),
+        ("positive", "0,44", "decimals take a point, and thousands no mark: write 0.44"),
+        ("positive", "1,000", "decimals take a point, and thousands no mark"),
+        ("positive", None, "is empty: expected `float`, got `null`; write a number"),
+        ("most", 0.7, "write a number of 0.5 or less"),
+        ("count", 16.5, "is 16.5: expected `int`, got `float`; write a whole number"),
+        ("count", 0, "write a whole number of 1 or more"),
+        ("word", "round", "invalid enum value 'round'; write flat or sphere"),
+        ("either", "unkown", "write a number, or unknown"),
+        ("either", -1j, "write a number, or unknown"),
+        ("text", 2006, "is 2006: expected `str`, got `int`; quote it: '2006'"),
+        ("text", True, "YAML reads bare yes, no, on, off as true and false: quote the word"),
+        ("text", datetime.date(2026, 5, 1), "is 2026-05-01: .* quote it: '2026-05-01'"),
+        ("text", [], "write one text, in quotes"),
+        ("text", None, "write a text, or leave the key out"),
+        ("day", "May", "write the day as in 2026-05-01"),
+        ("pair", [0, 1, 1, 2], "of length 2, got 4; give 2, with decimal points"),
+        ("several", 3.0, "got `float`; write a list, as in"),
+        ("several", [], "give at least 1"),
+        ("block", 3.0, "write keys with their values, as in {key: value}"),
+        ("beads", {"x": {}}, "a key here is not allowed, 'x': .*; write a whole number of 1 or more"),
+        ("beads", {3: {"size": -1}}, ".3.size: is -1: expected `float` > 0.0; write"),
+        ("names", {"a b": 1.0}, "a key here is not allowed, 'a b'; use other characters"),
+    ],
+)
+def test_each_kind_of_schema_error_has_its_cure(key, value, told):
+    with pytest.raises(InputError, match=rf"^c\.yaml: {key}.*{told}"):
+        convert({key: value}, Wide, "c.yaml")
 
 
 @pytest.mark.parametrize("number", [".nan", ".inf", "-.inf"])

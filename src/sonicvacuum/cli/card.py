@@ -7,8 +7,9 @@ import click
 from sonicvacuum.cli import existing
 from sonicvacuum.cli.helped import PLACE, WRITTEN, places_of, verb
 from sonicvacuum.cli.own_effects import catalogue, own_effects
-from sonicvacuum.files import InputError, likely, replacing
+from sonicvacuum.files import InputError, replacing
 from sonicvacuum.outputs import check_apart
+from sonicvacuum.schema_errors import likely
 
 
 @verb(

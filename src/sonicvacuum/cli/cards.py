@@ -4,7 +4,8 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
-from sonicvacuum.files import InputError, check_values, explain, read_text
+from sonicvacuum.files import InputError, check_values, read_text
+from sonicvacuum.schema_errors import explain
 
 if TYPE_CHECKING:
     from sonicvacuum.card import Card

@@ -7,7 +7,7 @@ import click
 from sonicvacuum.cli import existing
 from sonicvacuum.cli.helped import WRITTEN, verb
 from sonicvacuum.cli.own_effects import catalogue, own_effects
-from sonicvacuum.files import likely
+from sonicvacuum.schema_errors import likely
 
 NAMES = ("lammps", "liggghts", "yade", "mujoco", "drake", "all")
 

@@ -16,7 +16,7 @@ from sonicvacuum.export.bounce import Subject, ball_of, subject
 from sonicvacuum.export.nearest import match
 from sonicvacuum.export.result import Export, Reference, for_simulator
 from sonicvacuum.export.table import coefficients, limits, measured
-from sonicvacuum.files import InputError, likely
+from sonicvacuum.files import InputError
 from sonicvacuum.laboratory import ranges
 from sonicvacuum.laboratory.blocks import material_of
 from sonicvacuum.laboratory.bodies import Bodies
@@ -28,6 +28,7 @@ from sonicvacuum.physics.chain import Chain
 from sonicvacuum.records import Record
 from sonicvacuum.records.assemble import chain_of
 from sonicvacuum.records.predict import Conditions
+from sonicvacuum.schema_errors import likely
 
 # A record of one speed says nothing of others; laws are then compared this far on either side of it.
 ALONE = 3.0

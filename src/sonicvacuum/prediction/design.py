@@ -20,11 +20,12 @@ from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis
 from sonicvacuum.discover.model.parameters import coordinate
 from sonicvacuum.effects import CATALOGUE, Effect, Setup
-from sonicvacuum.files import InputError, likely
+from sonicvacuum.files import InputError
 from sonicvacuum.laboratory.next_run import FASTEST, SLOWEST
 from sonicvacuum.materials import MODULUS_REL_SIGMA
 from sonicvacuum.physics.scales import COUNTING, passage_of, sampling_of
 from sonicvacuum.prediction.setup import card_of, check_beads, check_size
+from sonicvacuum.schema_errors import likely
 from sonicvacuum.simulation import set_up
 
 NONE = "none"

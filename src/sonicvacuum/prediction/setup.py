@@ -10,11 +10,12 @@ from typing import Any
 
 from sonicvacuum.builders import ball_mass
 from sonicvacuum.card import Card, CaseBlock, resolve
-from sonicvacuum.files import InputError, convert, likely
+from sonicvacuum.files import InputError, convert
 from sonicvacuum.laboratory.next_run import gauge_beads
 from sonicvacuum.laboratory.ranges import DIAMETER, LaboratoryError
 from sonicvacuum.materials import MATERIALS
 from sonicvacuum.physics.extent import Extent, TooLargeError
+from sonicvacuum.schema_errors import likely
 from sonicvacuum.scope.units import quantity
 from sonicvacuum.simulation import extent
 

@@ -2,11 +2,9 @@
 
 import hashlib
 import os
-import re
 from pathlib import Path
 
 from sonicvacuum.files import InputError, check_values, convert, in_one_line, read_yaml
-from sonicvacuum.gauges import KINDS
 from sonicvacuum.laboratory.checks import TIME
 from sonicvacuum.laboratory.ranges import FORCE, LONGEST_INTERVAL, SHORTEST_RECORD, LaboratoryError
 from sonicvacuum.outputs import cut_off
@@ -19,12 +17,11 @@ from sonicvacuum.records.record import Record
 from sonicvacuum.records.validate import validate
 
 FILE = "record.yaml"
-_HINTS = {
-    "orientation": "write vertical or horizontal",
-    "kind": f"write {' or '.join(KINDS)}",
-    "shape": "write flat or sphere",
+_NAME = "use letters, digits and _ . + - only (a to z, A to Z, 0 to 9), a letter or digit first"
+_CURES = {
     "format": "this program reads format: 1",
-    "id": "quote it; letters, digits and _ . + - only",
+    "id": _NAME,
+    "shared[]": _NAME,
     "from": "name a sensor's id",
     "to": "name a sensor's id",
     "sensor": "name a sensor's id",
@@ -80,10 +77,7 @@ def parse(content: dict, path=FILE) -> RecordBlock:
     lacking = missing(content, RecordBlock)
     if len(lacking) > 1:
         raise InputError(f"{path}: {', '.join(lacking)}: missing; these keys are required")
-    try:
-        block = convert(content, RecordBlock, path)
-    except InputError as error:
-        raise InputError(_hinted(str(error))) from None
+    block = convert(content, RecordBlock, path, cures=_CURES)
     try:
         validate(block)
     except LaboratoryError as error:
@@ -114,15 +108,6 @@ def _observables(content):
         for j, entry in enumerate(entries if isinstance(entries, list) else []):
             if isinstance(entry, dict):
                 yield f"runs[{k}].observables[{j}]", entry
-
-
-def _hinted(message):
-    """The message with what may stand at its key, where the types cannot say it in plain words."""
-    found = re.search(r": (?:[^:\s]*\.)?(\w+): (?:is .*: )?(invalid|expected)", message, re.DOTALL)
-    if not found or found.group(1) not in _HINTS:
-        return message
-    message = re.sub(r"expected `str` matching regex .*", "not allowed here", message, flags=re.DOTALL)
-    return f"{message}; {_HINTS[found.group(1)]}"
 
 
 def check_scales(record: Record, run: str, path) -> None:
