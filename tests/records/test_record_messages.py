@@ -188,7 +188,10 @@ def test_missing_folder_record_and_signals(tmp_path):
         read(tmp_path)
     folder = put(tmp_path)
     (folder / "fast.csv").unlink()
-    with pytest.raises(InputError, match=r"fast\.csv: No such file"):
+    with pytest.raises(InputError, match=r"record\.yaml: runs\[1\]\.signals: is 'fast\.csv', .*put it there"):
+        read(folder)
+    (folder / "Fast.CSV").write_text("")
+    with pytest.raises(InputError, match=r"did you mean Fast\.CSV\? Otherwise put it there"):
         read(folder)
 
 

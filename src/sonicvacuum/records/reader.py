@@ -15,6 +15,7 @@ from sonicvacuum.records.blocks import AMPLITUDES, OBSERVABLES, UNITS, RecordBlo
 from sonicvacuum.records.missing import missing
 from sonicvacuum.records.record import Record
 from sonicvacuum.records.validate import validate
+from sonicvacuum.schema_errors import likely
 
 FILE = "record.yaml"
 _NAME = "use letters, digits and _ . + - only (a to z, A to Z, 0 to 9), a letter or digit first"
@@ -52,6 +53,7 @@ def read(path) -> Record:
         cure = cut_off(folder) or f"sonicvacuum record new {folder} writes one to fill in"
         raise InputError(f"{folder}: has no {FILE}; {cure}")
     block = parse(read_yaml(file), file)
+    _check_beside(block, folder)
     ids = [s.id for s in block.sensors]
     traces = {r.id: signals.read(folder / r.signals, ids) for r in block.runs if r.signals}
     files = dict.fromkeys([file, *(folder / r.signals for r in block.runs if r.signals)])
@@ -60,6 +62,20 @@ def read(path) -> Record:
         if run.signals:
             check_scales(record, run.id, folder / run.signals)
     return record
+
+
+def _check_beside(block, folder):
+    """InputError for a file of traces that is not there, with the key that names it."""
+    named = [run.signals for run in block.runs]
+    for k, name in enumerate(named):
+        if name and not os.path.exists(folder / name):
+            spare = {f.name.lower(): f.name for f in folder.glob("*.[cC][sS][vV]") if f.name not in named}
+            near = spare.get(name.lower())
+            meant = f"did you mean {near}?" if near else likely(name, list(spare.values()))
+            raise InputError(
+                f"{folder / FILE}: runs[{k}].signals: is {name!r}, and there is no such file in the record's "
+                f"folder; {meant}{' Otherwise put' if meant else 'put'} it there, or correct the name"
+            )
 
 
 def _digest(files):
