@@ -1,8 +1,10 @@
 """Warnings about valid records, the commands around them, the template and the paper's own records."""
 
 import json
+import re
 from pathlib import Path
 
+import msgspec
 import numpy as np
 import pytest
 import yaml
@@ -104,6 +106,22 @@ def test_the_template_passes_as_it_is_and_is_not_overwritten(tmp_path):
     assert "# signals: v044.csv" in template()
     with pytest.raises(InputError, match="exists already"):
         new(tmp_path / "mine")
+
+
+def test_what_the_template_proposes_can_be_uncommented_as_a_whole(tmp_path):
+    """All keys of the laboratory at once: none stands there twice."""
+    file = new(tmp_path / "mine")
+    before, rest = template().split("# Of the laboratory as a whole")
+    block, after = rest.split("runs:\n", 1)
+    keys = re.compile(r"^# (?=(  )?[a-zA-Z_-]+:( |$))", re.MULTILINE)
+    file.write_text(f"{before}# {keys.sub('', block)}runs:\n{after}")
+    found = read(file.parent).block
+    assert (found.tolerances.bead_mass_rel, found.tolerances.coating_rel) == (0.005, 0.1)
+    assert all(value is not None for value in msgspec.structs.astuple(found.tolerances))
+    assert found.priors == {"gravity": 0.0, "coating-thickness": 10.0}
+    assert found.clock_rel_sigma and found.model_floor_rel and found.apparatus.gauge_beads
+    file.write_text(file.read_text().replace("coating-thickness: 10 ", "coating-thickness: present "))
+    assert read(file.parent).block.priors["coating-thickness"] == "present"
 
 
 def test_the_template_names_every_quantity_with_its_unit():
