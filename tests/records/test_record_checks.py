@@ -67,6 +67,18 @@ SUSPICIOUS_KEYS = [
     ({"runs__0__striker": STRIKER | {"diameter_mm": 4.0}}, "diameter_mm of a flat striker"),
     ({"runs__0__striker": STRIKER | {"mass_g": 200.0}}, "is it in mg?"),
     ({"runs__0__striker": STRIKER | {"speed_m_s": 44.0}}, "speed_m_s is 44"),
+    (
+        {"runs__0__striker": STRIKER | {"speed_rel_sigma": 1.5}},
+        "runs[0].striker (slow): speed_rel_sigma is 1.5, an error of 150 %; where 1.5 % is meant",
+    ),
+    (
+        {"sensors__1__gain_rel_sigma": 2.0},
+        "sensors[1] (far): gain_rel_sigma is 2, an error of 200 %; where 2 % is meant, write 0.02",
+    ),
+    (
+        {"sensors__1__bead": 3, "runs__1__observables": None},
+        "sensors[1] (far): is in bead 3, as near is, and of the same kind",
+    ),
 ]
 
 
@@ -74,6 +86,19 @@ SUSPICIOUS_KEYS = [
 def test_suspicious_key(changes, said):
     found = warnings(Record(parse(content(**changes))))
     assert any(said in line for line in found), found
+
+
+def test_a_time_zero_that_nobody_stated_is_told_where_there_are_traces():
+    told = "trigger_sigma_us: is 0 or left out, so that the time zero of each run counts as exact"
+    block = parse(content(trigger_sigma_us=None, runs__1__observables=None))
+    assert [line.startswith(told) for line in warnings(Record(block, dict(TRACES)))] == [True]
+    assert warnings(Record(block)) == []  # no times, no zero
+    assert warnings(Record(parse(content(trigger_sigma_us="unknown")), dict(TRACES))) == []
+
+
+def test_an_uncalibrated_gauge_and_two_kinds_in_one_bead_are_no_slips():
+    laser = {"id": "laser", "kind": "velocity", "bead": 3, "sigma_m_s": 0.01, "gain_rel_sigma": "unknown"}
+    assert warnings(Record(parse(content(sensors__1=laser, runs__1__observables=None)))) == []
 
 
 def test_a_ball_that_differs_from_the_bead_is_mentioned():

@@ -26,6 +26,8 @@ CLIPPED = 5
 HEAVY = 300.0
 FAST = 20.0
 SLOW = 1e-3
+# Relative errors from which on per cent may be meant.
+LARGE = 0.5
 
 
 def check(path) -> list[str]:
@@ -35,7 +37,7 @@ def check(path) -> list[str]:
 
 def warnings(record: Record) -> list[str]:
     """One line for each suspicious thing, beginning with the place it concerns."""
-    found = [*_materials(record), *_strikers(record)]
+    found = [*_materials(record), *_gauges(record), *_strikers(record)]
     for run, contact in zip(record.runs, _contact_times(record), strict=True):
         if run.signals is not None:
             found += _traces(record, run, contact)
@@ -73,6 +75,29 @@ def _materials(record):
         yield f"materials.{touching}: no modulus_rel_sigma; say how well the modulus is known"
 
 
+def _gauges(record):
+    """Errors that are likely slips, and gauges at one place, which may be meant."""
+    stands: dict[tuple, str] = {}
+    for k, gauge in enumerate(record.gauges):
+        key = f"sensors[{k}] ({gauge.id})"
+        if gauge.calibrated and gauge.gain_rel_sigma >= LARGE:
+            yield f"{key}: {_large('gain_rel_sigma', gauge.gain_rel_sigma)}; uncalibrated gauges have unknown"
+        first = stands.setdefault((gauge.kind, gauge.bead), gauge.id)
+        if first != gauge.id:
+            where = "at the wall" if gauge.bead is None else f"in bead {gauge.bead}"
+            yield f"{key}: is {where}, as {first} is, and of the same kind; is the place right?"
+    if record.signals and record.trigger_sigma_s == 0.0:
+        yield (
+            "trigger_sigma_us: is 0 or left out, so that the time zero of each run counts as exact; say how "
+            "well the moment of impact is known, or write unknown"
+        )
+
+
+def _large(key, error):
+    meant = f"where {error:g} % is meant, write {error / 100.0:g}"
+    return f"{key} is {error:g}, an error of {100.0 * error:g} %; {meant}"
+
+
 def _strikers(record):
     bead = record.specimen.first
     mass_g = 1e3 * bead.mass_kg
@@ -87,6 +112,8 @@ def _strikers(record):
                 yield f"{key}: diameter or mass differ from chain.bead; the striker's are used"
         elif s.mass_g > HEAVY * mass_g:
             yield f"{key}: mass_g is {s.mass_g:g}, {s.mass_g / mass_g:.0f} beads' masses; is it in mg?"
+        if s.speed_rel_sigma >= LARGE:
+            yield f"{key}: {_large('speed_rel_sigma', s.speed_rel_sigma)}"
         if not SLOW <= s.speed_m_s <= FAST:
             yield f"{key}: speed_m_s is {s.speed_m_s:g}; is the unit right?"
     files = Counter(r.signals for r in record.block.runs if r.signals)
