@@ -182,6 +182,49 @@ def test_a_stated_interval_scales_the_start(tmp_path):
     assert any("in place of the file's 0.001 s" in line for line in said)
 
 
+TAKEN = "times of fast: no unit is given, so they were taken as seconds"
+
+
+def test_times_without_a_unit_are_seconds_and_the_terminal_says_so(tmp_path):
+    file = tmp_path / "fast.csv"
+    file.write_text("time,CH1 (V)\n" + rows(TIMES, PULSE))
+    said = import_files([file], tmp_path / "r", options(keep_all=True))
+    assert listed(tmp_path) == pytest.approx(TIMES * 1e6, abs=1e-6)
+    assert any(line.startswith(TAKEN) and "give --interval with its unit" in line for line in said)
+    assert "s assumed" in (tmp_path / "r" / "record.yaml").read_text()
+    for chosen in (options(interval="1us"), options(interval="2us")):
+        said = import_files([file], tmp_path / "r", chosen, force=True)
+        assert not any("assumed" in line or line.startswith(TAKEN) for line in said)
+    file.write_text("Time (s),CH1 (V)\n" + rows(TIMES, PULSE))
+    assert not any(
+        line.startswith(TAKEN) for line in import_files([file], tmp_path / "r", options(), force=True)
+    )
+
+
+def test_times_without_a_unit_that_cannot_be_seconds_are_refused(tmp_path):
+    """Microseconds as seconds made trigger_sigma_us 1e6, which a check told to be in ns."""
+    file = tmp_path / "fast.csv"
+    file.write_text("time,CH1 (V)\n" + rows(TIMES * 1e6, PULSE))
+    refusal, written = asked(tmp_path, file, "--impact-at", "5")
+    assert re.search(r"fast\.csv: channel CH1: its times have no unit.* 1 s apart; .*--interval 1us", refusal)
+    assert not written
+    assert asked(tmp_path, file, "--impact-at", "5us", "--interval", "1us") == ("", True)
+
+
+def test_times_in_ms_taken_as_seconds_are_not_told_to_be_converted(tmp_path):
+    (tmp_path / "given.yaml").write_text(yaml.safe_dump(CONTENT))
+    (tmp_path / "fast.csv").write_text("time,CH1 (V),CH2 (V)\n" + rows(TIMES * 1e3, PULSE, SECOND))
+    given = tmp_path / "given.yaml"
+    said = import_files([tmp_path / "fast.csv"], tmp_path / "r", options(**USUAL), like=given)
+    assert "column time_us" in said[-1] and said[-1].endswith("; seconds were assumed, as said above")
+
+
+def test_an_interval_beyond_what_a_trigger_may_be_known_to_leaves_it_unknown(tmp_path):
+    (tmp_path / "fast.csv").write_text("Time (s),CH1 (V)\n" + rows(TIMES * 1e6, PULSE))
+    import_files([tmp_path / "fast.csv"], tmp_path / "r", options(impact_at=["5"]))
+    assert yaml.safe_load((tmp_path / "r" / "record.yaml").read_text())["trigger_sigma_us"] == "unknown"
+
+
 @pytest.mark.parametrize("key", ["4", "CH4", "channel 4"])
 def test_channels_are_called_by_their_numbers(tmp_path, key):
     (tmp_path / "fast.csv").write_text("x-axis,1,4\nsecond,Volt,Volt\n" + rows(TIMES, SECOND, PULSE))

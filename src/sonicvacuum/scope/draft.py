@@ -166,9 +166,10 @@ def _gain(gauge, known, unit, options):
 def _trigger(runs):
     """Common standard error of time zero in us, or `unknown`; as a number, the time ahead of the pulse."""
     sigmas = [r.zero_sigma_s for r in runs]
-    if None not in sigmas:
-        return float(f"{max(sigmas) * 1e6:.3g}")
     word = unknown(RecordBlock, "trigger_sigma_us")
+    # One as large as the longest that the format takes is as good as unknown.
+    if None not in sigmas and max(sigmas) * 1e6 <= _LARGEST["trigger_sigma_us"]:
+        return float(f"{max(sigmas) * 1e6:.3g}")
     if isinstance(word, str):
         return word
     return float(f"{min(word, max(r.lead_s for r in runs) * 1e6):.3g}")

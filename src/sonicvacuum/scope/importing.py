@@ -3,12 +3,17 @@
 from pathlib import Path
 
 from sonicvacuum.files import InputError, check_values, replacing, writing
+from sonicvacuum.laboratory.checks import TIME
 from sonicvacuum.outputs import renewed
 from sonicvacuum.records import reader, signals
 from sonicvacuum.scope import draft
 from sonicvacuum.scope.clean import CleanRun, clean
 from sonicvacuum.scope.options import Options
 from sonicvacuum.scope.runs import shots
+from sonicvacuum.scope.timebase import SECONDS
+
+# Runs that are named in one line.
+NAMED = 5
 
 
 def import_files(
@@ -31,7 +36,13 @@ def import_files(
     _spare(folder, runs, {f.resolve() for g in (files, *options.runs.values()) for f in g}, force)
     content = draft.content(runs, given, options, title)
     _write(folder, draft.text(content, runs, options, given), runs)
-    return [*_report(runs), *(draft.unused(given, runs) if record else ()), *_checked(folder)]
+    seconds = [r.id for r in runs if any(n.endswith(SECONDS) for n in r.notes)]
+    return [
+        *_report(runs),
+        *(draft.unused(given, runs) if record else ()),
+        *_assumed(seconds),
+        *_checked(folder, bool(seconds)),
+    ]
 
 
 def _spare(folder, runs, raw, force):
@@ -66,11 +77,26 @@ def _report(runs):
         yield from (f"  {note}" for note in run.notes)
 
 
-def _checked(folder):
-    """What the reader of records says of the folder."""
+def _assumed(runs):
+    """That times were taken for seconds, in a line of its own: all else depends on it."""
+    if runs:
+        named = ", ".join(runs) if len(runs) <= NAMED else f"{len(runs)} runs"
+        yield (
+            f"times of {named}: no unit is given, so they were taken as seconds, as most oscilloscopes write "
+            "them; if they are none, write the unit into the header, as in Time (us), or give --interval "
+            "with its unit, and import again with --force"
+        )
+
+
+def _checked(folder, seconds):
+    """What the reader of records says of the folder; `seconds`: whether times were taken for such."""
     try:
         reader.read(folder)
     except InputError as error:
-        yield f"written, but still to be completed: {error}"
+        told = str(error)
+        if seconds and f"column {TIME}: " in told:
+            # The cure is for times that the user wrote, and nobody wrote these.
+            told = f"{told.rpartition('; ')[0]}; seconds were assumed, as said above"
+        yield f"written, but still to be completed: {told}"
     else:
         yield f"{folder}: complete; next: sonicvacuum record check {folder}"

@@ -10,13 +10,16 @@ from sonicvacuum.files import InputError
 from sonicvacuum.scope.options import Options
 from sonicvacuum.scope.reader import read
 from sonicvacuum.scope.recording import Channel, Recording
-from sonicvacuum.scope.timebase import NO_TRIGGER
+from sonicvacuum.scope.timebase import NO_TRIGGER, SECONDS
 
 # A channel's number in the name of a file, as in F0000CH1, C2Trace00001, shot_Ch3.
 _MARK = re.compile(r"(?<![A-Za-z])ch?[ _-]?([1-8])(?!\d)", re.IGNORECASE)
 # Intervals differing by less are the same; starts within this part of an interval are the same.
 SAME = 1e-6
 TOGETHER = 0.01
+# Longest interval in s that times without a unit may have as seconds: a contact of solid balls is over within
+# some ms, at most (`laboratory.ranges.LONGEST_INTERVAL`).
+COARSEST = 0.01
 # Samples of the shortest trace.
 FEWEST = 16
 
@@ -166,6 +169,14 @@ def _timed(channel, recording, options):
     if own is None:
         notes = ["Interval as given."] + ([] if options.start_s is not None else [NO_TRIGGER])
         return replace(channel, interval_s=given, start_s=options.start_s or 0.0).noting(*notes)
+    if SECONDS in channel.notes and given is not None:
+        channel = replace(channel, notes=tuple(n for n in channel.notes if n != SECONDS))
+    elif SECONDS in channel.notes and own > COARSEST:
+        raise InputError(
+            f"{recording.file}: channel {channel.name}: its times have no unit and are no seconds, for the "
+            f"samples would be {own:g} s apart; write the unit into the header, as in Time (us), or give the "
+            f"interval, as in --interval {own:g}us"
+        )
     if given is not None and abs(given / own - 1.0) > SAME:
         # Whatever the file counts in, its start is counted in it too.
         start = (channel.start_s or 0.0) * given / own

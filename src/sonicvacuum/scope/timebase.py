@@ -22,6 +22,8 @@ FINER = 2e-3
 MOST_LOST, COARSEST = 0.1, 0.1
 # Said where time zero is that of the first sample for want of anything better.
 NO_TRIGGER = "Time counts from the first sample: the file does not say where the trigger is."
+# Said where the times have no unit, as those of most oscilloscopes, which are in s.
+SECONDS = "The unit of time is not given; s assumed."
 # Steps of missing samples that are told.
 MISSING = 5
 _FACTORS = {1.0: "s", 1e-3: "ms", 1e-6: "us", 1e-9: "ns", 1e-12: "ps"}
@@ -199,7 +201,7 @@ def _factor(slope, label, declared, keys):
         if told:
             votes[told] = votes.get(told, 0) + 1
     if not votes:
-        return None, ["The unit of time is not given; s assumed."]
+        return None, [SECONDS]
     most = max(votes.values())
     order = [label and label.factor, told, header and header.factor]
     factor = next(f for f in order if f and votes[f] == most)
