@@ -136,6 +136,30 @@ def test_all_keys_of_a_given_record_are_kept(tmp_path, shot):
     assert not any("no file is called" in line for line in said)
 
 
+def test_a_channel_reads_a_gauge_of_the_given_record_or_one_with_a_place(tmp_path, shot):
+    (tmp_path / "given.yaml").write_text(yaml.safe_dump(CONTENT))
+    given = ["--record", str(tmp_path / "given.yaml"), "--channel", "CH1=g9"]
+    refusal, written = asked(tmp_path, shot, *given)
+    assert re.search(r"^--channel CH1=g9: .*given\.yaml has no gauge 'g9', but near, far; .*--place", refusal)
+    assert not written
+    assert asked(tmp_path, shot, *given, "--place", "g9=4") == ("", True)
+
+
+def test_gauges_of_a_given_record_that_no_channel_reads_are_told(tmp_path, shot):
+    (tmp_path / "given.yaml").write_text(yaml.safe_dump(CONTENT))
+    told = "as no channel reads them: "
+    for chosen, lost in (
+        ({}, "near, far; it does not have CH1, CH2 (--channel CH=near says"),
+        ({"channel": ["CH2=far"]}, "near (--channel CH=near says"),
+        (USUAL, ""),
+    ):
+        said = import_files(
+            [shot], tmp_path / "r", options(**chosen), record=tmp_path / "given.yaml", force=True
+        )
+        (found,) = [line.partition(told)[2] for line in said if told in line] or [""]
+        assert found.startswith(lost) and bool(found) == bool(lost)
+
+
 def test_gauges_that_only_observables_name_stay(tmp_path, shot):
     (tmp_path / "given.yaml").write_text(yaml.safe_dump(GIVEN))
     one = options(channel=["CH1=near"], scale=["near=10N/V"])

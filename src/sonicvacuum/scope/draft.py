@@ -202,6 +202,35 @@ def unused(given: dict, runs: list[CleanRun]) -> list[str]:
     ]
 
 
+def check_gauges(given: dict, options: Options, file) -> None:
+    """InputError for a channel that is said to read a gauge which the record in `file` has not."""
+    known = _ids(given)
+    for channel, gauge in options.channels.items():
+        if known and gauge not in known and gauge not in options.places:
+            raise InputError(
+                f"--channel {channel}={gauge}: {file} has no gauge {gauge!r}, but {', '.join(known)}; write "
+                f"one of these, or say where a further one sits: --place {gauge}=BEAD"
+            )
+
+
+def unread(given: dict, record: dict, file) -> list[str]:
+    """That gauges of a given record are left out, or stand beside others that it does not know."""
+    known, have = _ids(given), [s["id"] for s in record["sensors"]]
+    lost = [g for g in known if g not in have]
+    if not lost:
+        return []
+    new = [g for g in have if g not in known]
+    beside = f"; it does not have {', '.join(new)}" if new else ""
+    return [
+        f"left out of the gauges of {file}, as no channel reads them: {', '.join(lost)}{beside} "
+        f"(--channel CH={lost[0]} says which channel reads which gauge)"
+    ]
+
+
+def _ids(given):
+    return [s["id"] for s in _listed(given, "sensors") if "id" in s]
+
+
 def _listed(given, key):
     entries = given.get(key)
     return [e for e in entries if isinstance(e, dict)] if isinstance(entries, list) else []

@@ -31,6 +31,7 @@ def import_files(
     if (folder / reader.FILE).exists() and not force:
         raise InputError(f"{folder / reader.FILE}: exists already; choose another folder, or give --force")
     given = draft.template(like, record)
+    draft.check_gauges(given, options, like if record is None else record)
     files = [Path(f) for f in files]
     runs = [clean(s, options) for s in shots(files, options)]
     _spare(folder, runs, {f.resolve() for g in (files, *options.runs.values()) for f in g}, force)
@@ -40,6 +41,7 @@ def import_files(
     return [
         *_report(runs),
         *(draft.unused(given, runs) if record else ()),
+        *draft.unread(given, content, like if record is None else record),
         *_assumed(seconds),
         *_checked(folder, bool(seconds)),
     ]
