@@ -9,7 +9,7 @@ from click.testing import CliRunner
 from hypothesis import given
 from hypothesis import strategies as st
 from odd_files import PULSE, SECOND, TIMES, rows
-from recorded import CONTENT
+from recorded import CONTENT, raw_files
 
 from sonicvacuum.cli import cli
 from sonicvacuum.files import InputError
@@ -247,6 +247,33 @@ def test_an_interval_beyond_what_a_trigger_may_be_known_to_leaves_it_unknown(tmp
     (tmp_path / "fast.csv").write_text("Time (s),CH1 (V)\n" + rows(TIMES * 1e6, PULSE))
     import_files([tmp_path / "fast.csv"], tmp_path / "r", options(impact_at=["5"]))
     assert yaml.safe_load((tmp_path / "r" / "record.yaml").read_text())["trigger_sigma_us"] == "unknown"
+
+
+def test_samples_that_are_cut_are_counted(tmp_path):
+    trace = np.concatenate([np.resize(PULSE[:60], 600), PULSE, np.resize(PULSE[:60], 600)])
+    (tmp_path / "fast.csv").write_text("Time (s),CH1 (V)\n" + rows(1e-6 * np.arange(1400), trace))
+    said = import_files([tmp_path / "fast.csv"], tmp_path / "r", options())
+    kept = len(listed(tmp_path))
+    (told,) = [line for line in said if "Cut from" in line]
+    pattern = rf"Cut from 1400 to {kept} samples, without (\d+) before the pulse .*, (\d+) behind it .*all"
+    assert sum(map(int, re.search(pattern, told).groups())) == 1400 - kept
+    assert f"# {told}" in (tmp_path / "r" / "record.yaml").read_text()
+    said = import_files([tmp_path / "fast.csv"], tmp_path / "r", options(keep_all=True), force=True)
+    assert len(listed(tmp_path)) == 1400 and not any("Cut" in line for line in said)
+
+
+def test_the_ends_that_thinning_needs_are_counted(tmp_path):
+    files, like = raw_files(tmp_path)
+    said = import_files(files[:1], tmp_path / "r", options(channel=["CH1=near"]), like=like)
+    (told,) = [line for line in said if "Cut from" in line]
+    assert "80 at the ends, which the low-pass needs" in told
+
+
+def test_channels_of_different_lengths_are_told(tmp_path):
+    short = [f"{v:.5f}" for v in SECOND[:180]] + [""] * 20
+    (tmp_path / "fast.csv").write_text(HEAD + rows(TIMES, PULSE, short))
+    said = import_files([tmp_path / "fast.csv"], tmp_path / "r", options(keep_all=True))
+    assert any("Cut from 200 to 180 samples, those of the shortest channel" in line for line in said)
 
 
 @pytest.mark.parametrize("key", ["4", "CH4", "channel 4"])

@@ -16,8 +16,9 @@ from sonicvacuum.scope.units import STANDARD_GRAVITY
 # Lost samples in a row that are bridged by a straight line.
 BRIDGED = 5
 # Kept before the first arrival and after the last sample that stands out, and at most after the arrival,
-# in widths of the pulse at half height.
+# in widths of the pulse at half height; samples that are kept before it at least.
 BEFORE, AFTER, LONGEST = 15.0, 10.0, 150.0
+LEAST = 200
 FEWEST_QUIET = 40
 # Lengths of the recording by which the impact may lie before it, as where the recorder waits for a delay.
 FARTHEST = 3.0
@@ -66,17 +67,18 @@ def clean(shot: Shot, options: Options) -> CleanRun:
     for gauge, trace in seen.items():
         notes += [f"{gauge}: {n}" for n in _found(trace, unit[gauge], step, start)]
         values[gauge] = _without_spikes(values[gauge] - trace.rest, trace)
+    count = len(next(iter(values.values())))
     impact = options.impacts.get(shot.id, options.impacts.get(""))
     if impact is not None:
-        count = len(next(iter(values.values())))
         notes += _held_against(impact, start, step, count, seen, shot.id)
     begin, end, factor = _window(values, seen, None if impact is None else (impact - start) / step, options)
+    left = thin.kept(begin, end, count, factor)
+    notes += _told_cut(begin, end, left, count)
     if factor > 1:
         notes.append(
             f"Thinned by {factor}, from {tidy(step):g} to {tidy(step * factor):g} s, behind a zero-phase "
             "low-pass that halves the power at the new Nyquist frequency and leaves white noise white."
         )
-    left = thin.kept(begin, end, len(next(iter(values.values()))), factor)
     begin = left.start
     written = {g: thin.thinned(v, left) for g, v in values.items()}
     sigma = {g: _sigma(written[g], seen[g], begin, factor) for g in written}
@@ -181,7 +183,7 @@ def _window(values, seen, impact, options):
         return 0, count, 1
     width = max(t.width for t in found.values())
     first, last = min(t.arrival for t in found.values()), max(t.last for t in found.values())
-    begin = max(0, min(first, first if impact is None else int(impact)) - max(int(BEFORE * width), 200))
+    begin = max(0, min(first, first if impact is None else int(impact)) - max(int(BEFORE * width), LEAST))
     end = min(count, last + int(AFTER * width), first + int(LONGEST * width))
     factor = thin.factor_for(
         [values[g][begin:end] for g in found],
@@ -189,6 +191,21 @@ def _window(values, seen, impact, options):
         [t.arrival - begin for t in found.values()],
     )
     return begin, max(end, min(count, begin + 16 * factor)), factor
+
+
+def _told_cut(begin, end, left, count):
+    """How many of `count` samples are left out and why: those outside `begin` and `end`, and some within."""
+    parts = [
+        (begin, f"before the pulse (farther than {BEFORE:g} of its widths and {LEAST} samples)"),
+        (
+            count - end,
+            f"behind it ({AFTER:g} widths after it has died away, or {LONGEST:g} after it arrives)",
+        ),
+        (left.start - begin + end - left.stop, "at the ends, which the low-pass needs"),
+    ]
+    if told := [f"{number} {where}" for number, where in parts if number]:
+        kept = left.stop - left.start
+        yield f"Cut from {count} to {kept} samples, without {', '.join(told)}; --keep-all keeps all."
 
 
 def _sigma(written, trace, begin, factor):

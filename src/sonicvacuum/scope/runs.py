@@ -215,7 +215,10 @@ def common_grid(shot: Shot) -> tuple[float, float, dict[str, np.ndarray], list[s
             "each begins and ends, and leave out those of other times"
         )
     if same:
-        return begin, step, {g: c.values[:count] for g, c in shot.channels.items()}, []
+        longest = max(c.samples for c in shot.channels.values())
+        said = f"Cut from {longest} to {count} samples, those of the shortest channel."
+        cut = {g: c.values[:count] for g, c in shot.channels.items()}
+        return begin, step, cut, [said] if longest > count else []
     times = begin + step * np.arange(count)
     samples = {g: np.interp(times, _times(c), c.values) for g, c in shot.channels.items()}
     return begin, step, samples, ["Channels were interpolated linearly onto common, even times."]
