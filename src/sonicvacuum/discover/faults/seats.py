@@ -26,13 +26,13 @@ Readings = Mapping[str, Mapping[str, np.ndarray]]
 HIGHER = math.log(1.15)
 # Beads that are asked for: those at which the model reads most nearly what was recorded.
 NEAREST = 3
-# ... and, of a gauge in a bead, more nearly than in its own by so much of a trace's size in every run: a pulse
-# that is two beads off has a third of its own's likeness left, one that an effect distorts nine tenths.
+# ... and, of a gauge in a bead, more nearly than in its own by so much of a trace's size in every run: a
+# pulse that is two beads off has a third of its own's likeness left, one that an effect distorts nine tenths.
 NEARER = 0.1
 
 
 def seats(record: Record, predicted: Readings, read: Callable[[Sequence[Gauge]], Readings]) -> list[Slip]:
-    """The slips that a gauge which is stated in a bead is at the wall, or the other way round, or that a gauge
+    """The slips that a gauge which is stated in a bead is at the wall, or the other way round, or that one
     sits two beads and more from its own.
 
     Args:
