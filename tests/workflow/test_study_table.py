@@ -158,6 +158,21 @@ def test_the_committed_page_shows_the_committed_tables(pytestconfig):
     assert text.count(published.BEGIN) == text.count(published.END) == 1
     made = published.markdown(study.read(pytestconfig.rootpath / TABLES))
     assert published.with_study(text, made) == text
+    readme = (pytestconfig.rootpath / "README.md").read_text(encoding="utf-8")
+    short = published.in_short(study.read(pytestconfig.rootpath / TABLES))
+    assert published.with_study(readme, short, "README.md") == readme
+
+
+def test_names_given_to_foreign_effects_are_counted_alike_for_both_rules(pytestconfig):
+    """Ours without a word of unknown are fewer, but BIC has no such word."""
+    tables = study.read(pytestconfig.rootpath / TABLES)
+    rows = {(r["rule"], r["measure"]): r for r in tables.baselines.to_dict("records")}
+    told = published.in_short(tables).splitlines()[-1]
+    for rule in ("bic", "sonicvacuum"):
+        assert (
+            study.percent(rows[rule, names.WRONG]) in told and study.percent(rows[rule, names.ALARM]) in told
+        )
+    assert "any name counts, also one beside which something unknown" in told
 
 
 def test_the_page_of_two_studies_shows_what_their_rows_come_to(pytestconfig, tmp_path):
