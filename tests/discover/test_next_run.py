@@ -20,7 +20,7 @@ from sonicvacuum.effects import effect
 from sonicvacuum.files import InputError
 from sonicvacuum.records import Record, Signals
 from sonicvacuum.records.reader import parse
-from sonicvacuum.report import words
+from sonicvacuum.report import next_run, words
 
 SPEED = 0.5
 
@@ -181,7 +181,7 @@ def test_a_second_change_that_helps_little_is_left_out(monkeypatch):
 )
 def test_a_run_is_said_in_words(change, told):
     proposal = Next(change=change, separates=["tsuji", "viscous-drag"], delta_chi2=25.0)
-    text = words.experiment(proposal, [])
+    text = next_run.experiment(proposal)
     assert told in text and "5 standard errors" in text
 
 
@@ -201,8 +201,8 @@ def test_what_is_clear_but_for_its_place_is_asked_where_it_sits():
     assert found.named == ["contact-gap"] and not found.confusable and unsure
     proposal = found.next_experiment
     assert proposal.places == [{"contact-gap": 3}, {"contact-gap": 2}]
-    assert "at contact 3 and gap in the chain at contact 2" in words.experiment(proposal, [])
-    assert not words.settled(found)
+    assert "at contact 3 and gap in the chain at contact 2" in next_run.experiment(proposal)
+    assert not next_run.settled(found)
     assert not {"chain.static_force_N", "chain.orientation"} & proposal.change.keys()
     found, unsure = seen_from(proposal.change["sensors.g.bead"], seed=4)
     assert found.parameters["contact-gap"]["contact"].value == 3 and not unsure

@@ -41,6 +41,8 @@ def test_it_is_said_only_where_a_simulation_there_comes_near(monkeypatch, left, 
     monkeypatch.setattr(strained, "data", lambda forward: 1)
     monkeypatch.setattr(strained, "_moved", lambda forward, k, nu: f"number {k} at {nu:.3g}")
     forward = SimpleNamespace(
+        experiment=SimpleNamespace(record=None),
+        layout=Layout(runs=0, gauges=0),
         data=lambda run: np.array([1000.0]),
         sampled=lambda hypothesis, u, nu, places: [100.0 * nu - np.sqrt(left)],
     )
@@ -51,6 +53,22 @@ def test_it_is_said_only_where_a_simulation_there_comes_near(monkeypatch, left, 
     words = [f"{strained.ONLY_WITH} number 0 at 10, 10 of its stated errors away"] if said else []
     # Beside effects that leave it as stated, and where nothing is named.
     assert strained.told(forward, null, rested) == strained.told(forward, null, None) == words
+
+
+@pytest.mark.parametrize("error", [0.05, None])
+def test_an_error_that_the_record_does_not_state_is_not_called_its_own(error):
+    """A modulus without one is taken as known to 5 %."""
+    given = block((0.3, 0.9))
+    given["materials"] = {"parylene-c": {} if error is None else {"modulus_rel_sigma": error}}
+    forward = Forward(experiment(made(given=given)[0]))
+    record, layout = forward.experiment.record, forward.layout
+    assert record.specimen.first.surface.name == "parylene-c"
+    said = {
+        0.05: "of its stated errors away",
+        None: "times the standard error of 5 % that is taken, as the record states none",
+    }
+    assert strained._errors(forward, layout.modulus) == said[error]
+    assert strained._errors(forward, layout.speed(0)) == said[0.05]
 
 
 def test_nothing_is_said_of_a_record_that_needs_nothing():

@@ -23,7 +23,7 @@ from sonicvacuum.files import InputError
 from sonicvacuum.records import Record, read
 from sonicvacuum.records.described import chain_of
 from sonicvacuum.records.reader import parse
-from sonicvacuum.report import bench, inline, plots, rows, words
+from sonicvacuum.report import bench, inline, next_run, plots, rows, words
 from sonicvacuum.report.record import write_page
 from sonicvacuum.report.sketch import MOST, sketch
 
@@ -112,7 +112,9 @@ def test_what_all_runs_share_is_called_by_its_name_and_unit():
         bench.strained(verdict(nuisances=off), replace(model(verdict()), speed_ratio={}), record())
     )
     for part in (
-        "the modulus of brass: the data ask for 0.868 ± 0.017 times what is stated, 2.8 of",
+        # Brass has no error in the record.
+        "the modulus of brass: the data ask for 0.868 ± 0.017 times what is stated, 2.8 times the standard "
+        "error of 5 % that is taken, none being stated.",
         "the delay of gauge g1: the data ask for 4 µs, 4 of",
         "the mass of the beads: the data ask for 1.1 ± 0.011 times",
         "the recorder's clock: the data ask for one that is off by -2 %, 4 of",
@@ -132,6 +134,8 @@ def test_what_the_data_measure_is_told_with_its_error():
         "The data measure what the record leaves open, as factors of what it says: calibration of g1 "
         "0.0943 ± 0.0079 and modulus of foam 1.47 ± 0.026 (stated to 50 %)."
     )
+    # The record says nothing of foam: whatever error it has is taken.
+    assert "(taken as known to 50 %)" in bench.measured(verdict(nuisances=known), [record()])
     assert bench.measured(verdict()) == ""
 
 
@@ -215,9 +219,9 @@ def test_nothing_is_proposed_where_nothing_is_open(folder):
     sure = {"none": 0.0, "unknown": 0.001, "kuwabara-kono": 0.999}
     write_json(verdict(probabilities=sure), folder / "verdict.json")
     assert "What experiment" not in write_page(folder).read_text(encoding="utf-8")
-    assert words.settled(verdict(probabilities=sure))
-    assert not words.settled(verdict(probabilities=sure, confusable=[["kuwabara-kono", "tsuji"]]))
-    assert not words.settled(verdict())
+    assert next_run.settled(verdict(probabilities=sure))
+    assert not next_run.settled(verdict(probabilities=sure, confusable=[["kuwabara-kono", "tsuji"]]))
+    assert not next_run.settled(verdict())
 
 
 def test_a_sketch_has_a_disc_for_each_bead_and_a_name_for_each_gauge():

@@ -52,3 +52,10 @@ def test_verdicts_without_slips_and_of_older_days_are_read():
         msgspec.convert(
             {**content, "faults": [{**msgspec.to_builtins(SWAPPED), "fault": "gremlins"}]}, Verdict
         )
+
+
+def test_the_sentence_says_what_of_a_set_could_be_something_else():
+    alike = [["kuwabara-kono", "tsuji"]]
+    assert _sentence(verdict(confusable=alike)).endswith("(probability 0.97); could also be tsuji")
+    pair = verdict(named=["gravity", "kuwabara-kono"], confusable=alike)
+    assert _sentence(pair).endswith("; kuwabara-kono could also be tsuji")

@@ -1,9 +1,10 @@
 """What was found, how sure that is and what is left open, in words."""
 
 import pytest
-from made_verdicts import KINDS, gaps, model, verdict
+from made_verdicts import KINDS, SPREAD, gaps, model, verdict
 from msgspec.structs import replace
 
+from sonicvacuum.discover.judge.strained import ONLY_WITH
 from sonicvacuum.discover.parts import CellFit, GoodnessOfFit
 from sonicvacuum.discover.verdict import Where
 from sonicvacuum.effects import CATALOGUE
@@ -30,7 +31,7 @@ def test_probabilities_in_words(probability, text):
         ([0.1], "there with probability 0.1."),
         ([0.1, 0.9], "there with probability 0.1, in some trace of 2 with 0.19."),
         ([1e-30, 0.9, 0.8], "there with probability 1e-30, in some trace of 3 with 3e-30."),
-        ([1.0, 1.0], "there with probability 1, in some trace of 2 with 1."),
+        ([1.0, 1.0], "there with probability above 0.99, in some trace of 2 with above 0.99."),
     ],
 )
 def test_the_worst_of_many_traces_is_told_as_that(ps, told):
@@ -136,4 +137,68 @@ def test_only_the_first_reason_is_called_decisive():
     reasons = ["it leaves nothing", "masses taken as exact"]
     told = words.decided(verdict(reasons=reasons, alarms={"single": 0.4}))
     assert told[:2] == ["Decisive: it leaves nothing.", "Besides: masses taken as exact."]
-    assert told[2].startswith("By chance alone, what the best single effect leaves")
+    assert told[2].startswith("The best single effect leaves no more than noise would")
+
+
+@pytest.mark.parametrize(
+    ("step", "p", "said"),
+    [
+        ("none", 1.0, "The nominal model leaves no more than noise would."),
+        ("single", 0.4, "The best single effect leaves no more than noise would: chance does as much with "
+                        "probability 0.4."),
+        ("pair", 0.003, "By chance alone, what the best pair leaves would come about with probability "
+                        "0.003."),
+        ("set", 0.0, "By chance alone, what the last set of effects leaves would come about with probability "
+                     "below 1e-300."),
+    ],
+)  # fmt: skip
+def test_what_noise_would_leave_is_called_that_and_no_probability_is_one(step, p, said):
+    assert words.decided(verdict(reasons=[], alarms={step: p})) == [said]
+
+
+def test_what_may_stand_in_a_place_of_a_set_stands_in_the_first_line():
+    both = "kuwabara-kono + wall-compliance", "relaxing-contact + wall-compliance"
+    odds = {"unknown": 0.06, both[0]: 0.69, both[1]: 0.25}
+    alike = [["kuwabara-kono", "relaxing-contact"]]
+    named = ["wall-compliance", "kuwabara-kono"]
+    text = words.headline(verdict(named=named, probabilities=odds, confusable=alike, parameters={}))
+    assert text.endswith(
+        "That is more probable than not (0.69). These data cannot tell viscoelastic Hertz contact from "
+        "relaxing contact (0.25 in its place): one or the other is probable (0.94)."
+    )
+    alone = words.headline(verdict(named=named, probabilities=odds, parameters={}))
+    assert alone.endswith("(0.69).")
+
+
+def test_sets_that_were_never_fitted_are_told_as_that():
+    odds = SPREAD | {"kuwabara-kono + tsuji": 0.02, "kuwabara-kono + viscous-drag": 1e-4}
+    said = words.unfitted(verdict(probabilities=odds), {"kuwabara-kono", "tsuji"})
+    assert said.startswith("No pair of effects was fitted, as what is named leaves nothing significant")
+    assert said.endswith("So viscoelastic Hertz contact and damping with constant restitution (0.02).")
+    assert words.unfitted(verdict(probabilities=odds), {"kuwabara-kono + tsuji"}) == ""
+    pair = odds | {"gravity + kuwabara-kono + tsuji": 0.01}
+    assert words.unfitted(verdict(probabilities=pair), {"kuwabara-kono + tsuji"}).startswith("Other sets")
+    assert words.unfitted(verdict(), {"kuwabara-kono", "tsuji"}) == ""
+
+
+def test_a_gap_within_the_scatter_of_noise_is_not_called_closed():
+    """Of 8100 data noise gives a mean of 1 ± √(2/8100): 1.025 says nothing, 1.211 does."""
+    small = verdict(gap=gaps(1.025, 1.02499, (1.025, 1.02499)))
+    told = misfit.gap(small, 3, 8100)
+    assert "of the gap closed" not in told and "it stays at 1.025." in told
+    assert "scatter by 0.016, so that no gap is seen in it: what is named takes less" in told
+    small.reasons.append(f"{ONLY_WITH} the modulus of the beads 1.3 times the stated one, 5.2 of its errors")
+    assert "what the nominal model would have of the record, as told above" in misfit.gap(small, 3, 8100)
+    large = misfit.gap(verdict(gap=gaps(1.211, 1.009, (1.211, 1.009))), 3, 8100)
+    assert large.count("of the gap closed") == 2
+
+
+def test_an_error_in_common_is_told_to_count_where_a_quantity_fails_that_has_it():
+    where = [Where(run="a", sensor="", feature="speed", z=-3.5, p=4e-4)]
+    cells = [
+        {"sensor": "", "feature": name, "q_before": q} for name, q in (("speed", "1e-3"), ("duration", "0.5"))
+    ]
+    shared, own = {"common": ["gauge-places"]}, {"common": []}
+    assert "in common (gauge-places) is counted" in misfit.where(verdict(where=where), cells, [shared, own])
+    assert "in common" not in misfit.where(verdict(where=where), cells, [own, shared])
+    assert "in common" not in misfit.where(verdict(where=where), cells)

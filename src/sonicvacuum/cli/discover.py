@@ -189,5 +189,7 @@ def _named(verdict):
     named = verdict.named or ["none"]
     sure = verdict.probability
     text = " + ".join(named) + (f" (probability {sure:.2f})" if sure is not None else "")
-    alike = "; ".join(", ".join(c[1:]) for c in verdict.confusable)
-    return text + (f"; could also be {alike}" if alike else "")
+    several = sum(name != "unknown" for name in named) > 1
+    for own, *others in verdict.confusable:
+        text += f"; {own if several else ''} could also be {', '.join(others)}".replace("  ", " ")
+    return text

@@ -6,10 +6,10 @@ leave its stated error to do so, that is worth a look at the bench before any ef
 
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from sonicvacuum.discover.faults.table import header
-from sonicvacuum.discover.model.nuisances import WORDS
+from sonicvacuum.discover.model.nuisances import WORDS, stated
 from sonicvacuum.discover.verdict import PUT_RIGHT, Fault, Model, Verdict
 from sonicvacuum.records import Record
 from sonicvacuum.report.tables import number
@@ -99,12 +99,12 @@ def nuisances(model: Model, verdict: Verdict) -> str:
         parts.append(f"time zeros by up to {_short(shift)} µs")
     parts += _shared(verdict)
     if not parts:
-        return "What the record states with an error (speeds, time zeros, gains, modulus) stays as recorded."
-    return f"What the record states with an error has followed the data: {joined(parts)}."
+        return "What has an error in the record (speeds, time zeros, gains, modulus) stays as recorded."
+    return f"What has an error in the record, stated or taken, has followed the data: {joined(parts)}."
 
 
 def _shared(verdict):
-    """What all runs share that has moved by a tenth of its stated error and more."""
+    """What all runs share that has moved by a tenth of its error and more."""
     for name, known in (verdict.nuisances or {}).items():
         if not known.prior:
             continue
@@ -112,7 +112,7 @@ def _shared(verdict):
         away = known.value if kind in _SHIFTS else math.log(known.value)
         if abs(away) >= MOVED * known.prior:
             what = f"the error that quantities share, {of}," if kind == "shared" else _named(kind, of)
-            yield f"{what} by {_short(abs(away) / known.prior)} of its stated standard errors"
+            yield f"{what} by {_short(abs(away) / known.prior)} of its standard errors"
 
 
 def _named(kind, of):
@@ -121,8 +121,10 @@ def _named(kind, of):
     return f"{what} of {of}" if of else what
 
 
-def measured(verdict: Verdict) -> str:
-    """What the data know better than the record does: moduli, masses and sizes, calibrations; else empty."""
+def measured(verdict: Verdict, records: Sequence[Record] = ()) -> str:
+    """What the data know better than the record does: moduli, masses and sizes, calibrations; else empty. Of
+    an error that none of the `records` states it is said that it is taken.
+    """
     parts = []
     for name, known in (verdict.nuisances or {}).items():
         kind, _, of = name.partition(" ")
@@ -130,9 +132,10 @@ def measured(verdict: Verdict) -> str:
         if kind in _SHIFTS or not 0.0 < known.sigma < math.inf or not told:
             continue
         what = WORDS.get(kind, "calibration" if kind == "gain" else kind)
-        stated = "" if known.prior is None else f" (stated to {_short(100.0 * known.prior)} %)"
+        how = "stated" if all(stated(one, kind, of) for one in records) else "taken as known"
+        before = "" if known.prior is None else f" ({how} to {_short(100.0 * known.prior)} %)"
         value = f"{known.value:.3g} ± {_short(known.value * known.sigma)}"
-        parts.append(f"{what}{f' of {of}' if of else ''} {value}{stated}")
+        parts.append(f"{what}{f' of {of}' if of else ''} {value}{before}")
     said = "The data measure what the record leaves open, as factors of what it says"
     return f"{said}: {joined(parts)}." if parts else ""
 
@@ -142,19 +145,18 @@ def moved_modulus(verdict: Verdict, model: Model) -> str:
     if verdict.named or abs(math.log(model.modulus_ratio)) < FAR:
         return ""
     return (
-        " For that, the modulus of the beads' material, which the record states with an error, has to be "
+        " For that, the modulus of the beads' material, which is known only with an error, has to be "
         f"{model.modulus_ratio:.3g} times as large as recorded."
     )
 
 
 def strained(verdict: Verdict, model: Model, record: Record) -> list[str]:
-    """What has to leave its stated error for the model to follow the data, one line each; largest first."""
-    found = sorted(_moves(verdict, model, record), reverse=True)
-    return [f"{said}, {score:.2g} of the stated standard errors away." for score, said in found]
+    """What has to leave its error for the model to follow the data, one line each; largest first."""
+    return [said for _, said in sorted(_moves(verdict, model, record), reverse=True)]
 
 
 def _moves(verdict, model, record) -> Iterator[tuple[float, str]]:
-    """(shift over its stated error, sentence without its end)."""
+    """(shift over its error, sentence)."""
     for run in record.runs:
         ratio, shift = model.speed_ratio.get(run.id, 1.0), model.trigger_us.get(run.id, 0.0)
         said = _asked(f"the striker's speed in run {run.id}", ratio)
@@ -167,17 +169,18 @@ def _moves(verdict, model, record) -> Iterator[tuple[float, str]]:
         yield from _far(math.log(ratio), gauge.gain_rel_sigma, said)
     name = record.specimen.first.surface.name
     said = _asked(f"the modulus of {name}", model.modulus_ratio)
-    yield from _far(math.log(model.modulus_ratio), record.taken_modulus_rel_sigma(name), said)
-    yield from _others(verdict)
+    known = stated(record, "modulus", name)
+    yield from _far(math.log(model.modulus_ratio), record.taken_modulus_rel_sigma(name), said, known)
+    yield from _others(verdict, record)
 
 
-def _others(verdict):
+def _others(verdict, record):
     """What else the record leaves open."""
     for name, known in (verdict.nuisances or {}).items():
         if known.prior:
             kind, _, of = name.partition(" ")
             away = known.value if kind in _SHIFTS else math.log(known.value)
-            yield from _far(away, known.prior, _told_of(kind, of, known))
+            yield from _far(away, known.prior, _told_of(kind, of, known), stated(record, kind, of))
 
 
 def _told_of(kind, of, known):
@@ -202,6 +205,11 @@ def _asked(what, ratio, error=0.0):
     return f"Check {what}: the data ask for {ratio:.3g}{known} times what is stated"
 
 
-def _far(away, error, said):
+def _far(away, error, said, own=True):
+    """A sentence where something is far off its error, the record's `own` or one taken for it."""
     if error and math.isfinite(error) and abs(away) > STRAINED * error:
-        yield abs(away) / error, said
+        score = abs(away) / error
+        whose = "of the stated standard errors away"
+        if not own:
+            whose = f"times the standard error of {_short(100.0 * error)} % that is taken, none being stated"
+        yield score, f"{said}, {score:.2g} {whose}."

@@ -2,12 +2,15 @@
 
 import math
 from collections import Counter
+from collections.abc import Sequence
 
 from sonicvacuum.discover.judge.locate import DISCOVERY_RATE
 from sonicvacuum.discover.judge.strained import ONLY_WITH
 from sonicvacuum.discover.verdict import Gap, Verdict
-from sonicvacuum.report.tables import number
-from sonicvacuum.report.words import effects_of, joined, plural
+from sonicvacuum.report.words import chance, effects_of, joined, plural
+
+# A gap is told as closed by a share where it is so many times the scatter that noise gives the mean.
+SHOWS = 3.0
 
 # Feature → what a measured one is that lies above, and below, the prediction.
 SIDES = {
@@ -23,10 +26,11 @@ SIDES = {
 }
 
 
-def where(verdict: Verdict, cells: list[dict]) -> str:
+def where(verdict: Verdict, cells: list[dict], quantities: Sequence[dict] = ()) -> str:
     """Where the nominal model and the data disagree.
 
-    The verdict keeps the largest disagreements; `cells`, the rows of where.csv, are all comparisons made.
+    The verdict keeps the largest disagreements; `cells`, the rows of where.csv, are all comparisons made;
+    `quantities`, of `rows.quantities`, are those of them without a gauge, in the same order.
     """
     traces = any(c["sensor"] for c in cells)
     failing = [c["feature"] for c in cells if float(c["q_before"] or 1.0) < DISCOVERY_RATE]
@@ -48,7 +52,29 @@ def where(verdict: Verdict, cells: list[dict]) -> str:
     return (
         f"In {len(failing)} of {plural(len(cells), 'comparison')} ({kind}) the nominal model fails: "
         f"{groups}. The largest is in {place}: {_side(first)} than predicted, by "
-        f"{abs(first.z):.3g} standard errors.{strained and f'{strained}.'}"
+        f"{abs(first.z):.3g} standard errors.{_common(cells, quantities)}{strained and f'{strained}.'}"
+    )
+
+
+def _common(cells, quantities):
+    """That an error which several quantities share is counted, where one of them fails: it may lie within
+    that, and fail all the same.
+    """
+    alone = [c for c in cells if not c["sensor"]]
+    if len(alone) != len(quantities):  # of a verdict that was written before quantities were
+        return ""
+    names = dict.fromkeys(
+        name
+        for cell, one in zip(alone, quantities, strict=True)
+        for name in one["common"]
+        if float(cell["q_before"] or 1.0) < DISCOVERY_RATE
+    )
+    if not names:
+        return ""
+    return (
+        f" What several quantities have in common ({', '.join(names)}) is counted: it shifts them together, "
+        "to where it suits all the data best. One that lies within its errors by itself may fail for that, "
+        "where others would have the shift the other way."
     )
 
 
@@ -72,8 +98,8 @@ _WHAT = {"speed_at_amplitude": "speed at the stated amplitude"}
 _LONG = {"duration": ("longer", "shorter"), "width": ("larger", "smaller")}
 
 
-def gap(verdict: Verdict, runs: int = 0) -> str:
-    """How the misfit shrinks, of so many runs; 0 where that is not known."""
+def gap(verdict: Verdict, runs: int = 0, data: int = 0) -> str:
+    """How the misfit shrinks, of so many runs and data; 0 where that is not known."""
     fitted, held_out = verdict.gap.fitted, verdict.gap.held_out
     if not effects_of(verdict) and not verdict.law:
         text = (
@@ -85,20 +111,39 @@ def gap(verdict: Verdict, runs: int = 0) -> str:
         if fitted.after == fitted.before:
             return f"{text} Nothing was added that would lower it."
         return f"{text} The nearest model that was found, which is not named, leaves {fitted.after:.3g}."
+    scatter = math.sqrt(2.0 / data) if data else 0.0
+    shows = fitted.before - fitted.floor > SHOWS * scatter
     text = (
         f"The nominal model leaves a mean squared misfit of {fitted.before:.4g} times that of the noise, "
-        f"the extended model {fitted.after:.4g}{_closed(fitted)}; 1 is expected."
+        f"the extended model {fitted.after:.4g}{_closed(fitted) if shows else ''}; 1 is expected."
     )
+    if not shows:
+        text += _unseen(verdict, scatter)
+    return f"{text} {_left_out(held_out, runs, shows)}"
+
+
+def _unseen(verdict, scatter):
+    """That noise alone makes up a gap, so that no share of it says anything, and what speaks for the name."""
+    why = "what is named takes less of it away than that, but in a shape of its own"
+    if _strained(verdict):
+        why = "what speaks for the name is what the nominal model would have of the record, as told above"
+    return f" Noise alone makes such a mean scatter by {scatter:.2g}, so that no gap is seen in it: {why}."
+
+
+def _left_out(held_out, runs, shows):
+    """How the misfit of runs left out of the fit shrinks."""
     if held_out is None:
-        return f"{text} There is one run only, so that none could be held out."
+        return "There is one run only, so that none could be held out."
     if held_out.after == held_out.before:
         one = "run does not show the effect by itself"
         others = one if runs == 2 else "runs do not show the effect by themselves"
-        return f"{text} Runs left out of the fit are not predicted better, because the remaining {others}."
-    return (
-        f"{text} On runs left out of the fit it falls from {held_out.before:.4g} to {held_out.after:.4g}"
-        f"{_closed(held_out)}."
-    )
+        return f"Runs left out of the fit are not predicted better, because the remaining {others}."
+    before, after = f"{held_out.before:.4g}", f"{held_out.after:.4g}"
+    if before == after:
+        return f"On runs left out of the fit it stays at {after}."
+    falls = "falls" if held_out.after < held_out.before else "rises"
+    closed = _closed(held_out) if shows else ""
+    return f"On runs left out of the fit it {falls} from {before} to {after}{closed}."
 
 
 def _closed(one: Gap):
@@ -113,7 +158,7 @@ def _somewhere(p: float, traces: int) -> str:
     if traces < 2:
         return ""
     some = 1.0 if p >= 1.0 else -math.expm1(traces * math.log1p(-p))
-    return f", in some trace of {traces} with {number(str(some), 2)}"
+    return f", in some trace of {traces} with {chance(some)}"
 
 
 def goodness(verdict: Verdict) -> str:
@@ -125,7 +170,7 @@ def goodness(verdict: Verdict) -> str:
     text = (
         f"The largest mean squared misfit of a trace is {worst.chi2:.3g} times that of the noise (run "
         f"{worst.run}, gauge {worst.sensor}), which noise alone would give there with probability "
-        f"{number(str(worst.p), 2)}{_somewhere(worst.p, len(fit.extended))}."
+        f"{chance(worst.p)}{_somewhere(worst.p, len(fit.extended))}."
     )
     if fit.smooth_rel:
         text += (

@@ -7,11 +7,12 @@ from pathlib import Path
 
 from sonicvacuum.discover import draws, given, quantities
 from sonicvacuum.discover.compare import check_source
+from sonicvacuum.discover.judge.explanations import key
 from sonicvacuum.discover.verdict import Model, Verdict
 from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.effects.whereabouts import materials_of
 from sonicvacuum.files import read_json, reading, replacing
-from sonicvacuum.report import bench, inline, misfit, origin, plots, rows, words
+from sonicvacuum.report import bench, inline, misfit, next_run, origin, plots, rows, words
 from sonicvacuum.report.sketch import sketch
 from sonicvacuum.tables import read_csv
 
@@ -103,13 +104,14 @@ def _told(folder, verdict, model, tables, catalogue, records):
         r | {"parameters": rows.placed(r["parameters"], gauges, catalogue, materials)}
         for r in tables["candidates"]
     ]
-    shrinking = (misfit.gap(verdict, len(model.speed_ratio)), misfit.goodness(verdict))
+    data = sum(int(r["data"]) for r in tables["gap"] if r["run"] == "all")
+    shrinking = (misfit.gap(verdict, len(model.speed_ratio), data), misfit.goodness(verdict))
     return {
         "name": name,
         "headline": words.headline(verdict, catalogue) + bench.moved_modulus(verdict, model),
         "slips": bench.slips(verdict),
         "corrected": bench.corrected(verdict),
-        "where": misfit.where(verdict, tables["where"]),
+        "where": misfit.where(verdict, tables["where"], quantities_of),
         "grid": rows.grid(tables["where"]),
         "quantities": quantities_of,
         "common": sorted({name for r in quantities_of for name in r["common"]}),
@@ -118,11 +120,15 @@ def _told(folder, verdict, model, tables, catalogue, records):
         "drawn": words.drawn(drawn),
         "tests_nothing": verdict.sees_nothing,
         "odds": rows.odds(verdict, catalogue, tables["candidates"]),
-        "nuisances": " ".join(filter(None, (bench.nuisances(model, verdict), bench.measured(verdict)))),
+        "nuisances": " ".join(
+            filter(None, (bench.nuisances(model, verdict), bench.measured(verdict, records)))
+        ),
         "present": rows.present(verdict, model, catalogue),
         "law": words.law(verdict, catalogue),
         "alternatives": words.alternatives(verdict, catalogue),
         "pairs": [r for r in candidates if "+" in r["effects"]][:_PAIRS],
+        "unfitted": words.unfitted(verdict, {key(r["effects"].split("+")) for r in candidates}, catalogue)
+        or ("" if any("+" in r["effects"] for r in candidates) else "No pair of effects was tried."),
         "singles": [r for r in candidates if "+" not in r["effects"]],
         "gap": " ".join(filter(None, shrinking)),
         "rounds": rows.rounds(tables["gap"], catalogue),
@@ -131,9 +137,7 @@ def _told(folder, verdict, model, tables, catalogue, records):
         "limits": [rows.limit(r, catalogue) for r in tables["limits"] if r["testable"] == "1"],
         "unexplained": "unknown" in verdict.named,
         "not_testable": [words.plain(n, catalogue) for n in verdict.not_testable if n not in verdict.named],
-        "experiment": ""
-        if words.settled(verdict)
-        else words.experiment(verdict.next_experiment, tables["where"], catalogue),
+        "experiment": next_run.told(verdict, tables["where"], records, catalogue),
         "decided": words.decided(verdict),
         "simulations": verdict.simulations,
         "warnings": verdict.warnings or [],

@@ -8,12 +8,12 @@ from sonicvacuum.discover import policy
 from sonicvacuum.records import Record
 from sonicvacuum.report.misfit import SIDES
 from sonicvacuum.report.tables import number, unit_of
-from sonicvacuum.report.words import plain, share
+from sonicvacuum.report.words import LEAST_TOLD, plain, share
 
 # Scores from this on are written into their cell; those beyond the second have the full colour.
 TOLD, FULL = 3.0, 10.0
-# Explanations that are shown: the first ones, and all above this probability.
-FEWEST, LEAST, MOST = 3, 0.005, 8
+# Explanations that are shown: the first ones, and all above `LEAST_TOLD`.
+FEWEST, MOST = 3, 8
 
 
 def grid(cells: list[dict]) -> dict | None:
@@ -117,7 +117,7 @@ def odds(verdict, catalogue, singles=()) -> list[dict]:
             "with": in_words(fitted.get(k, ""), catalogue),
         }
         for place, (k, p) in enumerate(best)
-        if place < FEWEST or p >= LEAST
+        if place < FEWEST or p >= LEAST_TOLD
     ]
 
 

@@ -3,12 +3,11 @@
 Every sentence is made from `verdict.json`, `model.json` and the tables beside them, and from nothing else.
 """
 
-import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 
 from sonicvacuum.discover.draws import AVERAGED, LINEAR, PLACES, SAMPLED, VALLEY, pareto_k
 from sonicvacuum.discover.judge.explanations import key
-from sonicvacuum.discover.verdict import Next, Verdict
+from sonicvacuum.discover.verdict import Verdict
 from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.report.tables import number
 
@@ -20,6 +19,8 @@ SURE = (
     (0.5, "more probable than not"),
     (0.0, "less probable than all its rivals together"),
 )
+# Explanations less probable than this are told only where few are.
+LEAST_TOLD = 0.005
 
 
 def in_words(probability: float) -> str:
@@ -134,7 +135,7 @@ def headline(verdict: Verdict, catalogue: Catalogue = CATALOGUE) -> str:
         text += (
             f" No single effect does: {_singles(odds, catalogue)}."
             if sure is None
-            else f" That is {in_words(sure)}."
+            else f" That is {in_words(sure)}.{_exchanged(verdict, catalogue)}"
         )
     return text + (" Even so, a misfit is left that nothing of the catalogue explains." if unknown else "")
 
@@ -143,6 +144,23 @@ def _told(one, verdict):
     """An effect with what is missing; of one material of several with its name."""
     names = [value.name for value in verdict.parameters.get(one.id, {}).values() if value.name]
     return f"{one.title}{''.join(f' of {name}' for name in names)} ({one.id}): {one.missing}"
+
+
+def _exchanged(verdict, catalogue):
+    """What may stand in place of one effect of a set, and how probable it is that one of these sets is there;
+    "" where nothing may.
+    """
+    odds, total, parts = verdict.probabilities, verdict.probability, []
+    for own, *others in verdict.confusable:
+        if own not in verdict.named:
+            continue
+        each = [odds.get(key([other if n == own else n for n in verdict.named]), 0.0) for other in others]
+        told = [f"{plain(n, catalogue)} ({share(p)} in its place)" for n, p in zip(others, each, strict=True)]
+        parts.append(f"{plain(own, catalogue)} from {joined(told, 'or')}")
+        total += sum(each)
+    if not parts:
+        return ""
+    return f" These data cannot tell {joined(parts, 'nor')}: one or the other is {in_words(min(1.0, total))}."
 
 
 def _nearest_set(verdict, told, found):
@@ -254,63 +272,54 @@ def alternatives(verdict: Verdict, catalogue: Catalogue = CATALOGUE) -> str:
     return " ".join(parts)
 
 
-def settled(verdict: Verdict) -> bool:
-    """Whether nothing is left that a further run would have to decide."""
-    sure = (verdict.probability or 0.0) >= SURE[0][0]
-    somewhere = verdict.next_experiment is not None and bool(verdict.next_experiment.places)
-    return sure and not verdict.confusable and "unknown" not in verdict.named and not somewhere
+# What a step leaves with a p-value from this on is no more than noise.
+NOISE = 0.05
 
 
-def experiment(proposal: Next | None, cells: list[dict], catalogue: Catalogue = CATALOGUE) -> str:
-    """The experiment that would settle it."""
-    if proposal is None:
-        if not any(c["sensor"] for c in cells):
-            return "No proposal: the gain of a further run is predicted for traces, and this record has none."
-        return "No proposal: no rivals are left to separate."
-    steps = joined(_changes(proposal.change))
-    where = proposal.places or [{}, {}]
-    one, other = (placed(*x, catalogue) for x in zip(proposal.separates[:2], where, strict=True))
-    text = (
-        f"One more run {steps} would most likely leave one explanation alone: {one} and {other}, its nearest "
-        f"rival there, would differ by about "
-        f"{number(f'{math.sqrt(max(proposal.delta_chi2, 0.0)):.2g}', 2)} standard errors."
-    )
-    return text + (" That would hardly decide." if proposal.delta_chi2 < 9.0 else "")
-
-
-def _changes(change: dict) -> list[str]:
-    """What is changed, one phrase for a striker that is another one and strikes at another speed."""
-    rest = dict(change)
-    if {"striker.speed_m_s", "striker.mass_g"} <= set(rest):
-        speed, mass = rest.pop("striker.speed_m_s"), rest.pop("striker.mass_g")
-        return [f"with a striker of {mass:.4g} g at {speed:.4g} m/s", *_changes(rest)]
-    return [_change(key, value) for key, value in rest.items()]
-
-
-def _change(key, value):
-    known = {
-        "striker.speed_m_s": "with the striker at {} m/s",
-        "striker.mass_g": "with a striker of {} g",
-        "chain.static_force_N": "under a static force of {} N",
-        "chain.orientation": "with the chain {}",
-    }
-    shown = f"{value:.4g}" if isinstance(value, float) else str(value)
-    if key.startswith("sensors."):
-        return f"with gauge {key.split('.')[1]} in bead {shown}"
-    return known.get(key, f"with {key} = {{}}").format(shown)
+def chance(p: float) -> str:
+    """A p-value with two digits, never rounded to certainty."""
+    if p > 0.995:
+        return "above 0.99"
+    return number(str(p), 2) if p > 1e-300 else "below 1e-300"
 
 
 def decided(verdict: Verdict) -> list[str]:
-    """What decided, and how probable by chance what each step leaves is."""
-    left = {
-        "none": "what the nominal model leaves",
-        "single": "what the best single effect leaves",
-        "pair": "what the best pair leaves",
-        "set": "what the last set of effects leaves",
-    }
+    """What decided, and whether what each step leaves is noise."""
     # The first one decided; others say what else explains the data, or what was taken for granted.
     lines = [f"{'Besides' if k else 'Decisive'}: {reason}." for k, reason in enumerate(verdict.reasons)]
-    return lines + [
-        f"By chance alone, {left.get(step, step)} would come about with probability {number(str(p), 2)}."
-        for step, p in verdict.alarms.items()
-    ]
+    return lines + [_leaves(_STEPS.get(step, step), p) for step, p in verdict.alarms.items()]
+
+
+_STEPS = {
+    "none": "the nominal model",
+    "single": "the best single effect",
+    "pair": "the best pair",
+    "set": "the last set of effects",
+}
+
+
+def _leaves(model, p):
+    if p < NOISE:
+        return f"By chance alone, what {model} leaves would come about with probability {chance(p)}."
+    # Of many shapes the least probable is asked for, so that chance often does as much for certain.
+    beside = f": chance does as much with probability {chance(p)}" if p <= 0.995 else ""
+    return f"{model[0].upper()}{model[1:]} leaves no more than noise would{beside}."
+
+
+def unfitted(verdict: Verdict, fitted: Collection[str], catalogue: Catalogue = CATALOGUE) -> str:
+    """Which of the sets that are told of were not fitted, and where their probability comes from, see
+    `judge.behind`; "" where none are. `fitted` are explanations.
+    """
+    odds = sorted(verdict.probabilities.items(), key=lambda item: -item[1])
+    if "unknown" in verdict.named:  # what hides beside something unknown is not asked
+        return ""
+    sets = [(name, p) for name, p in odds if " + " in name and "unknown" not in name and name not in fitted]
+    told = [f"{plain(name, catalogue)} ({share(p)})" for name, p in sets if p >= LEAST_TOLD]
+    if not told:
+        return ""
+    several = any(" + " in name for name in fitted)
+    return (
+        f"{'Other sets were not' if several else 'No pair of effects was'} fitted, as what is named leaves "
+        "nothing significant: how probable it is that one more effect hides beside it was estimated from "
+        f"slopes at its fit. So {'; '.join(told)}."
+    )

@@ -10,7 +10,7 @@ from sonicvacuum.discover import policy
 from sonicvacuum.discover.fit.enough import data
 from sonicvacuum.discover.fit.refit import Fit, simulated
 from sonicvacuum.discover.model.forward import Forward
-from sonicvacuum.discover.model.nuisances import SCATTER, WORDS
+from sonicvacuum.discover.model.nuisances import SCATTER, WORDS, stated
 
 # How the line begins that says so.
 ONLY_WITH = "the nominal model comes so near the data only with"
@@ -41,7 +41,7 @@ def told(forward: Forward, null: Fit, final: Fit | None) -> list[str]:
     left = simulated(forward, null.hypothesis, null.u[None], nu[None])[0]
     if not left <= policy.GROSS * data(forward):
         return []
-    return [f"{ONLY_WITH} {_moved(forward, k, float(nu[k]))}, {far:.2g} of its stated errors away"]
+    return [f"{ONLY_WITH} {_moved(forward, k, float(nu[k]))}, {far:.2g} {_errors(forward, k)}"]
 
 
 def unpressed(forward: Forward, final: Fit) -> list[str]:
@@ -64,6 +64,18 @@ def unpressed(forward: Forward, final: Fit) -> list[str]:
         f"what is named takes the stated static_force_N of {stated:.3g} N off contact {free[0] + 1}: look "
         "whether the chain was pressed by that much"
     ]
+
+
+def _errors(forward, k):
+    """Whose errors a nuisance is so many of away: the record's, or those taken where it states none."""
+    record, place = forward.experiment.record, k - forward.layout.modulus - 1
+    if record is not None and place >= -1:
+        other = forward.layout.others[place] if place >= 0 else None
+        kind, of = (other.kind, other.of) if other else ("modulus", record.specimen.first.surface.name)
+        if not stated(record, kind, of):
+            size = 100.0 * float(forward.nuisance_sigma[k])
+            return f"times the standard error of {size:.2g} % that is taken, as the record states none"
+    return "of its stated errors away"
 
 
 def _moved(forward, k, nu):

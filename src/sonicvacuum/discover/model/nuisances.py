@@ -284,6 +284,15 @@ def assumed(record: Record, chains: Sequence[Chain]) -> str:
     return "; ".join(said)
 
 
+def stated(record: Record, kind: str, of: str = "") -> bool:
+    """Whether the record itself states the error of a nuisance of some kind: those of moduli and of a static
+    force are taken where it does not.
+    """
+    if kind == "modulus":
+        return record.modulus_rel_sigma(of) is not None
+    return kind != "static-force" or record.tolerances.static_force_rel is not None
+
+
 def _moduli(record, chains) -> dict[str, float]:
     """Material → standard error of its modulus, for materials that touch, the first bead's left aside.
 
