@@ -170,6 +170,44 @@ def test_a_second_change_that_helps_little_is_left_out(monkeypatch):
     assert asked and found.change == ONE
 
 
+def searched(named, probabilities, singles=(), sets=()):
+    """A search that fitted these effects and sets, the likeliest first."""
+    return SimpleNamespace(
+        named=named,
+        probabilities=probabilities,
+        null=None,
+        candidates=[
+            SimpleNamespace(effect=e, log_bayes=-k, gain=9.0, fit=None) for k, e in enumerate(singles)
+        ],
+        combinations=[SimpleNamespace(effects=e, log_bayes=-9 * k, fit=None) for k, e in enumerate(sets)],
+    )
+
+
+@pytest.mark.parametrize(
+    ("found", "alike", "left"),
+    [
+        # The second is ruled out: no run is made to tell the first from it, nor from a pair without a fit.
+        (searched(["viscous-drag"], {"viscous-drag": 0.96, "relaxing-contact": 2e-94,
+                                     "tsuji + viscous-drag": 0.04}, ["viscous-drag", "relaxing-contact"]),
+         [], ["viscous-drag"]),
+        (searched(["tsuji"], {"tsuji": 0.9, "gravity": 0.05, "hunt-crossley": 1e-9},
+                  ["tsuji", "gravity", "hunt-crossley"]), [], ["tsuji", "gravity"]),
+        (searched(["tsuji"], {"tsuji": 0.99, "gravity": 1e-4}, ["tsuji", "gravity"]),
+         [["tsuji", "gravity"]], ["tsuji", "gravity"]),
+        (searched([], {"none": 0.95, "tsuji": 0.008, "gravity": 1e-7}, ["tsuji", "gravity"]),
+         [], ["none", "tsuji"]),
+        (searched(["tsuji", "gravity"], {"gravity + tsuji": 0.7, "hunt-crossley + tsuji": 0.3,
+                                         "hunt-crossley + mass-defect": 1e-30},
+                  sets=[("tsuji", "gravity"), ("tsuji", "hunt-crossley"), ("mass-defect", "hunt-crossley")]),
+         [["gravity", "hunt-crossley"]], ["tsuji+gravity", "tsuji+hunt-crossley"]),
+        # What is unknown is none of them: they are the nearest to it, ruled out as they are.
+        (searched(["unknown"], {"unknown": 1.0}, ["tsuji", "gravity"]), [], ["tsuji", "gravity"]),
+    ],
+)  # fmt: skip
+def test_what_the_data_rule_out_is_no_rival(found, alike, left):
+    assert [one.name for one in next_experiment._left(found, alike)] == left
+
+
 @pytest.mark.parametrize(
     ("change", "told"),
     [

@@ -18,7 +18,7 @@ from msgspec import UNSET
 
 from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.imagined import changes, changes_of_two, together
-from sonicvacuum.discover.judge import whereabouts
+from sonicvacuum.discover.judge import explanations, rivals, whereabouts
 from sonicvacuum.discover.judge.degenerate import ALIKE
 from sonicvacuum.discover.judge.rivals import Rival
 from sonicvacuum.discover.model import abreast
@@ -50,19 +50,19 @@ class Explanation:
     places: dict[str, int | str] = field(default_factory=dict)
 
 
-def propose(found: Investigation, alike: list[list[str]], rivals: Sequence[Rival] = ()) -> Next | None:
-    """The run that most likely leaves one explanation alone; None without signals or rivals.
+def propose(found: Investigation, alike: list[list[str]], placed: Sequence[Rival] = ()) -> Next | None:
+    """The run that most likely leaves one explanation alone; None without signals or rivals that are left.
 
     Two quantities of the last run are changed only where none alone would decide.
 
     Args:
         found: the search.
         alike: sets of effects that the data cannot tell from what is named.
-        rivals: what is named stands there once for each place where its effects may sit.
+        placed: what is named stands there once for each place where its effects may sit.
     """
     if not any(r.has_signals for r in found.forward.experiment.runs):
         return None
-    sits = [] if alike else _at_places(found, rivals)
+    sits = [] if alike else _at_places(found, placed)
     forward = (found.counted or found).forward if sits else found.forward
     left = sits or _left(found, alike)
     if len(left) < 2:
@@ -152,10 +152,10 @@ def _kept(left: list[Explanation]) -> set[str]:
     return turned | loaded
 
 
-def _at_places(found: Investigation, rivals) -> list[Explanation]:
+def _at_places(found: Investigation, placed) -> list[Explanation]:
     """What is named at each place where it may sit, the told one first; [] where that is clear."""
     one = found.counted or found
-    own = whereabouts.where_open(rivals, one.final)
+    own = whereabouts.where_open(placed, one.final)
     return [
         Explanation(
             "+".join(r.fit.hypothesis.ids),
@@ -168,20 +168,34 @@ def _at_places(found: Investigation, rivals) -> list[Explanation]:
 
 
 def _left(found: Investigation, alike) -> list[Explanation]:
-    """The best explanation and those that the data cannot tell from it, or else the nearest."""
-    if len(found.named) > 1 and "unknown" not in found.named:
+    """The best explanation and those that the data cannot tell from it, or else the nearest that are left."""
+    ranked = _ranked(found, alike)
+    if explanations.UNKNOWN in found.named:
+        return ranked  # all of them are ruled out, and yet one may be the nearest to what is there
+    same = {name for names in alike for name in names}
+
+    def possible(one):
+        known = found.probabilities.get(explanations.key(one.name.split("+")), 0.0)
+        return one.name in same or known > rivals.LEAST
+
+    return [one for k, one in enumerate(ranked) if k == 0 or possible(one)]
+
+
+def _ranked(found, alike):
+    """The same, whether ruled out or not."""
+    if len(found.named) > 1 and explanations.UNKNOWN not in found.named:
         own = set(found.named)
         ranked = [Explanation("+".join(c.effects), c.log_bayes, c.fit) for c in found.combinations]
         ranked = sorted(ranked, key=lambda r: set(r.name.split("+")) != own)
         near = sum(2.0 * (ranked[0].weight - r.weight) < ALIKE for r in ranked[1:]) if ranked else 0
         return ranked[: 1 + min(max(_RIVALS, near), _ALIKE)]
     ranked = [Explanation(c.effect, c.log_bayes, c.fit) for c in found.candidates if c.gain > 0.0]
-    if len(found.named) == 1 and found.named[0] != "unknown":
+    if len(found.named) == 1 and found.named[0] != explanations.UNKNOWN:
         ranked = sorted(ranked, key=lambda r: r.name != found.named[0])
         members = set(alike[0]) if alike else set()
         near = [r for r in ranked if r.name in members]
         return near[: 1 + _ALIKE] if len(near) > 1 else ranked[: 1 + _RIVALS]
-    nothing = Explanation("none", 0.0, found.null)
+    nothing = Explanation(explanations.NONE, 0.0, found.null)
     return [nothing, *ranked[:_RIVALS]] if not found.named else ranked[: 1 + _RIVALS]
 
 
