@@ -16,7 +16,7 @@ from sonicvacuum.discover.judge.strained import ONLY_WITH
 from sonicvacuum.discover.verdict import write_json
 from sonicvacuum.effects import CATALOGUE, Catalogue, Effect, Source
 from sonicvacuum.figures import disagreement, discovery, posterior, raster
-from sonicvacuum.figures.drawing import Curve
+from sonicvacuum.figures.drawing import POINT, Curve, Text
 from sonicvacuum.files import InputError
 from sonicvacuum.physics import compiled
 from sonicvacuum.report import misfit, plots, record, words
@@ -203,6 +203,18 @@ def test_no_text_of_the_pictures_leaves_the_page(folders, kind):
     ]
     for drawing in filter(None, drawings):
         assert beyond_the_page(drawing) == []
+
+
+def test_what_a_trace_is_of_stands_where_nothing_is_drawn(folders):
+    """A pulse may be anywhere in a frame: the words stand above it, and below what is above them."""
+    page = discovery.traces(read_csv(folders["single"] / "traces.csv"), ["kuwabara-kono"])
+    frames = {m.clip for m in page.marks if isinstance(m, Curve) and m.clip}
+    names = [m for m in page.marks if isinstance(m, Text) and m.words in ("slow, g1", "fast, wall")]
+    assert len(frames) == 8 and len(names) == 2
+    for text in names:
+        for left, bottom, wide, high in frames:
+            beside = text.x < left or text.x > left + wide
+            assert beside or text.y >= bottom + high or text.y + text.size * POINT < bottom
 
 
 def test_sets_that_come_near_are_told_where_no_single_effect_does():

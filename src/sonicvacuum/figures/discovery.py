@@ -34,6 +34,7 @@ from sonicvacuum.tables import read_csv
 NOMINAL, EXTENDED = Stroke(ORANGE, 0.9, (3.5, 1.2)), Stroke(BLUE, 0.9)
 _MOST = 8
 _GRAIN = 1.6  # dot of a measured sample, points
+_APART = 17.0  # of panels of two runs, mm: room for the numbers and the label of an axis
 
 
 def draw(folder: Path, catalogue: Catalogue = CATALOGUE, png: bool = False) -> list[Path]:
@@ -80,14 +81,14 @@ def traces(table: list[dict[str, str]], named: list[str]) -> Drawing | None:
         return None
     chosen = list(dict.fromkeys((runs[0], runs[-1])))
     sensors = list(dict.fromkeys(r["sensor"] for r in table))[:4]
-    high = 34.0
+    high = 35.5
     page = Drawing(DOUBLE, 16.0 + high * len(sensors))
-    wide = (DOUBLE - 18.0 - 14.0 * (len(chosen) - 1) - 4.0) / len(chosen)
+    wide = (DOUBLE - 18.0 - _APART * (len(chosen) - 1) - 4.0) / len(chosen)
     for j, run in enumerate(chosen):
         for i, sensor in enumerate(sensors):
             part = [r for r in table if r["run"] == run and r["sensor"] == sensor]
-            left, bottom = 16.0 + j * (wide + 14.0), 11.0 + high * (len(sensors) - 1 - i)
-            _signal(page, (left, bottom + 12.0, wide, high - 16.0), part, f"{run}, {sensor}")
+            left, bottom = 16.0 + j * (wide + _APART), 11.0 + high * (len(sensors) - 1 - i)
+            _signal(page, (left, bottom + 12.0, wide, high - 17.5), part, f"{run}, {sensor}")
             _residual(page, (left, bottom, wide, 10.5), part, i == len(sensors) - 1)
     told = [(Dots(np.empty((0, 2)), _GRAIN * POINT, GREY), "measured"), (NOMINAL, "nominal")]
     if named:
@@ -122,7 +123,8 @@ def _signal(page, box, part, text):
         frame.curve(time, values, stroke)
     frame.bottom(numbers=False)
     frame.left(label_of(part[0].get("unit", "N")))
-    frame.note(0.02, 0.9, text, size=7.0, level="top")
+    # Above the frame: within it, a pulse may be anywhere.
+    frame.note(0.0, 1.0, text, size=7.0, level="bottom")
 
 
 def _residual(page, box, part, last):
