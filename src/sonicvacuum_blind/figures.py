@@ -39,10 +39,10 @@ CAPTIONS = {
     "pit": style.paragraph("""
         Posterior probability below the truth (PIT) of the parameters of effects hidden and named: its
         cumulative distribution (ECDF) less the diagonal, of all parameters together (a) and of each effect's
-        by a dashed line of its own (b), in units of the half width of the band. Grey: the band in which
+        by a line of its own (b), in units of the half width of the band. Grey area: the band in which
         correctly stated intervals stay in 95 % of studies, in (b) for all effects at once; orange: what
-        leaves it. Above the line, stated values are too large; above on the left and below on the right,
-        intervals are too narrow.
+        leaves it; named in (b): the four that come nearest to leaving it. Above the line, stated values are
+        too large; above on the left and below on the right, intervals are too narrow.
     """),
     "baselines": style.paragraph("""
         Simpler rules on the same records: (a) exact names of single hidden effects of all strengths and kinds
@@ -123,7 +123,7 @@ def accuracy(table: pandas.DataFrame) -> Figure:
         traces = table[(table.design == "traces") & (table.strength > 0)]
         axes = style.panel(figure, (14.0, 22.0, 88.0, 47.0))
         style.title(figure, 14.0, "(a) Traces, several speeds")
-        _shares(axes, traces.d_prime.to_numpy(float), traces, 1.02)
+        _shares(axes, traces.d_prime.to_numpy(float), traces, 1.065)
         axes.set_xscale("log")
         ticks = [s for s in (3, 5, 7.5, 10, 20, 50, 150, 500) if s < 1.3 * max(traces.d_prime, default=20.0)]
         axes.set_xticks(ticks, [f"{s:g}" for s in ticks])
@@ -225,17 +225,18 @@ def pit(table: pandas.DataFrame) -> Figure:
     with style.context():
         figure = style.canvas(style.DOUBLE, 78.0)
         groups = (filled[filled.effect == "all"], filled[filled.effect != "all"])
+        nearest = _nearest(groups[1])
+        looks = {"all": _LOOKS[0], **dict(zip(nearest, _LOOKS, strict=False))}
         for k, (rows, title) in enumerate(zip(groups, ("(a) All parameters", "(b) By effect"), strict=True)):
             axes = style.panel(figure, (17.0 + 84.0 * k, 12.0, 70.0, 58.0))
             style.title(figure, 17.0 + 84.0 * k, title)
             axes.axhspan(-1.0, 1.0, color=style.BAND, lw=0)
             for row in rows.itertuples():
+                far, look = row.inside == "no", looks.get(row.effect, _REST)
                 ecdf = np.array([0.0, *map(float, row.ecdf.split()), 1.0])
                 x = np.linspace(0.0, 1.0, len(ecdf))
-                far = row.inside == "no"
-                look = {"color": style.ORANGE if far else style.BLUE, "lw": 1.4 if far else 0.8}
                 y = (ecdf - x) / row.band
-                axes.plot(x, y, ls="-" if far or k == 0 else (0, (4, 1.5)), **look)
+                axes.plot(x, y, **(_LEAVES if far else look))
                 if far and k == 0:  # it may leave the band by less than is seen, or between the steps kept
                     _farthest(axes, x, y, row.distance / row.band)
                 if far and k:
@@ -243,12 +244,41 @@ def pit(table: pandas.DataFrame) -> Figure:
                     side = "bottom" if y[at] > 0.0 else "top"
                     axes.text(x[at], 1.03 * y[at], row.effect, fontsize=6.5, ha="center", va=side)
                     axes.margins(y=0.12)
+            if k and nearest:
+                _named(axes, {name: looks[name] for name in nearest})
             axes.axhline(0.0, color=style.GREY, lw=0.6)
             axes.set_xlim(0.0, 1.0)
             axes.set_xlabel("posterior probability below the truth")
             if k == 0:
                 axes.set_ylabel("(ECDF − diagonal) / half width of band")
     return figure
+
+
+# Of a curve that leaves its band, of those that come nearest to doing so, by dashes as well, and of the rest.
+_LEAVES = {"color": style.ORANGE, "lw": 1.4}
+_LOOKS = (
+    {"color": style.BLUE, "lw": 1.1},
+    {"color": style.PURPLE, "lw": 1.1, "ls": (0, (5, 1.5))},
+    {"color": style.GREEN, "lw": 1.1, "ls": (0, (5, 1.2, 1, 1.2))},
+    {"color": "black", "lw": 1.1, "ls": (0, (1.2, 1.2))},
+)
+_REST = {"color": style.GREY, "lw": 0.4, "zorder": 1.5}
+
+
+def _nearest(rows):
+    """Effects within their band that come nearest to its end, one for each look, the nearest first."""
+    within = rows[rows.inside != "no"]
+    reach = (within.distance / within.band).sort_values(ascending=False, kind="stable")
+    return list(within.effect[reach.index[: len(_LOOKS)]])
+
+
+def _named(axes, looks):
+    """Names of curves under the band and all that leaves it, where none is."""
+    low, high = axes.dataLim.intervaly
+    lines = [axes.plot([], [], label=name, **look)[0] for name, look in looks.items()]
+    axes.set_ylim(min(low, -1.0) - 0.5, max(1.12 * high, 1.1))
+    axes.set_yticks(np.linspace(-1.0, 1.0, 5))
+    axes.legend(handles=lines, loc="lower center", ncols=2, fontsize=6.5, borderaxespad=0.2)
 
 
 def _farthest(axes, x, y, ratio):

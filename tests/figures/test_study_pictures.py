@@ -124,6 +124,43 @@ def test_missing_tables_are_named(tmp_path):
         kept.read(tmp_path, ["baselines"])
 
 
+def test_the_curves_that_come_nearest_to_leaving_their_band_are_named_apart_from_each_other():
+    """Twenty-two lines of one look name none: each of four effects has a look of its own, the rest one."""
+    rows = [{"effect": "all", "count": 900, "distance": 0.02, "band": 0.04, "inside": "yes"}]
+    rows += [
+        {"effect": one, "count": 90, "distance": 0.001 * (k + 1), "band": 0.1, "inside": "yes"}
+        for k, one in enumerate(IDS)
+    ]
+    # One that leaves it is orange and named where it does, by as much as it goes.
+    rows.append({"effect": "own", "count": 90, "distance": 0.2, "band": 0.1, "inside": "no"})
+    for row in rows:
+        row["ecdf"] = " ".join(f"{k / 100 + row['distance'] * (k == 40):.4f}" for k in range(1, 100))
+    figure = study.pit(pandas.DataFrame(rows))
+    axes = figure.axes[1]
+    told = [text.get_text() for text in axes.get_legend().get_texts()]
+    assert told == IDS[:-5:-1]
+    lines = axes.get_legend().get_lines()
+    assert len({(one.get_color(), str(one._unscaled_dash_pattern)) for one in lines}) == 4
+    drawn = [one for one in axes.get_lines() if len(one.get_xdata()) > 2]
+    plain = [one for one in drawn if one.get_color() == study.style.GREY]
+    assert len(plain) == len(IDS) - 4 and len(drawn) == len(IDS) + 1
+    assert axes.get_ylim()[1] > 2.0  # the one that leaves it is seen whole
+    assert "own" in [text.get_text() for text in axes.texts]
+
+
+def test_marks_of_exact_and_class_level_names_do_not_lie_on_each_other(folder):
+    figure = drawn(folder, "accuracy")
+    for axes in figure.axes:
+        points = [
+            axes.transData.transform(np.column_stack([one.get_xdata(), one.get_ydata()]))
+            for one in axes.get_lines()
+            if one.get_marker() in ("o", "s")
+        ]
+        exact, level = points
+        wide = 4.0 * figure.dpi / 72.0  # of a mark, in pixels
+        assert (np.abs(exact - level)[:, 0] > wide).all()
+
+
 def test_a_curve_that_hardly_leaves_its_band_says_so():
     """One that leaves it by 0.2 % is orange, and looks as if it stayed."""
     ecdf = " ".join(f"{k / 100 - 0.02 * (k == 70):.4f}" for k in range(1, 100))

@@ -49,9 +49,9 @@ _TITLES = {"a": "(a) Coated beads", "b": "(b) Bare steel beads"}
 
 CAPTION = style.paragraph("""
 Speed between the gauges against contact force above rest. Marks: simulated, striker at 0.02 to 1 m/s (open:
-no weight); thick: Eq. (7); broken: Eq. (6). Red: printed speeds, 10 % bounds, at the force simulated there
-(with loss in (a)), open at the printed reading. Dotted: gauges read 3 N. The paper's points are not
-available.
+no weight); thin: marks joined; thick: Eq. (7); broken: Eq. (6). Red: printed speeds, 10 % bounds, at the
+force simulated there (with loss in (a)), open at the printed reading. Dotted: gauges read 3 N. The paper's
+points are not available.
 """)
 CRACKS = 3.0  # N, reading from which on the paper saw cracks
 # Striker of Fig. 3, m/s: where in the sweep the printed speeds stand.
