@@ -9,6 +9,7 @@ import pytest
 
 import sonicvacuum as sv
 from sonicvacuum import cli
+from sonicvacuum.figures import design as picture
 from sonicvacuum.prediction.design import _OPTIONS, GAIN, STRENGTH, TARGET, _place
 from sonicvacuum.prediction.design_text import content, text
 from sonicvacuum.prediction.setup import card_of
@@ -142,3 +143,14 @@ def test_the_command_prints_text_json_and_a_picture(monkeypatch, capsys, tmp_pat
             json.loads(json.dumps(wanted)) if more else wanted + "\n"
         )
         assert "<svg" in picture.read_text()
+
+
+def test_the_picture_says_what_its_line_and_band_mean(monkeypatch, droop_or_loss):
+    drawn = []
+    monkeypatch.setattr(picture, "save", lambda figure, path: drawn.append(figure))
+    picture.write(droop_or_loss, "seen.png")
+    (told,) = drawn[0].legends
+    words = [text.get_text() for text in told.get_texts()]
+    assert words == [f"{TARGET:g}: from here on effects count as told apart", "less: not told apart"]
+    low, high = told.get_window_extent().get_points()[:, 1]
+    assert all(high < axes.get_tightbbox().y0 for axes in drawn[0].axes) and low > 0.0

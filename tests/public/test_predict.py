@@ -8,6 +8,7 @@ import pytest
 
 import sonicvacuum as sv
 from sonicvacuum import cli
+from sonicvacuum.figures import prediction
 from sonicvacuum.materials import MATERIALS
 from sonicvacuum.prediction.setup import in_si
 from sonicvacuum.prediction.text import content, text
@@ -43,6 +44,21 @@ def test_arrivals_window_and_sampling_fit_together(seen):
     assert first.onset_us < first.arrival_us < second.arrival_us < wall.arrival_us
     assert seen.window_us[0] < 0.0 < wall.arrival_us < seen.window_us[1] < seen.echo_until_us
     assert seen.sampling_us == min(g.duration_half_us for g in seen.gauges) / 10
+
+
+def test_the_echo_has_passed_when_it_has_passed_the_gauge_farthest_from_the_wall(seen):
+    """What a gauge at the wall reads next has been at the top of the chain, and is no echo of the wall."""
+    first, _, wall = seen.gauges
+    back = 2.0 * wall.arrival_us - first.arrival_us  # at one speed both ways
+    assert seen.echo_until_us == pytest.approx(back + first.duration_us, rel=1e-9)
+    assert sv.predict(**STEEL, speed=0.5, gauges="wall").echo_until_us is None
+
+
+def test_the_picture_shades_first_pulses_and_the_echo_apart(seen):
+    first, echo = prediction._shaded(seen)
+    assert first[0] == seen.window_us and echo[0] == (seen.window_us[1], seen.echo_until_us)
+    assert first[1] > echo[1] and "first pulses" in first[2] and "echo" in echo[2]
+    assert "for a rest and the first pulse at every gauge; to" in text(seen)
 
 
 def test_the_aim_is_reached_and_its_speed_told():

@@ -1,5 +1,6 @@
-"""What each gauge of a chain will read over time, the window to record shaded."""
+"""What each gauge of a chain will read over time; shaded, what to record: first pulses, and the echo too."""
 
+import math
 from pathlib import Path
 
 from sonicvacuum.figures.style import (
@@ -22,7 +23,8 @@ from sonicvacuum.prediction.measure import ChainPrediction
 
 # Okabe and Ito's, in the order of the gauges.
 _COLORS = (BLUE, ORANGE, GREEN, PURPLE, "#E69F00", SKY, "#000000")
-_HEIGHT = 70.0
+# Without the names above the panel, and a row of these.
+_HEIGHT, _ROW, _ABREAST = 68.0, 5.0, 5
 
 
 def check_name(path) -> None:
@@ -35,20 +37,40 @@ def check_name(path) -> None:
     check_folder(Path(path).parent)
 
 
+def _shaded(prediction):
+    """What is shaded, how strongly, and what it is called. First pulses alone end before the echo does, which
+    may then be cut anywhere: that it is another choice has to be seen.
+    """
+    window, echo = prediction.window_us, prediction.echo_until_us
+    if not window:
+        return []
+    shaded = [(window, 1.0, "to record: rest and first pulses")]
+    return shaded + ([((window[1], echo), 0.45, "and for the wall's echo")] if echo else [])
+
+
+def _shown(prediction):
+    """First and last instant drawn: what is to be recorded, and more than first pulses where that is all."""
+    if not prediction.window_us:
+        return 0.0, prediction.time_us[-1]
+    first, last = prediction.window_us
+    return first, max(last, prediction.echo_until_us or 1.3 * last)
+
+
 def write(prediction: ChainPrediction, path) -> None:
     """Draw the readings and write them in the format that the path's ending names."""
     with context():
-        figure = canvas(DOUBLE, _HEIGHT)
-        axes = panel(figure, (16.0, 12.0, DOUBLE - 20.0, _HEIGHT - 16.0))
-        if prediction.window_us:
-            axes.axvspan(*prediction.window_us, color=BAND, lw=0, label="to be recorded")
+        shaded = _shaded(prediction)
+        rows = math.ceil((len(shaded) + len(prediction.readings_N)) / _ABREAST)
+        figure = canvas(DOUBLE, _HEIGHT + _ROW * rows)
+        axes = panel(figure, (16.0, 12.0, DOUBLE - 20.0, _HEIGHT - 14.0))
+        for window, opacity, label in shaded:
+            axes.axvspan(*window, color=BAND, alpha=opacity, lw=0, label=label)
         for k, (gauge, reading) in enumerate(prediction.readings_N.items()):
             label = f"bead {gauge}" if gauge.isdigit() else gauge
             axes.plot(prediction.time_us, reading, color=_COLORS[k % len(_COLORS)], lw=1.0, label=label)
-        first = prediction.window_us[0] if prediction.window_us else 0.0
-        last = prediction.echo_until_us or prediction.time_us[-1]
-        axes.set_xlim(first, max(last, prediction.window_us[1] if prediction.window_us else 0.0))
+        axes.set_xlim(*_shown(prediction))
         axes.set_xlabel("time after the impact (µs)")
         axes.set_ylabel("reading (N)")
-        axes.legend(loc="upper right")
+        # Above the panel, where neither curves nor shades are.
+        figure.legend(loc="upper center", ncols=_ABREAST, borderaxespad=0.3)
         save(figure, path)

@@ -77,7 +77,7 @@ class ChainPrediction:
         wave_speed_m_s: between the two gauges `speed_from` and `speed_to`, peak to peak.
         gauges: in the order asked for.
         window_us: first and last instant to record, the impact at 0: rest, and the last gauge's pulse.
-        echo_until_us: record until then to have the wall's reflection at every gauge as well.
+        echo_until_us: record until then to have the wall's reflection at every gauge in a bead as well.
         sampling_us: longest interval between samples that resolves the shortest pulse.
         time_us: (S,) times of the simulation.
         readings_N: gauge → (S,) readings.
@@ -299,7 +299,10 @@ def _window(seen):
 
 
 def _echo(clear, seen):
-    """Instant in us at which the wall's reflection has passed every gauge."""
-    times = [(measure_run("reflection_time", clear, sensor=g.gauge), g.duration_us) for g in seen]
+    """Instant in us at which the wall's reflection has passed every gauge; at the wall it is one pulse with
+    the first, and what comes there next comes from the top of the chain.
+    """
+    inside = [g for g in seen if clear.geometry.position(g.gauge) > 0.0]
+    times = [(measure_run("reflection_time", clear, sensor=g.gauge), g.duration_us) for g in inside]
     ends = [t.value * 1e6 + lasting for t, lasting in times if t.known and lasting is not None]
     return max(ends, default=None)

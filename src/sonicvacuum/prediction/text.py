@@ -37,8 +37,9 @@ def text(prediction: ChainPrediction) -> str:
     lines += ["", *_table(p), ""]
     if p.window_us:
         lines.append(
-            f"record from {p.window_us[0]:.0f} to {p.window_us[1]:.0f} us (impact at 0)"
-            + (f"; to {p.echo_until_us:.0f} us for the wall's echo at every gauge" if p.echo_until_us else "")
+            f"record from {p.window_us[0]:.0f} to {p.window_us[1]:.0f} us (impact at 0) for a rest and the "
+            "first pulse at every gauge"
+            + (f"; to {p.echo_until_us:.0f} us for the wall's echo as well" if p.echo_until_us else "")
         )
     if p.sampling_us:
         lines.append(
