@@ -54,6 +54,7 @@ class Parameter:
         linear: whether a positive parameter that is off at 0 is searched evenly, not by its logarithm.
         known: value, and its relative standard error, that a record states: where the effect acts the value
             lies within two of them. None: anything between low and high.
+        scatters: whether beads that differ in mass do the same, each within what the record allows.
         electronic: whether it is of the electronics, whose times do not go with those of the impact.
     """
 
@@ -73,6 +74,7 @@ class Parameter:
     bends: bool = False
     linear: bool = False
     known: tuple[float, float] | None = None
+    scatters: bool = False
     electronic: bool = False
 
     @property

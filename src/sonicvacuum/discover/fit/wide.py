@@ -14,6 +14,7 @@ import numpy as np
 
 from sonicvacuum.discover import policy
 from sonicvacuum.discover.correlation import correlated
+from sonicvacuum.discover.fit import unequal
 from sonicvacuum.discover.fit.enough import data
 from sonicvacuum.discover.fit.refit import Fit, fit, simulated
 from sonicvacuum.discover.model.forward import Forward
@@ -143,7 +144,7 @@ def nominal(forward: Forward, held: Hypothesis | None = None) -> Fit:
     """
     held = held or Hypothesis()
     start = np.zeros((1, forward.layout.size))
-    direct = fit(forward, held, np.zeros((1, 0)), start)
+    direct = unequal.lower(forward, fit(forward, held, np.zeros((1, 0)), start))
     if not leaves_much(forward, direct.objective):
         return direct
     tried = [direct, fit(forward, held, np.zeros((1, 0)), start, coarse=COARSE)]

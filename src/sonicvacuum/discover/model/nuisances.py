@@ -76,8 +76,11 @@ class Shared:
 
     @property
     def simulated(self) -> bool:
-        """Whether it needs a simulation of its own; the common speed takes that of the single ones."""
-        return self.acts and self.kind != "speed-common"
+        """Whether it needs a simulation of its own; the common speed takes that of the single ones, and
+        beads that weigh as stated take none.
+        """
+        empty = self.kind == SCATTER and not any(self.weights)
+        return self.acts and self.kind != "speed-common" and not empty
 
     @property
     def acts(self) -> bool:
@@ -182,6 +185,11 @@ class Layout:
         """Places of those that take a simulation of their own each: moduli, masses, sizes."""
         own = [self.modulus + 1 + k for k, one in enumerate(self.others) if one.simulated]
         return [self.modulus, *own]
+
+    @cached_property
+    def empty(self) -> list[int]:
+        """Places of those that change nothing."""
+        return [k for k in self.other(SCATTER) if k not in self.simulated]
 
     @cached_property
     def of_chain(self) -> list[int]:

@@ -3,8 +3,8 @@
 A tolerance says how well a bead's mass is known, of all beads in common (a balance that is off) and of each
 one beside the others. What single beads change adds up to few shapes of the traces: of the slopes to all
 masses at the nominal model, without what all beads have in common and what other nuisances take up, the
-directions of the largest singular values are nuisances of their own (`Shared` of the kind "bead-scatter"),
-with the prior of the masses, which is the same in whatever directions it is counted.
+directions that the data show are nuisances of their own (`Shared` of the kind "bead-scatter"), with the prior
+of the masses, which is the same in whatever directions it is counted.
 """
 
 from dataclasses import replace
@@ -15,8 +15,11 @@ from sonicvacuum.discover.model.experiment import Experiment
 from sonicvacuum.discover.model.hypothesis import Hypothesis
 from sonicvacuum.discover.model.nuisances import SCATTER, Shared
 
-# As many directions in every data set, so that a record that is put right has the nuisances that it had.
-DIRECTIONS = 8
+# As many places in every data set, so that a record that is put right has the nuisances that it had; those of
+# directions that the data do not show are empty.
+DIRECTIONS = 24
+# What directions without a place of their own may add to chi2 together, on average.
+UNSEEN = 0.5
 
 
 def scattered(data: Experiment) -> Experiment:
@@ -28,15 +31,15 @@ def scattered(data: Experiment) -> Experiment:
         return data
     each = tuple(Shared(SCATTER, sigma, weights=tuple(row)) for row in np.eye(data.beads))
     trial = replace(data, shared=(*data.shared, *each))
-    directions = _directions(trial, len(each))[: min(DIRECTIONS, data.beads - 1)]
+    directions = _directions(trial, len(each))[:DIRECTIONS]
     missing = np.zeros((DIRECTIONS - len(directions), data.beads))
     own = (tuple(map(float, row)) for row in np.concatenate([directions, missing]))
     return replace(data, shared=(*data.shared, *(Shared(SCATTER, sigma, weights=row) for row in own)))
 
 
 def _directions(trial, beads):
-    """(beads, beads) orthonormal, first what the data show best beside all else that is not known, last what
-    all beads have in common.
+    """(n, beads) orthonormal, first what the data show best beside all else that is not known, but for what
+    they do not show; what all beads have in common is not among them.
     """
     from sonicvacuum.discover.model.forward import Forward
 
@@ -54,4 +57,7 @@ def _directions(trial, beads):
     left = own @ own.T - across.T @ inverse @ across
     contrasts = np.eye(beads) - 1.0 / beads
     values, vectors = np.linalg.eigh(contrasts @ left @ contrasts)
-    return vectors.T[np.argsort(values)[::-1]]
+    order = np.argsort(values)[::-1][:-1]
+    # An eigenvalue is what a direction adds to chi2 on average, if its mass scatters by the tolerance.
+    rest = np.cumsum(values[order][::-1])[::-1]
+    return vectors.T[order[rest > UNSEEN]]

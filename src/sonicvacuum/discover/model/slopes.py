@@ -45,6 +45,7 @@ class Slopes:
         if held is None:
             changes |= {place: slopes[:, p + k] for k, place in enumerate(self.layout.simulated)}
             changes |= dict.fromkeys(speeds, slopes[:, -1])
+        changes |= dict.fromkeys(self.layout.empty, np.zeros(()))
         for k, place in enumerate(local):
             if held is not None and (place in self.layout.simulated or place in speeds):
                 nuisances[:, k] = held[:, k]

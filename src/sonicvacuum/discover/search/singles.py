@@ -16,7 +16,16 @@ from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, of_one_strength, variants
 from sonicvacuum.discover.search import restart, secants
 from sonicvacuum.discover.search.screen import Screen
-from sonicvacuum.discover.search.starts import CLEAR, along, coordinates, kept, setup_of, starts_of, within
+from sonicvacuum.discover.search.starts import (
+    CLEAR,
+    along,
+    coordinates,
+    kept,
+    setup_of,
+    starts_of,
+    strayed,
+    within,
+)
 from sonicvacuum.effects import Effect, Setup
 
 # Beyond this misfit of the nominal model (in χ²) its slopes may point the wrong way: whole ranges are
@@ -74,7 +83,7 @@ def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
         found = _all_over(forward, null, scores, found, left, setup)
         return ranked(found, forward.experiment.prior_odds)
     found: list[Candidate] = []
-    best_gain, err = largest, ERR
+    best_gain, err, odd = largest, ERR, bool(strayed(forward, null))
 
     def follow(branch, effect):
         far = effect.id in best and abs(scores.strength[best[effect.id]]) > FAR
@@ -87,7 +96,7 @@ def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
 
     while left:
         # Places and strengths may not keep what slopes promise: others are measured against what was found.
-        always = [e for e in left if secants.applies(e) and largest > CLEAR]
+        always = [e for e in left if (secants.applies(e) and largest > CLEAR) or (odd and _scatters(e))]
         chosen = left if loose else [e for e in left if e in always or _promises(e, gains, err, best_gain)]
         found += abreast.each(forward, follow, chosen, "single effects")
         left = [e for e in left if e not in chosen]
@@ -104,6 +113,11 @@ def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
             break
     found = _all_over(forward, null, scores, [c for c in found if c is not None], left, setup)
     return ranked(found, forward.experiment.prior_odds)
+
+
+def _scatters(effect: Effect) -> bool:
+    """Whether beads that differ within what the record allows do the same as the effect."""
+    return any(p.scatters for p in effect.parameters)
 
 
 def _promises(effect: Effect, gains: dict[str, float], err: float, best: float) -> bool:

@@ -7,6 +7,7 @@ import numpy as np
 from sonicvacuum.discover.fit import wide
 from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.model.nuisances import SCATTER
 from sonicvacuum.discover.search import secants
 from sonicvacuum.discover.search.screen import Screen
 from sonicvacuum.effects import Effect, Setup
@@ -14,6 +15,8 @@ from sonicvacuum.effects import Effect, Setup
 # Below this largest z² nothing can be named, and slopes suffice.
 CLEAR = 9.0
 PLACES_TRIED = 5
+# Beads that the nominal model makes lighter or heavier than stated: so many, by so many standard errors.
+STRAYS, STRAYED = 2, 3.0
 
 
 def setup_of(forward: Forward) -> Setup:
@@ -31,12 +34,36 @@ def starts_of(forward, null: Fit, scores: Screen, effect: Effect, free, grid: bo
         finite = secants.search(forward, null, effect, setup_of(forward))
     names = tuple(c.parameter.name for c in free)
     rows += [(list(one.u), one.place, one.nu) for one in finite or () if one.free == names]
+    if len(free) == 1 and free[0].parameter.scatters:
+        rows += [([free[0].inverse(ratio)], bead, nu) for ratio, bead, nu in strayed(forward, null)]
     if grid:
         nuisances = wide.minima(forward, null)
         rows += [(*row, nu) for row in _grid(scores, effect, free) for nu in nuisances]
     u = within(free, [r[0] for r in rows])
     places = np.array([[r[1] or 0] for r in rows]) if effect.places else None
     return u, places, np.array([r[2] for r in rows]).reshape(len(rows), forward.layout.size)
+
+
+def strayed(forward: Forward, null: Fit) -> list[tuple[float, int, np.ndarray]]:
+    """Beads that the nominal model has to make lighter or heavier than stated: the mass of each over that,
+    its number, and the (q,) nuisances without it. That one bead is so may be no misfit any more.
+    """
+    layout = forward.layout
+    at = np.array([k for k in layout.other(SCATTER) if k in layout.simulated], dtype=int)
+    if not len(at):
+        return []
+    weights = np.array([layout.others[k - layout.modulus - 1].weights for k in at])
+    score = null.nu[at] @ weights
+    rows = []
+    for bead in np.argsort(-np.abs(score), kind="stable")[:STRAYS]:
+        if abs(score[bead]) > STRAYED:
+            nu = null.nu.copy()
+            nu[at] -= weights[:, bead] * score[bead]
+            # Of one bead's mass a part is what all have in common, which no direction has.
+            nu[layout.other("bead-mass")] -= score[bead] / weights.shape[1]
+            ratio = float(np.exp(score[bead] * forward.nuisance_sigma[at[0]]))
+            rows.append((ratio, int(bead) + 1, nu))
+    return rows
 
 
 def within(free, rows) -> np.ndarray:
