@@ -218,9 +218,9 @@ def _named(inner, content, kind, text):
 
 def _with_value(content, inner, value):
     """A copy of nested mappings and lists with another value at a place."""
-    first, _, rest = inner.partition(".")
     if not inner:
         return value
+    first, rest = re.fullmatch(r"[.\[]*([^.\[\]]+)\]?(.*)", inner).groups()
     if isinstance(content, list):
         return [_with_value(c, rest, value) if str(k) == first else c for k, c in enumerate(content)]
     return content | {first: _with_value(content[first], rest, value)}

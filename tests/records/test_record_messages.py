@@ -78,6 +78,8 @@ WRONG_OBSERVABLES = [
     ({"unit": "km/h"}, ["unit", "'km/h'", "given in m/s"]),
     ({"bound": "below"}, ["bound", "'below'"]),
     ({"shared": {"places": 4.1}}, ["shared.places", "4.1", "fraction"]),
+    ({"shared": {"gauge": 0.1, "places": "4%"}}, ["shared.places", "'4%'", "float"]),
+    ({"shared": {"places": -0.1}}, ["shared.places", "-0.1", ">"]),
     (
         SCALARS[4] | {"from": None, "to": None, "shared": {"places": 0.1}},
         ["shared", "a count has no relative error"],
