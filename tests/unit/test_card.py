@@ -196,6 +196,7 @@ def test_what_no_laboratory_has_is_refused_as_in_records(tmp_path, path, value, 
 DAMAGED_CARDS = [
     (["striker", "aim"], {"sensor": "g7", "amplitude_N": 1.0}, "striker.aim.sensor.*'g7'"),
     (["sensors", 0, "bead"], 6, r"sensors\[0\].bead.*5 beads"),
+    (["sensors", 0, "bead"], 0, r"sensors\[0\].bead: is 0.*5 beads, counted from 1"),
     (["sensors", 0, "bead"], None, r"sensors\[0\].bead"),
     (["sensors", 1, "id"], "g1", r"sensors\[1\].id.*'g1'"),
     (["sensors", 1, "id"], "wall\n", r"sensors\[1\].id"),

@@ -175,8 +175,8 @@ def misplaced(kind: str, bead: int | None, beads: int) -> str | None:
         return f"missing; {article} {kind} sensor needs the number of its bead"
     if not what.in_bead and bead is not None:
         return f"is {bead}; the {kind} sensor sits in no bead: drop the key"
-    if bead is not None and bead > beads:
-        return f"is {bead}; the chain has {beads} beads"
+    if bead is not None and not 1 <= bead <= beads:
+        return f"is {bead}; the chain has {beads} beads, counted from 1, the struck one"
     return None
 
 

@@ -73,8 +73,7 @@ def _check_sensors(block):
         if s.kind not in KINDS:
             raise LaboratoryError(f"{key}.kind", f"is {s.kind!r}; write {' or '.join(KINDS)}")
         if problem := misplaced(s.kind, s.bead, beads):
-            counted = ", counted from the struck one" if "the chain has" in problem else ""
-            raise LaboratoryError(f"{key}.bead", problem + counted)
+            raise LaboratoryError(f"{key}.bead", problem)
         if s.gain_rel_sigma != "unknown":
             ranges.RELATIVE.check(f"{key}.gain_rel_sigma", s.gain_rel_sigma)
         ranges.TRIGGER.check(f"{key}.delay_sigma_us", s.delay_sigma_us)
