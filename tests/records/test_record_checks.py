@@ -2,6 +2,7 @@
 
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import msgspec
@@ -59,6 +60,13 @@ def test_suspicious_trace(name):
     change, said = SUSPICIOUS[name]
     found = warnings(altered(change))
     assert any(said in line and "run fast" in line for line in found), found
+
+
+def test_a_trace_below_zero_of_a_gauge_without_a_stated_noise_is_upside_down():
+    record = altered(one(lambda f: -abs(f) - 1.0))
+    sensors = [msgspec.structs.replace(s, sigma_N=None) for s in record.block.sensors]
+    found = warnings(replace(record, block=msgspec.structs.replace(record.block, sensors=sensors)))
+    assert any("run fast, near" in line and "is the sign right" in line for line in found), found
 
 
 SUSPICIOUS_KEYS = [

@@ -145,7 +145,7 @@ def _traces(record, run, contact):
 def _trace(run, gauge, name):
     force = run.signals.readings[gauge.id]
     top, bottom = float(force.max()), float(force.min())
-    if top < WEAK * gauge.sigma:
+    if gauge.sigma > 0.0 and top < WEAK * gauge.sigma:  # without a noise, what is below 0 is no weak peak
         yield f"{name}: the peak, {top:.3g} {gauge.unit}, is only {top / gauge.sigma:.2g} times the noise"
     if gauge.unit == "N" and -bottom > max(top, ONSET * gauge.sigma):
         yield (
