@@ -75,21 +75,31 @@ def draw(folder: Path, catalogue: Catalogue = CATALOGUE, png: bool = False) -> l
 def traces(table: list[dict[str, str]], named: list[str]) -> Drawing | None:
     """Measured and predicted traces with residuals below, for the first and the last run; None without
     traces.
+
+    Four gauges at most, those first that both runs have. A run may lack one, or have none of its samples
+    believed: that is said in its place.
     """
-    runs = list(dict.fromkeys(r["run"] for r in table))
-    if not runs:
+    if not table:
         return None
-    chosen = list(dict.fromkeys((runs[0], runs[-1])))
-    sensors = list(dict.fromkeys(r["sensor"] for r in table))[:4]
+    chosen = list(dict.fromkeys((table[0]["run"], table[-1]["run"])))
+    panels: dict[tuple[str, str], list] = {}
+    for row in table:
+        panels.setdefault((row["run"], row["sensor"]), []).append(row)
+    sensors = list(dict.fromkeys(sensor for run, sensor in panels if run in chosen))
+    kept = sorted(sensors, key=lambda s: sum((run, s) not in panels for run in chosen))[:4]
+    sensors = [s for s in sensors if s in kept]
+    last = {run: next((s for s in reversed(sensors) if (run, s) in panels), None) for run in chosen}
     high = 35.5
     page = Drawing(DOUBLE, 16.0 + high * len(sensors))
     wide = (DOUBLE - 18.0 - _APART * (len(chosen) - 1) - 4.0) / len(chosen)
     for j, run in enumerate(chosen):
         for i, sensor in enumerate(sensors):
-            part = [r for r in table if r["run"] == run and r["sensor"] == sensor]
             left, bottom = 16.0 + j * (wide + _APART), 11.0 + high * (len(sensors) - 1 - i)
+            if not (part := panels.get((run, sensor))):
+                page.add(Text(left, bottom + 0.5 * high, f"{run}, {sensor}: no trace", 7.0, GREY))
+                continue
             _signal(page, (left, bottom + 12.0, wide, high - 17.5), part, f"{run}, {sensor}")
-            _residual(page, (left, bottom, wide, 10.5), part, i == len(sensors) - 1)
+            _residual(page, (left, bottom, wide, 10.5), part, sensor == last[run])
     told = [(Dots(np.empty((0, 2)), _GRAIN * POINT, GREY), "measured"), (NOMINAL, "nominal")]
     if named:
         told.append((EXTENDED, "nearest model" if named == ["unknown"] else " + ".join(named)))

@@ -33,11 +33,17 @@ _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 @dataclass(frozen=True)
 class Scale:
-    """Values from `low` to `high` along an axis, logarithmic or not."""
+    """Values from `low` to `high` along an axis, logarithmic or not; about one alone, where both are that."""
 
     low: float
     high: float
     log: bool = False
+
+    def __post_init__(self):
+        if self.low == self.high:
+            low, high = _about(self.low, self.log)
+            object.__setattr__(self, "low", low)
+            object.__setattr__(self, "high", high)
 
     @classmethod
     def over(cls, values, room: float = 0.05, log: bool = False) -> "Scale":
@@ -45,10 +51,12 @@ class Scale:
         known = np.asarray(values, dtype=float)
         known = known[np.isfinite(known) & ((known > 0.0) | (not log))]
         low, high = (float(known.min()), float(known.max())) if len(known) else (1.0, 10.0)
+        if low == high:
+            return cls(low, high, log)
         if log:
-            more = (high / low) ** room if high > low else 2.0
+            more = (high / low) ** room
             return cls(low / more, high * more, True)
-        more = room * (high - low) or 0.05 * abs(high) or 1.0
+        more = room * (high - low)
         return cls(low - more, high + more)
 
     def at(self, values) -> np.ndarray:
@@ -83,6 +91,14 @@ class Scale:
         first, last = math.ceil(math.log10(self.low) - 1e-9), math.floor(math.log10(self.high) + 1e-9)
         every = max(1, math.ceil((last - first + 1) / most))
         return [(10.0**k, _power(k)) for k in range(first, last + 1, every)]
+
+
+def _about(value, log):
+    """Ends of an axis on which one value alone stands."""
+    if log:
+        return value / 2.0, value * 2.0
+    more = 0.05 * abs(value) or 1.0
+    return value - more, value + more
 
 
 def _signed(text):
