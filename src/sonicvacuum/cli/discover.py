@@ -44,7 +44,8 @@ def discover(records, out, together, figures, threads, own, quiet, no_limits):
 
     One record is written to OUT; of several each has its own folder OUT/<folder name>, and as many are
     searched at a time as there are threads. All of them are read before the first is searched; one whose
-    search fails is told of, and the others go on. On a terminal, a line shows how far the search is.
+    search fails is told of, and the others go on. A verdict whose pictures fail is written without them, and
+    that is told. On a terminal, a line shows how far the search is.
     """
     from sonicvacuum.discover.model import window
     from sonicvacuum.records import read
@@ -69,30 +70,35 @@ def discover(records, out, together, figures, threads, own, quiet, no_limits):
     if len(groups) == 1:
         (folder, paths), *_ = groups.items()
         with stages_shown(", ".join(paths), quiet):
-            told = _search([kept[p] for p in paths], folder, known, figures, threads, not no_limits)
-        _tell(paths, *told, quiet)
+            found = _search([kept[p] for p in paths], folder, known, figures, threads, not no_limits)
+        _tell(paths, found, quiet)
+        if found.undrawn:
+            sys.exit(1)
         return
     processes = min(threads, len(groups))
     how = (own, figures, threads // processes, not no_limits)
-    failed = []
+    failed, undrawn = [], 0
     for paths, outcome in zip(groups.values(), _outcomes(groups, processes, how, quiet), strict=True):
         if isinstance(outcome, Failure):
             click.echo(outcome.told(", ".join(paths)), err=True)
             failed.append(outcome)
         else:
-            _tell(paths, *outcome, quiet)
-    if failed:
-        click.echo(f"Error: {len(failed)} of {len(groups)} searches failed, as told above", err=True)
-        sys.exit(1 if any(f.broken for f in failed) else 2)
+            _tell(paths, outcome, quiet)
+            undrawn += bool(outcome.undrawn)
+    if failed or undrawn:
+        told = [f"{len(failed)} of {len(groups)} searches failed"] if failed else []
+        told += [f"{undrawn} of {len(groups)} verdicts have no pictures"] if undrawn else []
+        click.echo(f"Error: {', '.join(told)}, as told above", err=True)
+        sys.exit(1 if undrawn or any(f.broken for f in failed) else 2)
 
 
 @dataclass(frozen=True)
 class Failure:
-    """How the search of one record among several ended.
+    """What went wrong with one record: its search among several, or the pictures of its verdict.
 
     Attributes:
         error: the message.
-        broken: the traceback where the program is to blame; empty where the record is.
+        broken: the traceback where the program is to blame; empty where the record or the machine is.
     """
 
     error: str
@@ -103,8 +109,23 @@ class Failure:
         return self.broken + "Error: " + in_one_line(f"{paths}: {self.error}")
 
 
+@dataclass(frozen=True)
+class Found:
+    """What is told of one search that came to a verdict.
+
+    Attributes:
+        notes: what was done to the traces before anything else.
+        sentence: the verdict in words.
+        undrawn: why it stands without pictures and page; None where nothing failed.
+    """
+
+    notes: tuple[str, ...]
+    sentence: str
+    undrawn: Failure | None = None
+
+
 def _outcomes(groups, processes, how, quiet):
-    """Of each search its notes and sentence, or its Failure; in their order, as they end."""
+    """Of each search what it Found, or its Failure; in their order, as they end."""
     if processes == 1:
         for folder, paths in groups.items():
             with stages_shown(", ".join(paths), quiet):
@@ -142,23 +163,50 @@ def _attempt(paths, folder, own, figures, threads, limits):
 
 
 def _search(records, folder, known, figures, threads, limits):
-    """Search records, write what is found; notes and verdict in words."""
-    from sonicvacuum.cli.page import illustrate, page_files
+    """Search records, write what is found; what is told of it."""
     from sonicvacuum.discover import session
     from sonicvacuum.outputs import renewed
 
     result = session.discover(*records, threads=threads, catalogue=known, limits=limits)
-    stale = (*page_files(), "law.csv", "posterior.csv")
-    with renewed(folder, last="verdict.json", stale=stale) as fresh:
+    with renewed(folder, last="verdict.json", stale=sometimes()) as fresh:
         session.write(result, fresh)
-        if figures:
-            illustrate(fresh, known)
-    return result.notes, _sentence(result.verdict)
+        undrawn = _draw(fresh, folder, known) if figures else None
+    return Found(result.notes, _sentence(result.verdict), undrawn)
 
 
-def _tell(paths, notes, sentence, quiet):
-    for line in (*(() if quiet else notes), sentence):
+def sometimes() -> tuple[str, ...]:
+    """Names of the files that not every verdict has; those of an earlier one would stand beside this one."""
+    from sonicvacuum.cli.page import page_files
+    from sonicvacuum.discover import draws, quantities
+
+    return (*page_files(), draws.FILE, quantities.FILE, "law.csv")
+
+
+def _draw(fresh, folder, known):
+    """Draw the pictures and write the page of what is to stand in `folder`; the Failure where that fails.
+
+    The verdict took minutes and holds without them: then none of them is left, and all else is.
+    """
+    from sonicvacuum.cli.page import illustrate, page_files
+
+    try:
+        illustrate(fresh, known)
+    except Exception as error:
+        for name in page_files():
+            (fresh / name).unlink(missing_ok=True)
+        machine = isinstance(error, OSError | MemoryError)
+        why = f"{type(error).__name__}: {getattr(error, 'strerror', None) or error}"
+        cure = f"make them with sonicvacuum page {folder}" if machine else "please report it with the record"
+        told = f"{folder} holds the verdict without pictures and page, which failed ({why}); {cure}"
+        return Failure(told, "" if machine else traceback.format_exc())
+    return None
+
+
+def _tell(paths, found, quiet):
+    for line in (*(() if quiet else found.notes), found.sentence):
         click.echo(in_one_line(f"{', '.join(paths)}: {line}"))
+    if found.undrawn:
+        click.echo(found.undrawn.told(", ".join(paths)), err=True)
 
 
 def _folders(records, out):
