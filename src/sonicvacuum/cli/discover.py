@@ -51,6 +51,7 @@ def discover(records, out, together, figures, threads, own, quiet, no_limits):
     from sonicvacuum.records import read
     from sonicvacuum.records.extent import check_extent
     from sonicvacuum.records.guard import check_out
+    from sonicvacuum.records.record import check_distinct
 
     known = catalogue(own)
     groups = {Path(out): records} if together else {f: (p,) for p, f in _folders(records, Path(out)).items()}
@@ -68,6 +69,7 @@ def discover(records, out, together, figures, threads, own, quiet, no_limits):
 
     threads = threads or available_threads()
     if len(groups) == 1:
+        check_distinct([kept[p] for p in records], records)
         (folder, paths), *_ = groups.items()
         with stages_shown(", ".join(paths), quiet):
             found = _search([kept[p] for p in paths], folder, known, figures, threads, not no_limits)

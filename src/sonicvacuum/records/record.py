@@ -4,12 +4,14 @@ The blocks stay the truth, so that what is read is what is written; SI values ar
 """
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import combinations, product
 from typing import Any
 
 import msgspec
+import numpy as np
 
 from sonicvacuum.files import InputError
 from sonicvacuum.gauges import KINDS, Gauge
@@ -244,10 +246,36 @@ def observable(block) -> Observable:
     return Observable(quantity, block.value * scale, sigma * scale, options, block.bound, dict(block.shared))
 
 
-def check_records(given: Iterable[Any], place: str) -> None:
-    """InputError for no record, or anything else in place of one, a folder's path above all."""
+def check_records(given: Sequence[Any], place: str) -> None:
+    """InputError for no record, for what is none (a folder's path above all), and for one and its copy."""
     if not given:
         raise InputError(f"{place}: is given no record; give at least one, as in {place}(read(folder))")
     for one in given:
         if not isinstance(one, Record):
             raise InputError(f"{place}: is given {one!r:.100} as a record; give what sv.read(folder) returns")
+    check_distinct(given, [one.name for one in given])
+
+
+def check_distinct(records: Sequence[Record], names: Sequence[str]) -> None:
+    """InputError where one of several records is another, be it under another name, or holds a run of it.
+
+    Taken together their data would count twice, and every error come out too small.
+    """
+    for (one, name), (other, second) in combinations(zip(records, names, strict=True), 2):
+        if one is other or (one.digest and one.digest == other.digest):
+            raise InputError(
+                f"{second}: holds the same data as {name}, which would count twice; give one of them"
+            )
+        for run, earlier in product(other.signals, one.signals):
+            if _same(one.signals[earlier].readings, other.signals[run].readings):
+                raise InputError(
+                    f"{second}: run {run} holds the same samples as run {earlier} of {name}, which would "
+                    "count twice; leave it out of one of them"
+                )
+
+
+def _same(one, other):
+    """Whether two runs read the same in all gauges that both have, and anything at all."""
+    common = [id for id in one if id in other]
+    equal = all(np.array_equal(one[id], other[id]) for id in common)
+    return equal and any(np.ptp(one[id]) > 0.0 for id in common)
