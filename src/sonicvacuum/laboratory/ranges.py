@@ -18,6 +18,9 @@ LIKELY_DENSITY = (500.0, 20000.0)
 TABLE_FACTOR = 100.0
 # No recorder is finer, whatever it counts in; errors far below make ratios that are no numbers.
 FINEST = 1e-15
+# Largest reading of a gauge, whatever it counts in: a thousand times the least noise that a search tells from
+# none, and a thousand times the largest error.
+READING = (1e-9, 1e15)
 # Largest force of a record over that of the same impact on one contact.
 FORCE = (3e-3, 100.0)
 # Over the contact time: a duration, the whole record, one sampling interval.

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from sonicvacuum.files import InputError, check_values, convert, in_one_line, read_yaml
 from sonicvacuum.laboratory.checks import TIME
-from sonicvacuum.laboratory.ranges import FORCE, LONGEST_INTERVAL, SHORTEST_RECORD, LaboratoryError
+from sonicvacuum.laboratory.ranges import FORCE, LONGEST_INTERVAL, READING, SHORTEST_RECORD, LaboratoryError
 from sonicvacuum.outputs import cut_off
 from sonicvacuum.physics.scales import impact_scales
 from sonicvacuum.records import signals
@@ -18,6 +18,9 @@ from sonicvacuum.records.validate import validate
 from sonicvacuum.schema_errors import likely
 
 FILE = "record.yaml"
+# A trace that reaches so many stated standard deviations shows more than noise.
+CLEAR = 10.0
+_TOO_SMALL = ("smaller", " only", ", or write 0 where nothing was read")
 _NAME = "use letters, digits and _ . + - only (a to z, A to Z, 0 to 9), a letter or digit first"
 _CURES = {
     "format": "this program reads format: 1",
@@ -61,6 +64,7 @@ def read(path) -> Record:
     for run in block.runs:
         if run.signals:
             check_scales(record, run.id, folder / run.signals)
+    _check_readings(record, folder)
     return record
 
 
@@ -148,10 +152,28 @@ def check_scales(record: Record, run: str, path) -> None:
             f"{path}: forces reach {peak:.3g} N, while {expected}: they look like {unit}; convert them to N, "
             "or correct the striker in record.yaml"
         )
-    if 0.0 < peak < FORCE[0] * force and peak > 10.0 * _noise(record):
+    if 0.0 < peak < FORCE[0] * force and peak > CLEAR * _noise(record):
         raise InputError(
             f"{path}: forces reach {peak:.3g} N only, while {expected}: they look like kN or volts; convert "
             "them to N, or correct the striker in record.yaml"
+        )
+
+
+def _check_readings(record, folder):
+    """InputError for a gauge whose peaks are so large or small that squares, or noise, are no numbers."""
+    files = {run.id: folder / run.signals for run in record.block.runs if run.signals}
+    low, high = READING
+    for gauge in record.gauges:
+        recorded = {run: s.readings[gauge.id] for run, s in record.signals.items() if gauge.id in s.readings}
+        peak, run = max(((float(abs(r).max()), run) for run, r in recorded.items()), default=(0.0, ""))
+        # A channel that shows nothing but its stated noise may show as little as it likes.
+        if low <= peak <= high or peak <= CLEAR * gauge.sigma:
+            continue
+        way, only, dead = ("larger", "", "") if peak > high else _TOO_SMALL
+        unit = gauge.unit if gauge.calibrated else f"a {way} unit"
+        raise InputError(
+            f"{files[run]}, column {gauge.id}: readings reach {peak:.3g}{only}; their peak must lie between "
+            f"{low:g} and {high:g}: convert them to {unit}{dead}"
         )
 
 
