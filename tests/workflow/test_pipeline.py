@@ -15,6 +15,7 @@ from collections import Counter
 from pathlib import Path
 
 import pytest
+import yaml
 from ball import RECORD
 from click.testing import CliRunner
 from planner import Planner
@@ -184,6 +185,23 @@ def test_adding_a_case_runs_that_case_alone(project, planned):
 def test_new_data_are_looked_into_and_change_the_cases_that_take_their_model(project, planned):
     (project / "records/ball/record.yaml").write_text(RECORD.replace("0.99", "0.98"))
     assert planned(project) == FOUND
+
+
+def test_traces_are_watched_whatever_their_files_are_called_and_nothing_beside_them(project, snakemake):
+    folder = project / "records/ball"
+    for name in ("shot.txt", "shot.csv", "notes.csv"):
+        (folder / name).write_text("time_us,wall\n")
+    named = [{"signals": name} for name in ("shot.txt", "shot.csv", "missing.csv", 7, None)]
+    for text, watched in (
+        (yaml.safe_dump({"runs": [*named, "none"]}), ["record.yaml", "shot.csv", "shot.txt"]),
+        (yaml.safe_dump({"runs": 3}), ["record.yaml"]),
+        ("runs: [", ["record.yaml"]),  # what is wrong with it is told by the job, and by that alone
+    ):
+        (folder / "record.yaml").write_text(text)
+        done = snakemake(project, "--dry-run", "results/discover/ball/verdict.json")
+        assert done.returncode == 0, done.said
+        newer = re.search(r"Updated input files: ([^;\n]+)", done.said)[1].split(", ")
+        assert sorted(newer) == [f"records/ball/{name}" for name in watched]
 
 
 def test_an_edit_of_the_wording_discovers_nothing_anew(project, planned):

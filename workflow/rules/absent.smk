@@ -20,4 +20,4 @@ def sources(*_, **__):
     return refused
 
 
-resolved = model_of = drawn = Caption = text = refused
+resolved = traces_of = model_of = drawn = Caption = text = refused

@@ -69,6 +69,6 @@ def place(wildcards, output):
 
 
 def record_files(wildcards):
-    """What discover reads of a record."""
+    """What discover reads of a record: the traces that it names, whatever they are called, and nothing else."""
     folder = Path(RECORDS[wildcards.record])
-    return sorted(str(path) for kind in ("*.yaml", "*.csv") for path in folder.glob(kind))
+    return [str(folder / name) for name in ("record.yaml", *traces_of(folder))]

@@ -6,7 +6,7 @@ import msgspec
 
 from sonicvacuum import config as configuration
 from sonicvacuum.cli.sources import digest
-from sonicvacuum.files import InputError
+from sonicvacuum.files import InputError, read_yaml
 from sonicvacuum_blind import kept
 from sonicvacuum_paper.figures import caption, cards_of, drawable, names
 from sonicvacuum_paper.shown import ANIMATIONS, own
@@ -46,6 +46,16 @@ def resolved(cards):
         part(CONFIG, *name.split(".")) for name in cards for part in (configuration.card, configuration.model)
     ]
     return text(*parts)
+
+
+def traces_of(folder):
+    """Files of traces that a record names and has; of one that is not sound its job tells what is wrong."""
+    try:
+        runs = read_yaml(folder / "record.yaml").get("runs")
+    except InputError:
+        return []
+    found = [run.get("signals") for run in runs if isinstance(run, dict)] if isinstance(runs, list) else []
+    return sorted({name for name in found if name and isinstance(name, str) and (folder / name).is_file()})
 
 
 def model_of(card):
