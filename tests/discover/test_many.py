@@ -5,6 +5,7 @@ import multiprocessing
 import os
 import signal
 import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -37,6 +38,15 @@ def leave_a_file(folder, wait):
     try:
         time.sleep(wait)
     finally:
+        (folder / "ended").touch()
+
+
+def put_away_slowly(folder, wait):
+    (folder / "begun").touch()
+    try:
+        time.sleep(wait)
+    finally:
+        time.sleep(0.5)
         (folder / "ended").touch()
 
 
@@ -74,6 +84,19 @@ def test_who_stops_asking_ends_the_processes_and_lets_them_clean_up(tmp_path):
     wait_for(folders[1] / "begun")
     found.close()
     wait_for(folders[1] / "ended")
+
+
+def test_a_process_that_is_asked_twice_to_end_puts_all_away(tmp_path):
+    found = side_by_side(put_away_slowly, [(tmp_path, 600.0)], 1)
+    with ThreadPoolExecutor(1) as beside:
+        result = beside.submit(next, found)
+        wait_for(tmp_path / "begun")
+        for process in multiprocessing.active_children() * 2:
+            process.terminate()
+            time.sleep(0.1)
+        with pytest.raises(SystemExit):
+            result.result()
+    assert (tmp_path / "ended").exists()
 
 
 def begin_and_wait(folder):

@@ -9,9 +9,11 @@ import time
 from pathlib import Path
 
 import pytest
+from ball import RECORD
 from msgspec.structs import replace
 
 from sonicvacuum import card, config
+from sonicvacuum.cli import ended
 from sonicvacuum.cli.cards import read_card
 from sonicvacuum.cli.simulate import _tell_beforehand
 from sonicvacuum.effects import CATALOGUE
@@ -31,6 +33,24 @@ import pathlib, sys
 from sonicvacuum.physics import watch
 moving = pathlib.Path(sys.argv.pop(1))
 with watch.told_to(lambda part: part > 0.0 and moving.touch()):
+"""
+
+
+# A search whose verdict takes for ever to be written, and whose putting away takes a moment.
+WRITING = """
+import pathlib, sys, time
+from sonicvacuum.discover import session
+begun = pathlib.Path(sys.argv.pop(1))
+
+def write(result, folder):
+    (folder / "verdict.json").write_text("half")
+    begun.touch()
+    try:
+        time.sleep(600)
+    finally:
+        time.sleep(0.5)
+
+session.discover, session.write = lambda *given, **how: None, write
 """
 
 
@@ -68,6 +88,74 @@ def test_a_long_simulation_ends_soon_and_leaves_the_last_result(endless, tmp_pat
     assert b"Traceback" not in told
     assert out.read_bytes() == b"finished before"
     assert sorted(p.name for p in endless.parent.iterdir()) == ["card.json", "out.npz"]
+
+
+@pytest.mark.parametrize(("sent", "code"), [(signal.SIGTERM, 143), (signal.SIGHUP, 129)])
+def test_who_is_asked_to_end_while_writing_leaves_nothing_half_written(tmp_path, sent, code):
+    (tmp_path / "ball").mkdir()
+    (tmp_path / "ball/record.yaml").write_text(RECORD)
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out/verdict.json").write_text("finished before")
+    asked = ["discover", str(tmp_path / "ball"), "--out", str(tmp_path / "out"), "--threads", "1"]
+    command = [sys.executable, "-c", f"{WRITING}\n{MAIN}", str(tmp_path / "begun"), *asked]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, start_new_session=True) as running:
+        try:
+            late = time.monotonic() + PATIENCE
+            while not (tmp_path / "begun").exists() and running.poll() is None and time.monotonic() < late:
+                time.sleep(0.05)
+            assert (tmp_path / "begun").exists()
+            for _ in range(3):  # as `timeout` does, which asks the command and then its group
+                running.send_signal(sent)
+                time.sleep(0.1)
+            _, told = running.communicate(timeout=PATIENCE)
+        finally:
+            running.kill()
+    assert running.returncode == code
+    assert told.strip() == b""
+    assert [p.name for p in (tmp_path / "out").iterdir()] == ["verdict.json"]
+    assert (tmp_path / "out/verdict.json").read_text() == "finished before"
+
+
+def test_a_copy_that_is_asked_to_end_puts_nothing_of_the_first_one_away(tmp_path):
+    with ended.heard() as came:
+        copy = os.fork()
+        if not copy:
+            try:
+                (tmp_path / "begun").touch()
+                time.sleep(60.0)
+            finally:
+                (tmp_path / "put away").touch()
+                os._exit(0)
+        while not (tmp_path / "begun").exists():
+            time.sleep(0.01)
+        os.kill(copy, signal.SIGTERM)
+        _, status = os.waitpid(copy, 0)
+    assert os.waitstatus_to_exitcode(status) == 143
+    assert not (tmp_path / "put away").exists()
+    assert came == []
+
+
+def test_what_is_ignored_stays_so_and_all_is_as_before_afterwards():
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    try:
+        with ended.heard():
+            assert signal.getsignal(signal.SIGHUP) == signal.SIG_IGN
+            assert signal.getsignal(signal.SIGTERM) not in (signal.SIG_DFL, signal.SIG_IGN)
+        assert signal.getsignal(signal.SIGTERM) == signal.SIG_DFL
+    finally:
+        signal.signal(signal.SIGHUP, before)
+
+
+def test_a_second_request_interrupts_again_where_the_first_one_was_lost(monkeypatch):
+    monkeypatch.setattr(ended, "GRACE", 0.05)
+    with ended.heard() as came:
+        for _ in range(2):
+            with pytest.raises(KeyboardInterrupt):
+                os.kill(os.getpid(), signal.SIGTERM)
+                time.sleep(1.0)
+            os.kill(os.getpid(), signal.SIGTERM)  # at once: passed over
+            time.sleep(0.1)
+    assert came == [signal.SIGTERM] * 2
 
 
 def test_what_a_long_simulation_asks_for_is_told_beforehand(endless, capsys):

@@ -14,6 +14,7 @@ from pathlib import Path
 import click
 
 from sonicvacuum.blas import THREADS
+from sonicvacuum.cli.ended import code_of, heard
 from sonicvacuum.cli.helped import BEGINNING, COMPLETION, EXIT_CODES, Checked, locked, strayed
 from sonicvacuum.cli.stage_lines import compiling_told
 from sonicvacuum.files import MACHINE, InputError, check_file, in_one_line
@@ -129,8 +130,9 @@ def main():
     with suppress(OSError):  # a working folder that is gone
         if told := strayed(Path.cwd(), Path(sys.prefix)):
             click.echo(f"Warning: {in_one_line(told)}", err=True)
+    came: list[int] = []
     try:
-        with compiling_told():
+        with heard() as came, compiling_told():
             cli(standalone_mode=False)
         gc.freeze()  # nor is it looked through once more at the end
     except click.ClickException as error:
@@ -157,7 +159,7 @@ def main():
         # At once: a compiler may still be at work in a thread that nobody waits for.
         sys.stdout.flush()
         sys.stderr.flush()
-        os._exit(130)
+        os._exit(code_of(came[0]) if came else 130)
 
 
 def _forget_output():

@@ -18,9 +18,9 @@ With files of a recorder:
 EXIT_CODES = """\b
 Exit codes:
   0    done, whatever a verdict says
-  1    the machine's fault: a full disk, too little memory
+  1    the machine's fault: a full disk, too little memory; or the program's
   2    input refused; one line says file, key, value and cure
-  130  interrupted"""
+  130  interrupted; 143 or 129 where asked to end by kill or a closing terminal"""
 COMPLETION = """\b
 Completion of verbs and options:
   eval "$(_SONICVACUUM_COMPLETE=bash_source sonicvacuum)"      # or zsh_source, fish_source"""

@@ -16,10 +16,8 @@ from concurrent.futures.process import BrokenProcessPool
 from threading import Thread
 
 from sonicvacuum import stages
+from sonicvacuum.cli.ended import GRACE, code_of, once
 from sonicvacuum.files import InputError
-
-# Time in s in which a search whose first process is gone puts away what it has half written.
-GRACE = 5.0
 
 
 def side_by_side(work: Callable, tasks: Iterable[tuple], processes: int) -> Iterator:
@@ -54,7 +52,7 @@ def side_by_side(work: Callable, tasks: Iterable[tuple], processes: int) -> Iter
 def _deaf():
     """An interruption is the first process's affair; ended by that, this one leaves nothing half-written."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
+    signal.signal(signal.SIGTERM, once(lambda number: sys.exit(code_of(number))))
     Thread(target=_end_with_the_first, daemon=True).start()
 
 
@@ -66,4 +64,4 @@ def _end_with_the_first():
     multiprocessing.parent_process().join()
     os.kill(os.getpid(), signal.SIGTERM)
     time.sleep(GRACE)
-    os._exit(143)
+    os._exit(code_of(signal.SIGTERM))
