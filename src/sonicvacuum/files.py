@@ -68,7 +68,8 @@ def replacing(path: str | os.PathLike, mode: str = "w"):
     check_written(path)
     path = Path(os.path.realpath(path)) if os.path.islink(path) else Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
-    partial = path.with_name(f".{path.name}.{os.getpid()}.partial")
+    # Drawn: threads share a process, and computers a file system with numbers of processes of their own.
+    partial = path.with_name(f".{path.name}.{os.urandom(4).hex()}.partial")
     text = {} if "b" in mode else {"encoding": "utf-8", "newline": "\n"}
     try:
         with open(partial, mode, **text) as stream:

@@ -8,6 +8,11 @@ from pathlib import Path
 
 from sonicvacuum.files import InputError, check_written
 
+try:
+    import fcntl
+except ImportError:  # not on Windows
+    fcntl = None
+
 _PARTIAL, _EARLIER = ".partial", ".earlier"
 
 
@@ -110,7 +115,7 @@ def _exchange(fresh, folder, last, stale):
     leaving = (last, *sorted({*names, *stale} - {last}))
     for name in leaving:
         check_written(folder / name)  # a folder of that name is none of ours
-    with tempfile.TemporaryDirectory(prefix=".", suffix=_EARLIER, dir=folder) as earlier:
+    with _alone(folder), tempfile.TemporaryDirectory(prefix=".", suffix=_EARLIER, dir=folder) as earlier:
         try:
             for name in leaving:
                 if os.path.lexists(folder / name):
@@ -121,6 +126,25 @@ def _exchange(fresh, folder, last, stale):
             if any(fresh.iterdir()):  # else the new ones stand already
                 _put_back(Path(earlier), fresh, folder, leaving, names)
             raise
+
+
+@contextmanager
+def _alone(folder):
+    """Within this nobody else moves files into the folder; whoever comes meanwhile waits.
+
+    A lock of the system, which ends with its process and leaves no file. Where there are none (some file
+    systems of networks) nobody waits.
+    """
+    if fcntl is None:
+        yield
+        return
+    held = os.open(folder, os.O_RDONLY)
+    try:
+        with suppress(OSError):
+            fcntl.flock(held, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(held)
 
 
 def _put_back(earlier, fresh, folder, leaving, names):

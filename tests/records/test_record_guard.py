@@ -6,6 +6,8 @@ import re
 import signal
 import subprocess
 import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 import yaml
@@ -242,6 +244,26 @@ def test_a_kill_while_files_change_places_loses_nothing_and_mixes_nothing(tmp_pa
             reader.read(tmp_path)
     kept = sorted((path.name, path.read_text()) for path in tmp_path.rglob("*") if path.is_file())
     assert at == 8 or kept == sorted([*((n, "old") for n in OLD), *((n, "new") for n in NEW)])
+
+
+def test_two_results_that_come_at_a_time_are_not_mixed(tmp_path, monkeypatch):
+    replace = os.replace
+
+    def slow(source, target):
+        time.sleep(0.01)
+        replace(source, target)
+
+    monkeypatch.setattr(os, "replace", slow)
+
+    def one(content):
+        with outputs.renewed(tmp_path, last="verdict.json", stale=["index.html"]) as fresh:
+            for name in NEW:
+                (fresh / name).write_text(content)
+
+    with ThreadPoolExecutor(4) as pool:
+        list(pool.map(one, "abcd"))
+    left = {path.name: path.read_text() for path in tmp_path.iterdir()}
+    assert left in [dict.fromkeys(NEW, content) for content in "abcd"]
 
 
 def test_a_folder_where_a_file_is_to_stand_stays(tmp_path):

@@ -25,6 +25,17 @@ def test_a_failure_leaves_what_stood_there(tmp_path):
     assert list(tmp_path.iterdir()) == [path]
 
 
+def test_two_who_write_one_file_at_a_time_do_not_share_a_half_written_one(tmp_path):
+    path = tmp_path / "deep" / "table.csv"
+    with replacing(path) as first:
+        first.write("first")
+        with replacing(path) as second:
+            second.write("second")
+        assert path.read_text() == "second"
+    assert path.read_text() == "first"
+    assert list(path.parent.iterdir()) == [path]
+
+
 def test_success_replaces_and_makes_folders(tmp_path):
     path = tmp_path / "new" / "a.bin"
     with replacing(path, "wb") as stream:

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from threading import current_thread, main_thread
 
-SIGNALS = (signal.SIGTERM, signal.SIGHUP)
+SIGNALS = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)]
 # Time in s in which whoever is asked puts away what is half-written. `timeout` asks twice at once, and a
 # second interruption would leave there what the first one puts away.
 GRACE = 5.0
