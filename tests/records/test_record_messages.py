@@ -183,6 +183,22 @@ def test_duplicate_key_and_broken_yaml_name_their_line(tmp_path):
         read(folder)
 
 
+@pytest.mark.parametrize("name", ["record.yaml", "slow.csv", "fast.csv"])
+def test_a_file_that_is_written_while_it_is_read_is_told(tmp_path, monkeypatch, name):
+    """Else its SHA-256, which a verdict keeps, would be that of other numbers."""
+    folder, whole = put(tmp_path), signals.read
+
+    def read_while_someone_writes(path, ids):
+        found = whole(path, ids)
+        if path.name == "fast.csv":  # the last one
+            (folder / name).write_text((folder / name).read_text() + "\n")
+        return found
+
+    monkeypatch.setattr(signals, "read", read_while_someone_writes)
+    with pytest.raises(InputError, match=rf"{name}: was changed while it was read; try again"):
+        read(folder)
+
+
 def test_missing_folder_record_and_signals(tmp_path):
     with pytest.raises(InputError, match=r"nothing: no such folder"):
         read(tmp_path / "nothing")

@@ -2,6 +2,7 @@
 
 import hashlib
 import os
+from contextlib import suppress
 from pathlib import Path
 
 from sonicvacuum.files import InputError, check_values, convert, in_one_line, read_yaml
@@ -55,12 +56,15 @@ def read(path) -> Record:
     if not file.is_file():
         cure = cut_off(folder) or f"sonicvacuum record new {folder} writes one to fill in"
         raise InputError(f"{folder}: has no {FILE}; {cure}")
+    states = {file: _state(file)}
     block = parse(read_yaml(file), file)
     _check_beside(block, folder)
-    ids = [s.id for s in block.sensors]
-    traces = {r.id: signals.read(folder / r.signals, ids) for r in block.runs if r.signals}
-    files = dict.fromkeys([file, *(folder / r.signals for r in block.runs if r.signals)])
-    record = Record(block, traces, name, _digest(files))
+    ids, traces = [s.id for s in block.sensors], {}
+    for run in block.runs:
+        if run.signals:
+            states.setdefault(folder / run.signals, _state(folder / run.signals))
+            traces[run.id] = signals.read(folder / run.signals, ids)
+    record = Record(block, traces, name, _digest(states))
     for run in block.runs:
         if run.signals:
             check_scales(record, run.id, folder / run.signals)
@@ -82,11 +86,26 @@ def _check_beside(block, folder):
             )
 
 
-def _digest(files):
-    """SHA-256 of some files one after the other, as `cat … | sha256sum` gives it."""
+def _state(file):
+    """What changes where a file is written; None where there is none, which its reader tells."""
+    with suppress(OSError, ValueError):
+        s = os.stat(file)
+        return s.st_ino, s.st_size, s.st_mtime_ns
+    return None
+
+
+def _digest(states):
+    """SHA-256 of some files one after the other, as `cat … | sha256sum` gives it.
+
+    InputError for one that is not in the state any more in which it was before it was read: the digest would
+    be of other numbers than those read.
+    """
     found = hashlib.sha256()
-    for file in files:
+    for file in states:
         found.update(file.read_bytes())
+    for file, state in states.items():
+        if _state(file) != state:
+            raise InputError(f"{file}: was changed while it was read; try again once nobody writes it")
     return found.hexdigest()
 
 
