@@ -101,6 +101,7 @@ def test_what_slopes_did_not_foresee_asks_the_others_too(monkeypatch, gained, pl
     catalogue = SimpleNamespace(candidates=lambda setup, excluded: [CATALOGUE.effect(n) for n in names])
     monkeypatch.setattr(singles, "setup_of", lambda forward: SimpleNamespace(catalogue=catalogue))
     monkeypatch.setattr(singles, "_strained", lambda forward, null: False)
+    monkeypatch.setattr(singles, "strayed", lambda forward, null: [])
     monkeypatch.setattr(singles.wide, "leaves_much", lambda forward, objective: False)
     monkeypatch.setattr(singles.secants, "applies", lambda effect: False)
     monkeypatch.setattr(
