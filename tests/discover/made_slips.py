@@ -2,6 +2,8 @@
 
 from dataclasses import replace
 
+import msgspec
+
 from sonicvacuum.records import Signals
 
 
@@ -15,3 +17,9 @@ def altered(record, gauge, change, run=None):
         return Signals(signals.time_us, readings)
 
     return replace(record, signals={k: one(k, s) for k, s in record.signals.items()})
+
+
+def unstated(record):
+    """The record of a laboratory that does not say how loud its gauges are."""
+    sensors = [msgspec.structs.replace(s, sigma_N=None) for s in record.block.sensors]
+    return replace(record, block=msgspec.structs.replace(record.block, sensors=sensors))

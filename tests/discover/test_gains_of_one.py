@@ -5,7 +5,7 @@ before.
 import numpy as np
 import pytest
 from made_records import DAMPING, SIGMA, made
-from made_slips import altered
+from made_slips import altered, unstated
 
 from sonicvacuum.discover import session
 from sonicvacuum.discover.faults import changes, gains
@@ -52,6 +52,15 @@ def test_nothing_is_asked_of_traces_of_the_same_gain(sound):
     assert asked(whole) == []
     # Nearer to none than to a step of two.
     assert asked(changes.trace_scaled(sound, "v1", "g7", 1.3)) == []
+
+
+def test_it_is_told_where_noise_is_not_stated(sound):
+    """It ended in a division by 0."""
+    off = unstated(changes.trace_scaled(sound, "v0", "wall", 2.0))
+    assert [at[:2] for at in asked(off)] == [("v0", "wall")] * 2
+    ((fault, *where, value),), named, _ = told(off)
+    assert (fault, where, named) == ("gain-common", ["v0", "wall"], [])
+    assert value == pytest.approx(2.0, rel=0.01)  # its noise hardly tells the step from the height
 
 
 @pytest.mark.parametrize(

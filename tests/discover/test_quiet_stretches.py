@@ -1,15 +1,13 @@
 """Noise of traces whose pulse is weak, whose steps are coarse, or which are far from what is stated."""
 
-from dataclasses import replace
-
-import msgspec
 import numpy as np
 import pytest
 from made_records import SIGMA, made
-from made_slips import altered
+from made_slips import altered, unstated
 
 from sonicvacuum.discover.faults import traces
 from sonicvacuum.discover.faults.examine import examine
+from sonicvacuum.discover.faults.heard import at_rest, heard
 from sonicvacuum.discover.fit.goodness import goodness
 from sonicvacuum.discover.fit.refit import fit
 from sonicvacuum.discover.model.forward import Forward
@@ -28,10 +26,25 @@ def model(empty):
     return predicted(together((empty,)))
 
 
-def unstated(record):
-    """The record of a laboratory that does not say how loud its gauges are."""
-    sensors = [msgspec.structs.replace(s, sigma_N=None) for s in record.block.sensors]
-    return replace(record, block=msgspec.structs.replace(record.block, sensors=sensors))
+def test_noise_that_is_not_stated_is_heard(empty):
+    """Whatever a trace rests at, however it drifts, and though one was recorded in another range."""
+    stated, quiet = heard(empty), {"g4": SIGMA, "g7": SIGMA, "wall": 2.0 * SIGMA}
+    assert stated == quiet
+    record = altered(unstated(empty), "g4", lambda y: y + 0.5 + TIME / 700.0)
+    record = altered(record, "wall", lambda y: 10.0 * y, "v1")
+    for one in (heard(unstated(empty)), heard(record)):
+        assert one == pytest.approx(quiet, rel=0.1)  # two traces of 700 samples know it to a twentieth
+    still = altered(unstated(empty), "g7", np.zeros_like)
+    assert 0.0 < heard(still)["g7"] < 1e-9
+
+
+def test_a_dead_gauge_whose_neighbours_are_alike_is_dead(empty, model):
+    """They flicker by a quarter of what it swings."""
+    noise = np.random.default_rng(SEED).normal(size=900)
+    smooth = SIGMA * np.convolve(noise, 0.9 ** np.arange(200), "valid")[:700] * np.sqrt(1.0 - 0.9**2)
+    record = unstated(altered(empty, "g7", lambda _: smooth))
+    assert 2.0 * heard(record)["g7"] < at_rest(record)["g7"]
+    assert ("gauge-dead", "g7") in [(f.fault, f.sensor) for f in examine(record, model)[1]]
 
 
 @pytest.mark.parametrize("height", [3.0, 4.0, 6.0, 9.0])

@@ -9,16 +9,18 @@ import msgspec
 import numpy as np
 import pytest
 from made_records import BEADS, SIGMA, made
-from made_slips import altered
+from made_slips import altered, unstated
 
 from sonicvacuum.discover import session
-from sonicvacuum.discover.faults import changes, policy, starts
+from sonicvacuum.discover.faults import changes, lines, policy, starts
 from sonicvacuum.discover.faults.competition import Search
 from sonicvacuum.discover.faults.found import Bench
 from sonicvacuum.discover.faults.judged import Judged, Model, excess, obvious, suspicious
 from sonicvacuum.discover.faults.judging import Judge
 from sonicvacuum.discover.faults.slips import hypotheses
 from sonicvacuum.discover.fit.enough import data
+from sonicvacuum.discover.model.nominal import predicted
+from sonicvacuum.discover.model.problem import experiment
 from sonicvacuum.discover.rounds import investigate
 from sonicvacuum.effects import CATALOGUE
 from sonicvacuum.records import Signals
@@ -148,6 +150,14 @@ def test_a_drift_is_told_between_and_after_pulses(empty):
     assert best.slip.value(0.0) == pytest.approx(7.0 * SIGMA, abs=0.4 * SIGMA)
     size = data(best.model.forward)
     assert abs(best.model.fit.objective - size) < 5.0 * np.sqrt(2.0 * size)  # 5 standard deviations of χ²
+
+
+def test_a_drift_is_told_where_noise_is_not_stated(empty):
+    """Nothing was read off between pulses there."""
+    model, record = predicted(experiment(empty)), drifting(empty)
+    (one,), (other,) = (lines.drifts(r, model) for r in (record, unstated(record)))
+    assert (other.fault, other.sensor) == (one.fault, one.sensor) == ("drift", "g4")
+    assert other.value(0.0) == pytest.approx(one.value(0.0), rel=0.01)
 
 
 @pytest.mark.parametrize("tau_us", [200.0, 5000.0])

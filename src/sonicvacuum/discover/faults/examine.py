@@ -10,6 +10,7 @@ import numpy as np
 from sonicvacuum.discover.faults import changes, expected, policy, traces
 from sonicvacuum.discover.faults.exchanges import read_twice, taken_twice
 from sonicvacuum.discover.faults.found import Bench, Finding
+from sonicvacuum.discover.faults.heard import heard
 from sonicvacuum.discover.faults.pulses import pulses
 from sonicvacuum.discover.faults.table import FAULTS
 from sonicvacuum.discover.model.masks import cut, spikes
@@ -74,6 +75,7 @@ class _Look:
 
     def __init__(self, record, predicted, spared=()):
         self.record, self.predicted, self.spared = record, predicted, spared
+        self.noises = heard(record)
         self.readings = {k: dict(s.readings) for k, s in record.signals.items()}
         self.lost, self.seen, self.rests = {}, defaultdict(dict), defaultdict(dict)
         self.levels, self.stretches = defaultdict(dict), defaultdict(dict)
@@ -108,18 +110,18 @@ class _Look:
 
     def pickup(self, gauge):
         """A steady line in a gauge's traces: one frequency in all runs that show it, taken off."""
-        shown, hidden = {}, {}
+        shown, hidden, sigma = {}, {}, self.noises[gauge.id]
         for run, signals in self.record.signals.items():
             if gauge.id not in signals.readings or (run, gauge.id) in self.silent:
                 continue
             trace, interval = self.readings[run][gauge.id], signals.interval_s
             model = self._model(run, gauge.id)
             for swings in (False, True):
-                whole = traces.quiet(trace, gauge.sigma, swings)
-                before = _cut(whole, trace, model, gauge.sigma)
+                whole = traces.quiet(trace, sigma, swings)
+                before = _cut(whole, trace, model, sigma)
                 # Many periods are no weak pulse, wherever the model has its own.
                 for stretch, least in ((whole, MANY), (before, 0.0)):
-                    found = traces.pickup(stretch, gauge.sigma)
+                    found = traces.pickup(stretch, sigma)
                     if found and found[0] * len(stretch) > least and run not in shown:
                         shown[run] = stretch, interval, found[0] / interval
                 hidden[run] = before, interval
@@ -131,8 +133,8 @@ class _Look:
             if run in shown:
                 stretch = shown[run][0]
             else:
-                stretch = max(stretch, traces.quiet_beside(trace, cycles, gauge.sigma), key=len)
-                if not traces.is_line(stretch, cycles, gauge.sigma):
+                stretch = max(stretch, traces.quiet_beside(trace, cycles, sigma), key=len)
+                if not traces.is_line(stretch, cycles, sigma):
                     unseen.append(run)
                     continue
             wave, _ = traces.wave(stretch, cycles)
@@ -146,8 +148,9 @@ class _Look:
     def _sample_slips(self, run, gauge):
         """Spikes and clipping: samples that are masked."""
         trace = self.readings[run][gauge.id]
-        noise = audible(trace, gauge.sigma)
-        held = cut(trace, noise)
+        noise = audible(trace, self.noises[gauge.id])
+        # A trace that never moves has no pulse to be cut off.
+        held = cut(trace, noise) if np.ptp(trace) > 0.0 else np.zeros(len(trace), dtype=bool)
         at = spikes(trace, noise) & ~held
         if at.any():
             self.readings[run][gauge.id] = traces.without_spikes(trace, at)
@@ -181,7 +184,7 @@ class _Look:
         """What the stretch before the pulse shows: a slope, a level, the size of the noise."""
         trace = self.readings[run.id][gauge.id]
         steps = rounding(trace)
-        noise = max(gauge.sigma, steps)
+        noise = max(self.noises[gauge.id], steps)
         loud = loudness(trace, noise)
         stretch = _cut(traces.quiet(trace, loud), trace, self._model(run.id, gauge.id), loud)
         hides = traces.faint(trace, loud)

@@ -14,6 +14,7 @@ import numpy as np
 from sonicvacuum.discover.faults import changes
 from sonicvacuum.discover.faults.exchanges import MENDED, Readings, higher
 from sonicvacuum.discover.faults.found import Finding
+from sonicvacuum.discover.faults.heard import heard
 from sonicvacuum.discover.faults.judged import Model
 from sonicvacuum.discover.faults.slips import WIDTH, Slip, constant, ignoring
 from sonicvacuum.discover.faults.starts import CLEAR, FARTHEST_GAIN
@@ -90,11 +91,10 @@ def _left_out(record, run, id):
 
 
 def _noise(record, run, id, log_ratio):
-    """Noise of a trace over a ratio, as a share of the stated one. It stays where a range was changed, and
+    """Noise of a trace over a ratio, as a share of its gauge's. It stays where a range was changed, and
     with it what the recorder's counts are multiplied by.
     """
-    sigma = next(g.sigma for g in record.gauges if g.id == id)
-    return flicker(record.signals[run].readings[id]) * math.exp(-log_ratio) / sigma
+    return flicker(record.signals[run].readings[id]) * math.exp(-log_ratio) / heard(record)[id]
 
 
 def _seen(run, id, trace, model):

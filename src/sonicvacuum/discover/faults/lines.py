@@ -8,6 +8,7 @@ from functools import partial
 import numpy as np
 
 from sonicvacuum.discover.faults import changes, traces
+from sonicvacuum.discover.faults.heard import heard
 from sonicvacuum.discover.faults.slips import Slip, constant
 from sonicvacuum.records import Record
 
@@ -20,6 +21,8 @@ LEAST, PRICE = 50.0, 6.0
 UNSURE = 2.0
 # A run's own slope is told from so many standard errors on.
 TOLD = 4.0
+# Of the noise of a sample; no line is known better.
+EXACT = 1e-9
 
 
 @dataclass(frozen=True)
@@ -50,7 +53,7 @@ def drifts(record: Record, predicted, known: bool = False) -> list[Slip]:
         known: whether the model has effects, so that all of a trace may tell of its line, where little of it
             is quiet; beside the nominal model an effect would be taken for a line.
     """
-    found = {g.id: _lines(record, predicted, g, known) for g in record.gauges}
+    found = {id: _lines(record, predicted, id, sigma, known) for id, sigma in heard(record).items()}
     return [_slip(record, id, lines) for id, lines in found.items() if lines]
 
 
@@ -103,18 +106,19 @@ def _straightened(id, lines, errors, record, _):
     return changes.looser(changes.straightened(record, id, lines), {id: errors})
 
 
-def _lines(record, predicted, gauge, known) -> dict[str, _Line]:
+def _lines(record, predicted, id, sigma, known) -> dict[str, _Line]:
     """The line of each run; none where lines leave more than noise."""
     found = {}
     for run, signals in record.signals.items():
-        model = predicted.get(run, {}).get(gauge.id)
-        if model is None or gauge.id not in signals.readings or not gauge.sigma:
+        model = predicted.get(run, {}).get(id)
+        # A trace that never moves lies along a line whatever passes.
+        if model is None or id not in signals.readings or not np.ptp(signals.readings[id]) > 0.0:
             continue
         places = (np.flatnonzero(_nothing(model, share)) for share in NOTHING)
-        left = signals.readings[gauge.id] - model
-        line = next((one for at in places if (one := _line(at, left[at], gauge.sigma))), None)
+        left = signals.readings[id] - model
+        line = next((one for at in places if (one := _line(at, left[at], sigma))), None)
         if line is None or known:
-            whole = _line_beside(model, left, gauge.sigma)
+            whole = _line_beside(model, left, sigma)
             line = max(filter(None, (line, whole)), key=lambda one: one.gain, default=None)
         if line is None:
             return {}
@@ -133,7 +137,8 @@ def _line(at, left, sigma):
         return None
     gain = float(left @ left - rest @ rest) / sigma**2
     errors = np.array([*np.sqrt(np.diag(covariance)), float(rest.std(ddof=2)) / np.sqrt(len(at))])
-    return _Line(float(level), float(slope), errors, float(at.mean()), gain)
+    # Samples that lie along a line to the last digit are no infinite weight.
+    return _Line(float(level), float(slope), np.maximum(errors, EXACT * sigma), float(at.mean()), gain)
 
 
 def _line_beside(model, left, sigma):

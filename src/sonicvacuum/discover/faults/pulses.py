@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from sonicvacuum.discover.faults import expected
+from sonicvacuum.discover.faults.heard import at_rest
 from sonicvacuum.gauges import position
 from sonicvacuum.records import Record
 
@@ -38,10 +39,10 @@ def pulses(record: Record, readings: Readings, predicted: Readings, spared: Coll
         predicted: readings of the nominal model.
         spared: as `examine` has them.
     """
-    found, words = Pulses(), {}
+    found, words, noise = Pulses(), {}, at_rest(record)
     for run in readings:
         own = [g for g in record.gauges if g.id in readings[run] and g.id in predicted.get(run, {})]
-        judged = _judged(record, run, own, readings[run], predicted.get(run, {}))
+        judged = _judged(record, run, own, readings[run], predicted.get(run, {}), noise)
         dying = ("run-without-impact", run) in spared
         judged |= {g.id: "" for g in own if dying or ("gauge-dead", g.id) in spared}
         silent = {(run, id) for id, word in judged.items() if word == "silent"}
@@ -51,59 +52,60 @@ def pulses(record: Record, readings: Readings, predicted: Readings, spared: Coll
         words |= {(run, id): word for id, word in judged.items()}
     for gauge in record.gauges:
         runs = [run for run in readings if gauge.id in readings[run]]
-        dead = _dead(gauge, [k for k in runs if k not in found.blank], found.silent, readings)
+        struck = [k for k in runs if k not in found.blank]
+        dead = _dead(gauge, struck, found.silent, readings, noise[gauge.id])
         if dead:
             found.dead[gauge.id] = dead
             found.silent |= {(run, gauge.id) for run in dead}
         if ("gauge-inverted", gauge.id) not in spared:
             told = {run: words.get((run, gauge.id), "") for run in runs}
-            inverted = _inverted(gauge, told, readings, predicted)
+            inverted = _inverted(gauge, told, readings, predicted, noise[gauge.id])
             found.inverted |= {gauge.id: inverted} if inverted else {}
     return found
 
 
-def _judged(record, run, own, readings, model):
+def _judged(record, run, own, readings, model, noise):
     """Gauge id → word of `expected.verdict`; nothing is said of gauges whose pulse comes after the record's
     end if it is as late as others, or dies out before it arrives if it falls as it does ahead of them.
     """
-    judged = {g.id: expected.verdict(readings[g.id], model[g.id], g.sigma) for g in own}
+    judged = {g.id: expected.verdict(readings[g.id], model[g.id], noise[g.id]) for g in own}
     ways = {g.id: record.beads - position(g, record.beads, 1.0) for g in own}
     heard = [id for id, word in judged.items() if word != "silent"]
     ahead = [(ways[id], expected.share(readings[id], model[id])) for id in heard]
     time = record.signals[run].time_us
     delays = [expected.delay(readings[id], model[id], time) for id in heard if np.abs(model[id]).max() > 0.0]
-    clear = any(expected.found(readings[g.id], model[g.id], g.sigma) for g in own)
+    clear = any(expected.found(readings[g.id], model[g.id], noise[g.id]) for g in own)
     for gauge in own:
         id = gauge.id
         if judged[id] != "silent":
             continue
         late = expected.still_to_come(model[id], time, delays)
         # Where no gauge has a clear pulse, one that would hardly stand out says nothing by its absence.
-        faint = float(np.abs(model[id]).max()) <= expected.EXPECTED * gauge.sigma and not clear
-        if late or faint or expected.fades(ways[id], model[id], gauge.sigma, ahead):
+        faint = float(np.abs(model[id]).max()) <= expected.EXPECTED * noise[id] and not clear
+        if late or faint or expected.fades(ways[id], model[id], noise[id], ahead):
             judged[id] = ""
     return judged
 
 
-def _dead(gauge, runs, silent, readings):
+def _dead(gauge, runs, silent, readings, sigma):
     """Runs in which a gauge is dead: one that is silent where a pulse is expected is so where less is
     expected of it, too.
     """
     dead = [run for run in runs if (run, gauge.id) in silent]
     rest = [run for run in runs if run not in dead]
-    if dead and all(expected.quiet(readings[run][gauge.id], gauge.sigma) for run in rest):
+    if dead and all(expected.quiet(readings[run][gauge.id], sigma) for run in rest):
         return runs
     return dead
 
 
-def _inverted(gauge, told, readings, predicted):
+def _inverted(gauge, told, readings, predicted, sigma):
     """Runs in which a gauge is upside down: where little is expected of it, it is as its own pulse says, or,
     where that says little, as in all runs that can be judged.
     """
     if "inverted" not in told.values():
         return []
     ways = {
-        run: "inverted" if word == "inverted" else expected.way(readings[run][gauge.id], model, gauge.sigma)
+        run: "inverted" if word == "inverted" else expected.way(readings[run][gauge.id], model, sigma)
         for run, word in told.items()
         if word != "silent" and (model := predicted.get(run, {}).get(gauge.id)) is not None
     }

@@ -8,6 +8,7 @@ from functools import partial
 import numpy as np
 
 from sonicvacuum.discover.faults import changes
+from sonicvacuum.discover.faults.heard import heard
 from sonicvacuum.discover.faults.judged import Model
 from sonicvacuum.discover.faults.slips import WIDTH, Slip
 from sonicvacuum.discover.faults.timing import gauge_delay
@@ -36,11 +37,12 @@ def unfinished(record: Record, predicted: Predicted) -> bool:
     """Whether the record ends before most of the model's pulses have passed, though it has whole pulses: what
     is high and how long of those that are cut off tells nothing.
     """
+    noise = heard(record)
     gauges = [(run, gauge) for run in predicted for gauge in record.gauges if gauge.id in predicted[run]]
     found = [
         _length(predicted[run][gauge.id]) is None
         for run, gauge in gauges
-        if _shows(record.signals[run].readings.get(gauge.id), gauge.sigma)
+        if _shows(record.signals[run].readings.get(gauge.id), noise[gauge.id])
     ]
     return 2 * sum(found) > len(found)
 
