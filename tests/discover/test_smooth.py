@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from made_records import made
+from made_slips import altered
 
 from sonicvacuum.discover import policy, session
 from sonicvacuum.discover.fit import discrepancy, smooth
@@ -14,10 +15,12 @@ from sonicvacuum.discover.fit.wide import nominal
 from sonicvacuum.discover.judge import gross
 from sonicvacuum.discover.model.experiment import Part, Smooth
 from sonicvacuum.discover.model.forward import Forward
-from sonicvacuum.discover.model.hypothesis import Hypothesis
+from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, variants
 from sonicvacuum.discover.model.problem import experiment
 from sonicvacuum.discover.rounds import investigate
 from sonicvacuum.discover.search import restart
+from sonicvacuum.discover.search.starts import setup_of
+from sonicvacuum.effects import effect
 from sonicvacuum.records import Record
 
 
@@ -102,6 +105,18 @@ def test_the_evidence_is_that_of_the_dense_gaussian():
 
     # The Hessian is held up by a part in 1e9.
     assert algebra(3.0) - algebra(0.0) == pytest.approx(dense(3.0) - dense(0.0), abs=1e-6)
+
+
+def test_an_effect_that_moves_nothing_stands_in_no_discrepancys_way(empty):
+    """The equations of a gain of a gauge that is stuck have no solution, with which a search ended."""
+    forward = Forward(experiment(altered(empty, "g4", lambda y: np.full_like(y, 3.0))))
+    (free,) = variants(effect("sensor-gain"), setup_of(forward))[0]
+    gain = Hypothesis((Component(effect("sensor-gain"), (free,), place=0),))
+    nuisances = nominal(forward).nu[None]
+    moved = Fit(gain, linearise(forward, gain, np.array([[0.5]]), nuisances))
+    without = Fit(Hypothesis(), linearise(forward, Hypothesis(), np.zeros((1, 0)), nuisances))
+    known = discrepancy.Shapes(forward.experiment)
+    assert smooth.infer(forward, moved, known) == smooth.infer(forward, without, known)
 
 
 def test_no_discrepancy_leaves_everything_as_it_is(empty):

@@ -4,11 +4,13 @@ from dataclasses import replace
 from types import SimpleNamespace
 
 import msgspec
+import numpy as np
 import pytest
 from made_records import DAMPING, made
+from made_slips import altered
 
 from sonicvacuum.discover import session
-from sonicvacuum.discover.faults import changes, timing
+from sonicvacuum.discover.faults import changes, lines, timing
 from sonicvacuum.discover.faults.weights import as_likely
 from sonicvacuum.discover.model.nominal import predicted
 from sonicvacuum.discover.model.problem import experiment
@@ -47,6 +49,22 @@ def test_time_zeros_of_runs_that_are_stated_as_exact_are_told(effects, named, st
     assert (fault, run, value) == ("time-zero", None, None)
     assert v.named == (["kuwabara-kono"] if named is None else named)
     assert slip(v.faults[0]) == "time zeros are not known as well as stated, each run having its own"
+
+
+@pytest.mark.parametrize("level", [0.0, 3.0])
+def test_what_never_moves_lies_nowhere_in_time_and_along_no_line(empty, level):
+    """Traces of zeros lay a whole record early, along lines of infinite weight; one at a level drowned the
+    others.
+    """
+    model, still = predicted(experiment(empty)), empty
+    for gauge in ("g4", "g7", "wall"):
+        still = altered(still, gauge, lambda y: np.full_like(y, level))
+    assert set(timing.shifts(still, model).values()) == {0.0}
+    assert timing.time_zero(still, model) == lines.drifts(still, model) == []
+    late = off(empty, (-90.0, -80.0))
+    stuck = altered(late, "g4", lambda y: np.full_like(y, level))
+    # Two gauges know when a pulse comes to a sample or two.
+    assert timing.shifts(stuck, model) == pytest.approx(timing.shifts(late, model), abs=2.0)
 
 
 def test_slips_as_likely_as_the_first_are_those_that_explain_alike():

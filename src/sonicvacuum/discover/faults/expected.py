@@ -98,8 +98,8 @@ def preceding(trace: np.ndarray, model: np.ndarray) -> np.ndarray:
 
 
 def quiet(trace: np.ndarray, sigma: float) -> bool:
-    """Whether no sample of (T,) readings stands out of the noise."""
-    return bool(np.abs(trace).max() < SILENT * max(sigma, 1e-12))
+    """Whether no sample of (T,) readings stands out of the noise, or none of any level differs."""
+    return bool(np.abs(trace).max() < SILENT * sigma or not np.ptp(trace) > 0.0)
 
 
 def _slid(trace, model):

@@ -32,15 +32,19 @@ def arrival(time_us, reading) -> float:
 
 
 def lag(record: Record, run: str, predicted, ids) -> float:
-    """By how many us the traces of some gauges of a run lie before the model's, together."""
-    signals, total = record.signals[run], 0.0
+    """By how many us the traces of some gauges of a run lie before the model's, together; 0 where none is
+    like it anywhere, or none moves.
+    """
+    signals, total = record.signals[run], np.zeros(1)
     for id in ids:
         if id in predicted[run]:
-            total = total + correlated(predicted[run][id], signals.readings[id]) / max(
-                float(np.ptp(signals.readings[id])) * float(np.ptp(predicted[run][id])), 1e-300
-            )
+            scale = float(np.ptp(signals.readings[id])) * float(np.ptp(predicted[run][id]))
+            if scale > 0.0:
+                total = total + correlated(predicted[run][id], signals.readings[id]) / max(scale, 1e-300)
+    if not total.max() > 0.0:
+        return 0.0
     lags = np.arange(1 - signals.samples, signals.samples)
-    return float(lags[int(np.argmax(total))]) * signals.interval_s * 1e6 if np.ndim(total) else 0.0
+    return float(lags[int(np.argmax(total))]) * signals.interval_s * 1e6
 
 
 def time_zero(record: Record, predicted) -> list[Slip]:

@@ -133,7 +133,9 @@ class _Model:
         self.forward = forward
         self.columns = forward.columns(fit.hypothesis, fit.u[None], fit.nu[None])
         self.normal = from_slopes(forward, fit.normal.free, fit.u[None], fit.nu[None], self.columns)
-        self.free = np.concatenate([~fit.at_bound(), np.ones(len(fit.nu), dtype=bool)])
+        # What moves nothing, as an effect that has died out does, follows nothing either.
+        moves = np.diag(self.normal.hessian.sum(axis=0)[0])[: len(fit.u)] > 0.0
+        self.free = np.concatenate([~fit.at_bound() & moves, np.ones(len(fit.nu), dtype=bool)])
         self._whole = [self._of_run(run, columns[0]) for run, columns in enumerate(self.columns)]
 
     def _of_run(self, run, columns):

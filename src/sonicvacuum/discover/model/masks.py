@@ -119,6 +119,11 @@ def repeated(trace: np.ndarray, step: float = 0.0) -> np.ndarray:
     return found
 
 
+def stuck(trace: np.ndarray) -> bool:
+    """Whether a trace stands at one level, another than 0: none of its samples counts."""
+    return bool(trace.any() and np.ptp(trace) == 0.0)
+
+
 def cut(trace: np.ndarray, sigma: float) -> np.ndarray:
     """(T,) whether each sample of a trace (T,) is cut off at its largest or smallest reading."""
     return _cut_above(trace, sigma) | _cut_above(-trace, sigma)

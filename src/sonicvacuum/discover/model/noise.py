@@ -125,13 +125,13 @@ def _of_gauge(samples: tuple[bytes, ...], gauge, steps: float) -> tuple[float, f
 
 
 def _traces(records, gauge):
-    """Its traces, what is not believed left out."""
+    """Its traces, what is not believed left out; none of one that is stuck, of which nothing is left."""
     found = []
     for record in records:
         least = max(gauge.sigma, rounded(record, gauge.id))
         read = [s.readings[gauge.id] for s in record.signals.values() if gauge.id in s.readings]
         found += [t[believed(t, least)] for t in (np.asarray(one, dtype=float) for one in read)]
-    return found
+    return [t for t in found if len(t)]
 
 
 def _quiet_of(traces, gauge):

@@ -9,6 +9,7 @@ import numpy as np
 from sonicvacuum.discover.model.experiment import Experiment
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Hypothesis
+from sonicvacuum.discover.model.masks import stuck
 from sonicvacuum.gauges import Gauge
 from sonicvacuum.physics.scales import passage_of
 
@@ -17,7 +18,9 @@ MOST = 30
 
 
 def predicted(experiment: Experiment, threads: int = 1) -> dict[str, dict[str, np.ndarray]]:
-    """Run → gauge → (T,) reading of the nominal model at the recorded numbers, for the gauges of each run."""
+    """Run → gauge → (T,) reading of the nominal model at the recorded numbers, for the gauges of each run; of
+    those whose samples do not count, for the ones that are stuck.
+    """
     bare = tuple(replace(r, present=None, scalars=()) for r in experiment.runs)
     forward = Forward(replace(experiment, runs=bare, correlation=np.zeros(len(experiment.gauges))), threads)
     found = forward.sampled(Hypothesis(), np.zeros((1, 0)), np.zeros((1, forward.layout.size)))
@@ -27,7 +30,7 @@ def predicted(experiment: Experiment, threads: int = 1) -> dict[str, dict[str, n
         result[run.id] = {
             g.id: row
             for s, (g, row) in enumerate(zip(experiment.gauges, rows, strict=True))
-            if run.has_signals and (run.present is None or run.present[s].any())
+            if run.has_signals and (run.present is None or run.present[s].any() or stuck(run.readings[s]))
         }
     return {k: v for k, v in result.items() if v}
 
