@@ -19,12 +19,13 @@ from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, variant
 from sonicvacuum.discover.model.nominal import predicted
 from sonicvacuum.discover.model.problem import together
 from sonicvacuum.discover.search import singles
-from sonicvacuum.effects import effect
+from sonicvacuum.effects import CATALOGUE, effect
 
 # N, per bead: the slow shot's pulse dies ahead of the first gauge, whose reading is left upside down; with
 # more it leaves nothing there.
 FRICTION, MORE = 0.7, 1.0
 TIME = np.arange(700.0)
+SHOT = "run-without-impact"
 
 
 def make(bench):
@@ -115,15 +116,25 @@ def test_a_shot_that_missed_is_kept_out():
     assert taken_back == set()
 
 
-def test_a_gauge_that_reads_nothing_is_no_effect_in_place_of_a_dead_one(dying):
-    gain = SimpleNamespace(effect=effect("sensor-gain"))
-    final = SimpleNamespace(hypothesis=SimpleNamespace(components=(gain,)), objective=0.0)
+@pytest.mark.parametrize("slip", [{"fault": "gauge-dead", "sensor": "g4"}, {"fault": SHOT, "run": "v0"}])
+@pytest.mark.parametrize("name", [e.id for e in CATALOGUE if e.id.startswith("sensor")])
+def test_a_gauge_that_reads_nothing_is_no_effect_in_place_of_a_dead_one(dying, name, slip):
+    """A low-pass of all gauges took back that no shot had struck."""
+    of_gauges = SimpleNamespace(effect=effect(name))
+    final = SimpleNamespace(hypothesis=SimpleNamespace(components=(of_gauges,)), objective=0.0)
     experiment = SimpleNamespace(sigma=None, correlation=None)
     found = SimpleNamespace(
-        forward=SimpleNamespace(experiment=experiment), null=None, final=final, named=["sensor-gain"]
+        forward=SimpleNamespace(experiment=experiment), null=None, final=final, named=[name]
     )
-    slip = Finding("gauge-dead", sensor="g4", corrected=True)
-    assert retracted(found, [slip], dying, {}, make) == set()
+    assert retracted(found, [Finding(**slip, corrected=True)], dying, {}, make) == set()
+
+
+def test_a_gauge_that_is_stuck_stays_dead_whatever_effects_say_of_it(dying):
+    """No sample of it counts, so that it contradicts none."""
+    stuck = altered(dying, "wall", lambda y: np.full_like(y, 3.0))
+    taken_back, shown = beside_friction(stuck, [])
+    assert ("gauge-dead", "wall") in shown
+    assert ("gauge-dead", "wall") not in taken_back
 
 
 def test_once_a_slip_is_taken_back_the_others_are_asked_for_again(monkeypatch):

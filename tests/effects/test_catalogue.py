@@ -161,6 +161,13 @@ def test_sensor_effects_change_the_sensors_of_observe(one):
     np.testing.assert_array_equal(run(one.apply(real, **given))[1], run(one.apply(nominal(), **given))[1])
 
 
+@pytest.mark.parametrize("one", [e for e in CATALOGUE if e.why_not(nominal()) is None], ids=lambda e: e.id)
+def test_effects_of_gauges_leave_the_chain_alone_and_no_others_do(one):
+    setup = nominal()
+    given = {p.name: p.at(1.0, setup) for p in one.parameters if p.switches} | place_of(one.id)
+    assert one.of_gauges == (one.apply(setup, **given).chain is setup.chain)
+
+
 def test_gravity_is_off_at_what_the_record_says():
     upright = dataclasses.replace(nominal(), chain=dataclasses.replace(nominal().chain, gravity=9.81))
     (fraction,) = effect("gravity").parameters

@@ -12,6 +12,7 @@ from msgspec import Struct
 
 from sonicvacuum.blas import one_thread
 from sonicvacuum.discover.fit import wide
+from sonicvacuum.discover.fit.heldout import per_datum
 from sonicvacuum.discover.fit.reach import Reach, reach
 from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.model import window
@@ -176,14 +177,14 @@ def compare(model: Model, record: Record, threads: int = 1, catalogue: Catalogue
     extended = _fit(forward, _made(forward, more, catalogue))
     before, after = nominal.normal.chi2[:, 0], extended.normal.chi2[:, 0]
     runs = {
-        run.id: gap(float(before[k] / sizes[k]), float(after[k] / sizes[k]))
+        run.id: gap(*(per_datum(one[k], sizes[k]) for one in (before, after)))
         for k, run in enumerate(forward.experiment.runs)
     }
     return Comparison(
         record=forward.experiment.name,
         model=model.record,
         effects=list(model.effects),
-        gap=gap(float(before.sum() / sizes.sum()), float(after.sum() / sizes.sum())),
+        gap=gap(*(per_datum(one.sum(), sizes.sum()) for one in (before, after))),
         chi2=float(after.sum()),
         data=int(sizes.sum()),
         runs=runs,

@@ -98,6 +98,8 @@ def investigate(
     setup = singles.setup_of(forward)
     families = directions.catalogue(setup, experiment.excluded)
     scores = screen.screen(forward, null, families)
+    if not enough.data(forward):
+        return _unmeasured(forward, null, scores)
     threshold = scores.threshold(policy.FALSE_ALARM)
     fitted = singles.fit_all(forward, null, scores) if alone is None else alone
     found = _polished(forward, null, fitted, threshold)
@@ -136,6 +138,15 @@ def investigate(
     for own in ("beside", "left", "singles", "smooth_only"):
         del given[own]
     return Investigation(forward, null, scores, threshold, found, odds, alike=alike, **given)
+
+
+def _unmeasured(forward: Forward, null: Fit, scores: screen.Screen) -> Investigation:
+    """What is found where no datum counts, as no shot has struck: all is as probable as before."""
+    e = forward.experiment
+    effects = dict.fromkeys(d.effect for d in scores.directions)
+    odds = evidence.before_data(effects, e.prior_odds)
+    reasons = ["nothing was measured: no sample counts, and all is as probable as before", *e.notes]
+    return Investigation(forward, null, scores, 0.0, [], odds, [], null, {}, reasons)
 
 
 def _odds(found, decision: Decision, alike, prior, present) -> tuple[dict[str, float], list[str]]:

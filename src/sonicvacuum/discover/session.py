@@ -283,22 +283,22 @@ def _values(fit):
 def gap_rows(result: Result):
     """Header and rows: χ² per datum of each run before and after, fitted and held out, and by round."""
     found = result.found
-    e = found.forward.experiment
     before = heldout.held_out(found.null, found.sizes)
     _, final = result.extended
     after = heldout.held_out(final, found.sizes, before)
     if result.law:
         after = heldout.HeldOut(result.law.held_out, found.sizes)
     rows = []
-    for k, run in enumerate(e.runs):
+    for k, run in enumerate(found.forward.experiment.runs):
         size = found.sizes[k]
-        fitted = (found.null.normal.chi2[k, 0] / size, final.normal.chi2[k, 0] / size)
-        rows.append((run.id, size, *fitted, before.chi2[k] / size, after.chi2[k] / size, 1.0))
+        each = (found.null.normal.chi2[k, 0], final.normal.chi2[k, 0], before.chi2[k], after.chi2[k])
+        rows.append((run.id, size, *(heldout.per_datum(chi2, size) for chi2 in each), 1.0))
     total = found.sizes.sum()
-    fitted = (found.null.normal.chi2.sum() / total, final.normal.chi2.sum() / total)
+    fitted = (heldout.per_datum(one.normal.chi2.sum(), total) for one in (found.null, final))
     rows.append(("all", total, *fitted, before.mean, after.mean, 1.0))
-    for k, best in enumerate(rounds_of(found)):
-        rows.append((f"round {k}: {best[0]}", total, math.nan, best[1] / total, math.nan, math.nan, 1.0))
+    for k, (name, chi2) in enumerate(rounds_of(found)):
+        after = heldout.per_datum(chi2, total)
+        rows.append((f"round {k}: {name}", total, math.nan, after, math.nan, math.nan, 1.0))
     header = ["run", "data", "before", "after", "held_out_before", "held_out_after", "floor"]
     return header, rows
 

@@ -2,6 +2,7 @@
 
 from sonicvacuum.discover import verdict
 from sonicvacuum.discover.fit.goodness import Goodness
+from sonicvacuum.discover.fit.heldout import per_datum
 from sonicvacuum.discover.judge import degenerate, explanations
 from sonicvacuum.discover.judge.degenerate import Elsewhere, Limit
 from sonicvacuum.discover.rounds import Investigation
@@ -37,7 +38,7 @@ def limits(
     """
     view = found.counted or found
     setup = singles.setup_of(view.forward)
-    excess = float(view.final.normal.chi2.sum() / found.sizes.sum())
+    excess = per_datum(view.final.normal.chi2.sum(), found.sizes.sum())
     wider = max(1.0, excess**0.5) if fit.failed else 1.0
     all_of_them = degenerate.limits(scores, setup, wider, _elsewhere(found))
     untestable = sorted({one.effect for one in all_of_them if not one.testable})

@@ -16,7 +16,7 @@ from sonicvacuum.discover.draws import PROFILE, SAMPLED, VALLEY, Draws
 from sonicvacuum.discover.faults.found import Finding
 from sonicvacuum.discover.faults.table import told
 from sonicvacuum.discover.fit.goodness import Goodness
-from sonicvacuum.discover.fit.heldout import HeldOut
+from sonicvacuum.discover.fit.heldout import HeldOut, per_datum
 from sonicvacuum.discover.fit.places import ALONG
 from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.judge import rivals
@@ -235,8 +235,8 @@ def gap(before: float, after: float) -> Gap:
 
 def gaps(null: Fit, final: Fit, sizes: np.ndarray, before: HeldOut, after: HeldOut) -> Gaps:
     """Fitted and held-out gaps."""
-    total = float(sizes.sum())
-    fitted = gap(float(null.normal.chi2.sum()) / total, float(final.normal.chi2.sum()) / total)
+    total = sizes.sum()
+    fitted = gap(*(per_datum(one.normal.chi2.sum(), total) for one in (null, final)))
     return Gaps(fitted=fitted, held_out=gap(before.mean, after.mean) if len(sizes) > 1 else None)
 
 

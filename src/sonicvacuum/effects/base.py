@@ -117,6 +117,11 @@ class Effect:
         """The parameter that says where the effect sits, in all setups or in some; None without one."""
         return self.places or self.of_several
 
+    @property
+    def of_gauges(self) -> bool:
+        """Whether it acts on readings only, at one gauge or in the electronics of all."""
+        return self.places == "sensor" or all(p.electronic for p in self.parameters)
+
     def located(self, chain: Chain) -> "Effect":
         """The effect as one that sits somewhere, where a chain leaves it a choice; else the same."""
         choice = self.of_several is not None and len(self._possible(Setup(chain))) > 1

@@ -220,8 +220,10 @@ class _Look:
         self._levels()
         self._baselines()
         if self.blank and len(self.blank) == len(self.predicted):
-            # Nothing was measured at all: there is nothing to put right.
-            return Bench(self.record)
+            # No trace tells of an impact: no sample counts, and nothing is put right.
+            signals = self.record.signals.items()
+            nothing = {(k, id): np.ones(s.samples, dtype=bool) for k, s in signals for id in s.readings}
+            return Bench(self.record, nothing)
         for run, id in self.silent:
             self.readings[run].pop(id, None)
         signals = {

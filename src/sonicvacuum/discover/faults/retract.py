@@ -18,6 +18,7 @@ from sonicvacuum.discover.faults.weights import ALIKE, unexplained
 from sonicvacuum.discover.fit.refit import Fit, fit
 from sonicvacuum.discover.model.experiment import Experiment
 from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.model.masks import stuck
 from sonicvacuum.discover.rounds import Investigation
 from sonicvacuum.records import Record
 
@@ -83,10 +84,12 @@ class _Asked:
         return set(best) if lower > policy.LEAST_GAIN else set()
 
     def silence(self, slip: Slipped) -> bool:
-        """Whether the effects say of the traces that were left out what silence says of them; a gauge's own
-        effect, which takes its reading down to nothing, is that slip in other words.
+        """Whether the effects say of the traces that were left out what silence says of them; an effect of
+        gauges, which takes readings down to nothing, is that slip in other words.
         """
-        if any(c.effect.places == "sensor" for c in self.found.final.hypothesis.components):
+        if any(c.effect.of_gauges for c in self.found.final.hypothesis.components):
+            return False
+        if self._stuck(slip):
             return False
         forward, one = self._fitted({slip})
         more = one.objective - self.found.final.objective
@@ -100,5 +103,11 @@ class _Asked:
             float(np.square(trace / sigma[gauge]).sum())
             for run, signals in self.record.signals.items()
             for gauge, trace in signals.readings.items()
-            if gauge in sigma and id == (run if fault == "run-without-impact" else gauge)
+            if gauge in sigma and id == (run if fault == "run-without-impact" else gauge) and not stuck(trace)
         )
+
+    def _stuck(self, slip: Slipped) -> bool:
+        """Whether a gauge was left out that is stuck: no sample of it counts, whatever effects say."""
+        fault, id = slip
+        read = [s.readings[id] for s in self.record.signals.values() if id in s.readings]
+        return fault == "gauge-dead" and any(map(stuck, read))

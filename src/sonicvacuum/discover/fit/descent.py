@@ -51,7 +51,7 @@ def descend(
     """
     lanes = len(now.u)
     now = now.take(np.arange(lanes))
-    size = sum(forward.experiment.size(run) for run in range(len(now.chi2)))
+    size = max(1, sum(forward.experiment.size(run) for run in range(len(now.chi2))))
     damping = np.full(lanes, 1e-3)
     settled, left = ~np.isfinite(now.objective), np.zeros(lanes, dtype=bool)
     progress = worth.Progress(lanes, size, reach)

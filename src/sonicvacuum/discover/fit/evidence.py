@@ -139,6 +139,13 @@ def log_weights(log_bayes: Mapping[str, float], odds: Mapping[str, float] | None
     return {"none": math.log(PRIOR_NONE)} | weights
 
 
+def before_data(effects: Iterable[str], odds: Mapping[str, float] | None = None) -> dict[str, float]:
+    """Probability of none, unknown and effects where nothing was measured: the prior."""
+    logs = log_weights(dict.fromkeys(effects, 0.0), odds) | {"unknown": math.log(PRIOR_UNKNOWN)}
+    total = np.logaddexp.reduce(list(logs.values()))
+    return {name: math.exp(log - total) for name, log in logs.items()}
+
+
 def probabilities(
     candidates: list[Candidate],
     residual_p: float,

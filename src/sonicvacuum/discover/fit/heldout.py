@@ -27,7 +27,12 @@ class HeldOut:
     @property
     def mean(self) -> float:
         """χ² per datum over all runs."""
-        return float(self.chi2.sum() / self.size.sum())
+        return per_datum(self.chi2.sum(), self.size.sum())
+
+
+def per_datum(chi2: float, size: int) -> float:
+    """χ² per datum; that of noise, 1, where there are no data, as of runs that were never struck."""
+    return float(chi2) / float(size) if size else 1.0
 
 
 def held_out(fit: Fit, sizes: np.ndarray, nominal: HeldOut | None = None) -> HeldOut:
