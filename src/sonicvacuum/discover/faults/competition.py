@@ -212,12 +212,12 @@ class Search(Searching):
         """The only slip that leaves noise beside the effect that explains nearly all, but not all, by itself:
         where a strong effect acts, the nominal model does not tell which slip was made.
         """
-        size, best = data(model.forward), self._alone.beside(model)[0]
-        left = best.fit.objective - size
+        size, best = data(model.forward), [c.fit for c in self._alone.beside(model)[:1]]
+        left = min((one.objective for one in best), default=math.inf) - size
         if not max(policy.GROSS * size, policy.SURE_GAIN) < left < policy.NEARLY * excess(model):
             return None
         behind = self.behind
-        beside, self.behind = self.ranked(replace(model, fit=best.fit), afar=True), behind
+        beside, self.behind = self.ranked(replace(model, fit=best[0]), afar=True), behind
         fitting = [j for j in beside if left - j.gain < scatter(size)]
         return fitting[0] if len(fitting) == 1 else None
 

@@ -104,7 +104,7 @@ class Screen:
         values, vectors = np.linalg.eigh(self.correlation)
         noise = draws @ (vectors * np.sqrt(np.maximum(values, 0.0))).T
         two_sided = np.array([d.two_sided for d in self.directions])
-        largest = np.where(two_sided, np.abs(noise), np.maximum(noise, 0.0)).max(axis=1)
+        largest = np.where(two_sided, np.abs(noise), np.maximum(noise, 0.0)).max(axis=1, initial=0.0)
         return np.square(largest)
 
     def threshold(self, false_alarm: float) -> float:
@@ -141,7 +141,9 @@ def screen(
     # The others are the larger ones, of many places: they come first, so that all end together.
     asked = [*((family, True) for family in also), *((family, rough) for family in families)]
     parts = abreast.each(forward, taken, asked, calls=abreast.SLOPES)[len(also) :]
-    slopes = [np.concatenate([p[run] for p in parts]) for run in range(len(base))]
+    # None where the record excludes every effect.
+    none = [np.zeros((0, columns.shape[2])) for columns in base]
+    slopes = [np.concatenate([none[run], *(p[run] for p in parts)]) for run in range(len(base))]
     directions = tuple(d for f in families for d in f.directions)
     return from_columns(forward, fit, directions, base, slopes)
 
