@@ -87,6 +87,11 @@ def test_wider_bounds_keep_to_what_values_may_mean(effect, setup):
         wide = bounds._wider(coordinate(parameter, setup))
         for u in (wide.low, wide.high):
             parameter.check(wide.value(u), effect.id)
+        far = replace(wide, low=wide.low - 50.0, high=wide.high + 50.0)
+        for _ in range(3):
+            far = bounds._wider(far)
+        for u in (far.low, far.high):
+            parameter.check(far.value(u), effect.id)
 
 
 def test_a_bound_is_near_within_a_standard_error_and_never_towards_off(hidden, empty, setup):

@@ -127,5 +127,6 @@ def _place(c, value):
     if not np.isfinite(value) or (c.kind != "linear" and value <= 0.0):
         below = value <= 0.0 or value == -np.inf
         return np.inf if below == (c.kind == "inverse") else -np.inf
-    # A limit itself may be singular.
-    return c.inverse(value) + (_ROOM if value == c.parameter.limits[0] else -_ROOM)
+    # A limit itself may be singular, and is not passed: the least value is the largest of some coordinates.
+    upwards = (value == c.parameter.limits[0]) != (c.kind == "inverse")
+    return c.inverse(value) + (_ROOM if upwards else -_ROOM)
