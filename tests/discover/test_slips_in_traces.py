@@ -9,7 +9,6 @@ import pytest
 from made_records import SIGMA, made
 from made_slips import altered, unstated
 
-from sonicvacuum.discover import session
 from sonicvacuum.discover.faults import traces
 from sonicvacuum.discover.faults.examine import examine
 from sonicvacuum.discover.model.masks import cut, spikes
@@ -74,42 +73,6 @@ def test_it_is_found_where_noise_is_not_stated(empty, model, fault):
         () if fault == "noise-misstated" else ((fault, run, gauge, value and pytest.approx(value, rel=0.2)),)
     )
     assert told == list(known)
-
-
-@pytest.mark.parametrize("stated", [True, False])
-@pytest.mark.parametrize("level", [0.0, 0.03, -5.0])
-@pytest.mark.parametrize("run", ["v1", None])
-def test_a_gauge_that_is_stuck_is_dead(empty, model, run, level, stated):
-    """Whatever it reads; it ended in an error where that was not 0, of which no sample counts."""
-    stuck = altered(empty, "g4", lambda y: np.full_like(y, level), run)
-    stuck = stuck if stated else unstated(stuck)
-    seen = predicted(together((stuck,)))
-    assert seen["v1"]["g4"].max() == pytest.approx(model["v1"]["g4"].max(), rel=1e-3)
-    bench, (one,) = examine(stuck, seen)
-    assert (one.fault, one.run, one.sensor) == ("gauge-dead", run, "g4")
-    assert "g4" not in bench.record.signals["v1"].readings
-
-
-@pytest.mark.parametrize("stated", [True, False])
-@pytest.mark.parametrize("noisy", [True, False])
-def test_where_no_shot_struck_no_sample_counts(empty, model, noisy, stated):
-    """Effects of gauges explained the silence, or the search ended in an error."""
-    record = empty
-    for gauge in ("g4", "g7", "wall"):
-        record = altered(record, gauge, lambda _: SIGMA * NOISE * noisy)
-    record = record if stated else unstated(record)
-    bench, findings = examine(record, model)
-    missed = [("run-without-impact", "v0"), ("run-without-impact", "v1")]
-    assert [(f.fault, f.run) for f in findings] == missed
-    data = bench.masked(together((bench.record,)))
-    assert [data.size(run) for run in range(2)] == [0, 0]
-    v = session.discover(record, threads=1).verdict
-    assert (v.named, [(f.fault, f.run) for f in v.faults]) == ([], missed)
-    # As probable as before, and nothing above noise.
-    assert v.probabilities["none"] == pytest.approx(0.3, abs=0.02)
-    assert sum(v.probabilities.values()) == pytest.approx(1.0)
-    assert v.gap.fitted.before == v.gap.fitted.after == 1.0
-    assert v.reasons[0].startswith("nothing was measured")
 
 
 @pytest.mark.parametrize("stated", [True, False])

@@ -38,6 +38,8 @@ def verdict(trace: np.ndarray, model: np.ndarray, sigma: float) -> str:
     if not peak > 0.0:
         return ""
     loud = peak > EXPECTED * sigma or np.sqrt(power) > MATCHED * sigma
+    # Where no noise is to be seen, less would be.
+    loud = loud or (still(trace) and peak > SILENT * sigma)
     found = float(np.abs(_slid(trace, model)).max()) / power
     silent = found < _least(power, sigma) and quiet(trace, sigma)
     if loud and silent and not _small(trace, model):
@@ -98,8 +100,13 @@ def preceding(trace: np.ndarray, model: np.ndarray) -> np.ndarray:
 
 
 def quiet(trace: np.ndarray, sigma: float) -> bool:
-    """Whether no sample of (T,) readings stands out of the noise, or none of any level differs."""
-    return bool(np.abs(trace).max() < SILENT * sigma or not np.ptp(trace) > 0.0)
+    """Whether no sample of (T,) readings stands out of the noise, or none of another level."""
+    return still(trace) or bool(np.abs(trace).max() < SILENT * sigma)
+
+
+def still(trace: np.ndarray) -> bool:
+    """Whether (T,) readings never move."""
+    return not np.ptp(trace) > 0.0
 
 
 def _slid(trace, model):

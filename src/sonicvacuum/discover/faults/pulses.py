@@ -50,6 +50,9 @@ def pulses(record: Record, readings: Readings, predicted: Readings, spared: Coll
         if own and len(silent) == len(own):
             found.blank.append(run)
         words |= {(run, id): word for id, word in judged.items()}
+    weak = _unheard(found, readings, noise) if not spared else {}
+    found.blank += weak
+    found.silent |= {(run, id) for run, own in weak.items() for id in own}
     for gauge in record.gauges:
         runs = [run for run in readings if gauge.id in readings[run]]
         struck = [k for k in runs if k not in found.blank]
@@ -62,6 +65,16 @@ def pulses(record: Record, readings: Readings, predicted: Readings, spared: Coll
             inverted = _inverted(gauge, told, readings, predicted, noise[gauge.id])
             found.inverted |= {gauge.id: inverted} if inverted else {}
     return found
+
+
+def _unheard(found, readings, noise) -> Readings:
+    """Runs of which so little is expected that their silence says nothing, where all others are blank: no
+    effect explains any of them then.
+    """
+    rest = {run: own for run, own in readings.items() if run not in found.blank and own}
+    read = [(id, trace) for own in rest.values() for id, trace in own.items()]
+    silent = found.blank and all(expected.quiet(trace, noise[id]) for id, trace in read)
+    return rest if silent else {}
 
 
 def _judged(record, run, own, readings, model, noise):
@@ -82,6 +95,7 @@ def _judged(record, run, own, readings, model, noise):
         late = expected.still_to_come(model[id], time, delays)
         # Where no gauge has a clear pulse, one that would hardly stand out says nothing by its absence.
         faint = float(np.abs(model[id]).max()) <= expected.EXPECTED * noise[id] and not clear
+        faint = faint and not expected.still(readings[id])
         if late or faint or expected.fades(ways[id], model[id], noise[id], ahead):
             judged[id] = ""
     return judged
