@@ -8,11 +8,13 @@ from statistics import median_low
 
 import numpy as np
 
-from sonicvacuum.discover.model.noise import MODEL_FLOOR, flicker, noise, rounding
+from sonicvacuum.discover.model.noise import MODEL_FLOOR, noise, rounding
 from sonicvacuum.records import Record
 
 # Noise of a gauge whose traces are all at rest, so that it is a noise all the same.
 LEAST = 1e-12
+# Parts of a trace, most of which hold no pulse.
+PARTS = 11
 
 
 def heard(record: Record) -> dict[str, float]:
@@ -41,4 +43,13 @@ def _flickering(record, id):
 
 
 def _of_trace(trace):
-    return max(flicker(trace), rounding(trace), MODEL_FLOOR * float(np.abs(trace).max()))
+    return max(_flicker(trace), rounding(trace), MODEL_FLOOR * float(np.abs(trace).max()))
+
+
+def _flicker(trace):
+    """Noise of a sample from third differences, as `noise.flicker` has it, of whose medians few steps of a
+    recorder make one of few values: means of squares do not jump, and the middle one of several parts of a
+    trace has no pulse in it.
+    """
+    parts = [part for part in np.array_split(np.diff(trace, 3), PARTS) if len(part)]
+    return float(np.sqrt(np.median([part @ part / len(part) for part in parts]) / 20.0)) if parts else 0.0
