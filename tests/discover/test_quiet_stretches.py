@@ -34,6 +34,10 @@ def test_noise_that_is_not_stated_is_heard(empty):
     record = altered(record, "wall", lambda y: 10.0 * y, "v1")
     for one in (heard(unstated(empty)), heard(record)):
         assert one == pytest.approx(quiet, rel=0.1)  # two traces of 700 samples know it to a twentieth
+    raised = altered(unstated(empty), "g7", lambda y: y + 3.0 * SIGMA)
+    assert at_rest(raised, bare=True) == pytest.approx(
+        quiet, rel=0.15
+    )  # two stretches of 100 samples and more
     still = altered(unstated(empty), "g7", np.zeros_like)
     assert 0.0 < heard(still)["g7"] < 1e-9
 

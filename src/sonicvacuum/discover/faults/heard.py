@@ -8,6 +8,7 @@ from statistics import median_low
 
 import numpy as np
 
+from sonicvacuum.discover.faults import changes
 from sonicvacuum.discover.model.noise import MODEL_FLOOR, noise, rounding
 from sonicvacuum.records import Record
 
@@ -26,13 +27,18 @@ def heard(record: Record) -> dict[str, float]:
     return {g.id: g.sigma or _flickering(record, g.id) for g in record.gauges}
 
 
-def at_rest(record: Record) -> dict[str, float]:
+def at_rest(record: Record, bare: bool = False) -> dict[str, float]:
     """The same with all that the quiet stretches show, as the search has it: neighbours may be alike, so that
-    they flicker by less than a gauge without a pulse swings.
+    they flicker by less than a gauge without a pulse swings. `bare`: beside the level and the drift of each
+    stretch, which are yet to be taken off.
     """
     if all(g.sigma for g in record.gauges):
         return heard(record)
-    return {g.id: g.sigma or float(own) for g, own in zip(record.gauges, noise((record,))[0], strict=True)}
+    if bare:
+        found = noise((changes.looser(record, {g.id: {"baseline": 1.0} for g in record.gauges}),))[0]
+    else:
+        found = noise((record,))[0]
+    return {g.id: g.sigma or float(own) for g, own in zip(record.gauges, found, strict=True)}
 
 
 def _flickering(record, id):

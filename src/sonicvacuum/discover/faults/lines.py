@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 
 from sonicvacuum.discover.faults import changes, traces
-from sonicvacuum.discover.faults.heard import heard
+from sonicvacuum.discover.faults.heard import at_rest
 from sonicvacuum.discover.faults.slips import Slip, constant
 from sonicvacuum.records import Record
 
@@ -53,7 +53,9 @@ def drifts(record: Record, predicted, known: bool = False) -> list[Slip]:
         known: whether the model has effects, so that all of a trace may tell of its line, where little of it
             is quiet; beside the nominal model an effect would be taken for a line.
     """
-    found = {id: _lines(record, predicted, id, sigma, known) for id, sigma in heard(record).items()}
+    found = {
+        id: _lines(record, predicted, id, sigma, known) for id, sigma in at_rest(record, bare=True).items()
+    }
     return [_slip(record, id, lines) for id, lines in found.items() if lines]
 
 
