@@ -54,6 +54,25 @@ class Strikers:
             return np.where(step > 0.0, np.minimum(1.0, depth / step), 1.0)
 
     @cached_property
+    def rests(self) -> np.ndarray:
+        """(L,) whether strikers have come to rest on what they met: in the second half of the times no force
+        lifts them faster than their weight would let them fall.
+        """
+        late, chain = self._force[:, self._samples // 2 :], self._chain
+        return (late > 0.0).all(axis=1) & (late.max(axis=1) < 2.0 * chain.striker_mass * chain.gravity)
+
+    @cached_property
+    def rebound(self) -> np.ndarray:
+        """(L,) restitution at the first opening, whatever follows; NaN where there is none."""
+        place, chain = np.arange(self._samples), self._chain
+        free = ~self._borne & (place > self._borne.argmax(axis=1)[:, None])
+        opened = free.argmax(axis=1)
+        force = np.where(place <= opened[:, None], self._force, 0.0)
+        impulse = np.trapezoid(force, self._time, axis=1) / chain.striker_mass
+        speed = impulse - chain.gravity * self._time[opened] - chain.speed
+        return np.where(self._any & free.any(axis=1), speed / chain.speed, np.nan)
+
+    @cached_property
     def restitution(self) -> np.ndarray:
         """(L,) as `contacts.restitution` has it, NaN where one has to look closer."""
         mass, speed, gravity = self._chain.striker_mass, self._chain.speed, self._chain.gravity
