@@ -57,22 +57,28 @@ def _far(record, predicted, read):
     """The slips that a gauge sits two beads and more from where it is stated."""
     inside = [g for g in record.gauges if g.bead is not None]
     free = sorted(set(range(1, record.beads + 1)) - {g.bead for g in inside})
-    found = []
+    places = {gauge.id: [bead for bead in free if abs(bead - gauge.bead) > 1] for gauge in inside}
+    if not any(places.values()):
+        return []
+    asked = [_at(gauge, bead) for gauge in inside for bead in (gauge.bead, *places[gauge.id])]
+    model, found = read(asked), []
     for gauge in inside:
-        far = [bead for bead in free if abs(bead - gauge.bead) > 1]
-        for bead in _nearer(record, gauge, predicted, far, read):
+        far = places[gauge.id]
+        for bead in _nearer(record, gauge, predicted, far, model):
             change = partial(ignoring, changes.gauges_at, {gauge.id: bead})
             found.append(_moved(gauge.id, bead, change, len(far) * len(inside)))
     return found
 
 
-def _nearer(record, gauge, predicted, beads, read):
+def _at(gauge, bead):
+    """The same gauge in a bead, under a name of its own."""
+    return replace(gauge, id=f"{gauge.id} {bead}", bead=bead)
+
+
+def _nearer(record, gauge, predicted, beads, model):
     """The beads at which the model reads more nearly what a gauge recorded than in its own."""
-    if not beads:
-        return []
-    own = replace(gauge, id="own")
-    others = [replace(gauge, id=f"{gauge.id} {bead}", bead=bead) for bead in beads]
-    alike = _alike(record, gauge, predicted, read([own, *others]))
+    ids = [_at(gauge, bead).id for bead in (gauge.bead, *beads)]
+    alike = _alike(record, gauge, predicted, {run: {id: own[id] for id in ids} for run, own in model.items()})
     gained = (alike[1:] - alike[0]) / max(1, sum(gauge.id in own for own in predicted.values()))
     best = np.argsort(-gained, kind="stable")[:NEAREST]
     return [beads[k] for k in best if gained[k] > NEARER]

@@ -10,7 +10,6 @@ import numpy as np
 
 from sonicvacuum.discover.fit.refit import Fit, fit
 from sonicvacuum.discover.model.forward import Forward
-from sonicvacuum.discover.model.nuisances import SCATTER
 
 # Draws of a round, and how wide they lie in standard errors: first about beads that weigh alike, then about
 # the best.
@@ -25,8 +24,7 @@ SEED = 0x6EAD
 
 def lower(forward: Forward, one: Fit) -> Fit:
     """The lowest minimum found for a hypothesis, `one` where none is lower or beads weigh alike."""
-    layout = forward.layout
-    places = [k for k in layout.other(SCATTER) if k in layout.simulated and forward.nuisance_sigma[k]]
+    places = [k for k in forward.layout.scattered if forward.nuisance_sigma[k]]
     best, ends = one, []
     for seed in np.random.SeedSequence(SEED).spawn(AGAIN) if places else ():
         found = _descended(forward, one, places, np.random.default_rng(seed))

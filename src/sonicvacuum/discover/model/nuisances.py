@@ -187,6 +187,11 @@ class Layout:
         return [self.modulus, *own]
 
     @cached_property
+    def scattered(self) -> list[int]:
+        """Places of the directions in which beads may differ."""
+        return [k for k in self.other(SCATTER) if k in self.simulated]
+
+    @cached_property
     def empty(self) -> list[int]:
         """Places of those that change nothing."""
         return [k for k in self.other(SCATTER) if k not in self.simulated]

@@ -7,7 +7,6 @@ import numpy as np
 from sonicvacuum.discover.fit import wide
 from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.model.forward import Forward
-from sonicvacuum.discover.model.nuisances import SCATTER
 from sonicvacuum.discover.search import secants
 from sonicvacuum.discover.search.screen import Screen
 from sonicvacuum.effects import Effect, Setup
@@ -49,7 +48,7 @@ def strayed(forward: Forward, null: Fit) -> list[tuple[float, int, np.ndarray]]:
     its number, and the (q,) nuisances without it. That one bead is so may be no misfit any more.
     """
     layout = forward.layout
-    at = np.array([k for k in layout.other(SCATTER) if k in layout.simulated], dtype=int)
+    at = np.array(layout.scattered, dtype=int)
     if not len(at):
         return []
     weights = np.array([layout.others[k - layout.modulus - 1].weights for k in at])
