@@ -100,9 +100,11 @@ def test_one_gauge_off_is_told_from_all():
     assert slip(change=scaled(5.0, "far"), sensors__1__gain_rel_sigma="unknown") == []
 
 
-@pytest.mark.parametrize(("sensor", "bead", "said"), [(0, 4, 3), (1, 5, 6), (1, 7, 6), (1, 8, 6)])
+@pytest.mark.parametrize(
+    ("sensor", "bead", "said"), [(0, 4, 3), (0, 9, 3), (1, 2, 6), (1, 5, 6), (1, 7, 6), (1, 8, 6)]
+)
 def test_a_bead_counted_wrongly_is_named_with_the_right_one(sensor, bead, said):
-    found = slip(**{f"sensors__{sensor}__bead": bead})
+    found = [line for line in slip(**{f"sensors__{sensor}__bead": bead}) if "begins" not in line]
     gauge = CONTENT["sensors"][sensor]["id"]
     one(found, f"gauge {gauge}: its pulses come when they should at bead {said}, not at bead {bead}")
 

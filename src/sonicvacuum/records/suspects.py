@@ -3,7 +3,7 @@
 Traces differ from the nominal model for two reasons: a slip (a trigger, volts, a bead counted wrongly, the
 wrong ball), or physics that the model lacks, which is what `discover` is for. Only differences that no effect
 of the catalogue usually makes are told here: a common shift of all arrivals, amplitudes off by a factor, an
-arrival that fits the neighbouring bead, a mass that the material does not have.
+arrival that fits another bead, a mass that the material does not have.
 """
 
 import itertools
@@ -31,8 +31,6 @@ ALONE = 0.4
 SIGMAS, HALF_WIDTHS = 5.0, 0.5
 # A moved gauge must explain the arrivals better by so much (in chi²) than none, and than any other one.
 GAIN, LEAD = 25.0, 9.0
-# By how many beads a gauge may have been counted wrongly.
-STEPS = (-3, -2, -1, 1, 2, 3)
 # An unknown time zero has a standard error of this many passages of a bead.
 _FREE = 1e3
 
@@ -191,9 +189,9 @@ def _trigger(record, expected, run) -> Iterator[str]:
 
 
 def _beads(record, expected) -> Iterator[str]:
-    """A gauge whose arrivals in all runs fit a bead nearby, better than a late trigger does."""
+    """A gauge whose arrivals in all runs fit another bead, better than a late trigger does."""
     inside = {g.id: g.bead for g in record.gauges if g.bead is not None}
-    moves = [(g, s) for g, b in inside.items() for s in STEPS if 1 <= b + s <= record.beads]
+    moves = [(g, at - b) for g, b in inside.items() for at in range(1, record.beads + 1) if at != b]
     stated = record.trigger_sigma_s
     moved = {move: _misfit(expected, stated, *move) for move in moves}
     if not moved:
@@ -211,7 +209,7 @@ def _beads(record, expected) -> Iterator[str]:
 
 
 def _misfit(expected, trigger, moved=None, step=0):
-    """chi² of all runs' arrivals with one gauge moved by a bead, for a trigger known to so many s."""
+    """chi² of all runs' arrivals with one gauge moved by `step` beads, for a trigger known to so many s."""
     total = 0.0
     for run in expected.bead_passage:
         gauges, model, data, passage = _arrivals(expected, run)
