@@ -2,7 +2,10 @@
 before.
 """
 
+from dataclasses import replace
+
 import msgspec
+import numpy as np
 import pytest
 from made_records import made
 
@@ -96,3 +99,13 @@ def test_a_gauge_that_is_beads_away_is_told(empty, bead):
 def test_only_beads_away_are_asked_for_beside_the_neighbouring_ones(empty):
     found = asked(changes.gauges_at(empty, {"g4": 9}))
     assert found and all(id == "g4" and abs(bead - 9) > 1 for id, bead in found)
+
+
+def test_gauges_whose_pulses_lie_before_the_impact_say_nothing_of_the_speed(empty):
+    """Where the model's pulse is not in the window a shift by the wave's speed was beyond any number."""
+    early = {run: replace(s, time_us=s.time_us - 1e4) for run, s in empty.signals.items()}
+    record = replace(empty, signals=early)
+    still = {run: {g: np.zeros(len(s.time_us)) for g in s.readings} for run, s in early.items()}
+    model = {run: {"own": s.readings["g7"]} for run, s in early.items()}
+    gauge = next(g for g in record.gauges if g.id == "g4")
+    assert np.isfinite(seats._alike(record, gauge, {r: still[r] | model[r] for r in still}, model)).all()

@@ -33,6 +33,13 @@ def test_a_run_that_suits_no_other_keeps_its_own_shift():
     assert start._lags(pairs) == {0: 10, 1: 12, 2: 250}
 
 
+def test_a_trace_upside_down_lies_where_it_would_the_right_way_up():
+    """The gauge that is inverted pushed its run to where its pulse met nothing."""
+    upright, inverted = (trace(size, 0.0, 20.0) for size in (1.0, -2.0))
+    model = trace(1.0, 0.0, 0.0)
+    assert start._lags({0: [(inverted, model), (upright, model)]}) == {0: 20}
+
+
 @pytest.mark.parametrize("lengths", [(400, 300), (250, 400)])
 def test_runs_of_unequal_length_are_held_against_each_other(lengths):
     pairs = {

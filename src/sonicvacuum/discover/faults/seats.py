@@ -143,8 +143,9 @@ def _alike(record, gauge, predicted, model):
         for place, own in enumerate(model[run].values()):
             size = max(float(np.linalg.norm(own) * np.linalg.norm(trace)), 1e-300)
             products = correlated(own, trace) / size
-            # Others' traces are early or late because all are, or because the wave is fast or slow.
-            shifts = (early, early * arrival(time, own) / max(usual, 1e-300))
+            # Others' traces are early or late because all are, or because the wave is fast or slow; one that
+            # the window does not hold tells no speed.
+            shifts = (early, early * arrival(time, own) / usual if usual > 0.0 else early)
             at = [len(trace) - 1 + round(shift / (1e6 * signals.interval_s)) for shift in shifts]
             alike[place] += max(products[np.clip(at, 0, len(products) - 1)])
     return alike

@@ -84,11 +84,13 @@ def _lags(pairs) -> dict[int, int]:
 
 
 def _alike(found):
-    """How much the traces of a run resemble the predicted ones at each shift, and the place of no shift."""
+    """How much the traces of a run resemble the predicted ones at each shift, upside down or not, and the
+    place of no shift.
+    """
     total = 0.0
     for measured, predicted in found:
         size = np.linalg.norm(measured) * np.linalg.norm(predicted)
-        total = total + correlated(measured, predicted) / (size or 1.0)
+        total = total + np.abs(correlated(measured, predicted)) / (size or 1.0)
     return len(found[0][1]) - 1, total
 
 
