@@ -157,12 +157,14 @@ def strained(verdict: Verdict, model: Model, record: Record) -> list[str]:
 
 def _moves(verdict, model, record) -> Iterator[tuple[float, str]]:
     """(shift over its error, sentence)."""
+    told = {f.run for f in verdict.faults if f.fault == "time-zero" and f.corrected}
     for run in record.runs:
         ratio, shift = model.speed_ratio.get(run.id, 1.0), model.trigger_us.get(run.id, 0.0)
         said = _asked(f"the striker's speed in run {run.id}", ratio)
         yield from _far(math.log(ratio), run.striker.speed_rel_sigma, said)
-        said = f"Check the time zero of run {run.id}: the data ask for a shift of {shift:.3g} µs"
-        yield from _far(shift / 1e6, record.trigger_sigma_s, said)
+        if not told & {None, run.id}:
+            said = f"Check the time zero of run {run.id}: the data ask for a shift of {shift:.3g} µs"
+            yield from _far(shift / 1e6, record.trigger_sigma_s, said)
     for gauge in record.gauges:
         ratio = model.gain.get(gauge.id, 1.0)
         said = f"Check the calibration of gauge {gauge.id}: it reads {ratio:.3f} of what the model expects"

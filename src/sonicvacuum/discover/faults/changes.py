@@ -90,14 +90,17 @@ def gauges_swapped(record: Record, one: str, two: str) -> Record:
 
 
 def gauges_renamed(record: Record, names: Mapping[str, str]) -> Record:
-    """The readings of gauges under other names, id → id; noise and gain stay with the cables."""
+    """The readings of gauges and the steps in them under other names, id → id; noise and gain stay with the
+    cables.
+    """
 
     def renamed(signals):
         return Signals(signals.time_us, {names.get(k, k): v for k, v in signals.readings.items()})
 
     if not record.signals:
         return _block(record, runs=[_renamed(run, names) for run in record.block.runs])
-    return replace(record, signals={k: renamed(s) for k, s in record.signals.items()})
+    steps = {names.get(id, id): step for id, step in record.steps.items()}
+    return replace(record, signals={k: renamed(s) for k, s in record.signals.items()}, steps=steps)
 
 
 def _renamed(run, names):
@@ -146,14 +149,15 @@ def trace_scaled(record: Record, run: str, id: str, ratio: float) -> Record:
 
 
 def gains(record: Record, log_ratio: float) -> Record:
-    """All readings over a ratio, with the errors that are in their unit: noise, offset and drift."""
+    """All readings over a ratio, with what is in their unit: noise, offset, drift, the recorder's steps."""
     ratio = math.exp(-log_ratio)
     sensors = [_scaled_noise(s, ratio) for s in record.block.sensors]
     signals = {
         k: Signals(s.time_us, {g: v * ratio for g, v in s.readings.items()})
         for k, s in record.signals.items()
     }
-    return replace(_block(record, sensors=sensors), signals=signals)
+    steps = {id: step * ratio for id, step in record.steps.items()}
+    return replace(_block(record, sensors=sensors), signals=signals, steps=steps)
 
 
 def _scaled_noise(sensor, ratio):
@@ -179,6 +183,11 @@ def time_zero(record: Record, late_us: dict[str, float], sigma_us: float) -> Rec
     given = record.block.trigger_sigma_us
     wider = given if given == "unknown" else max(given, sigma_us)
     return replace(_block(record, trigger_sigma_us=wider), signals=signals)
+
+
+def triggered(record: Record, sigma_us: float | str) -> Record:
+    """Time zeros known so well, in us."""
+    return _block(record, trigger_sigma_us=sigma_us)
 
 
 def delayed(record: Record, id: str, late_us: float) -> Record:

@@ -32,6 +32,7 @@ from sonicvacuum.discover.faults.judged import (
 from sonicvacuum.discover.faults.retract import retracted, value
 from sonicvacuum.discover.faults.searching import Led, Searching
 from sonicvacuum.discover.faults.table import FAULTS
+from sonicvacuum.discover.faults.timing import counted_on
 from sonicvacuum.discover.faults.weights import (
     ALIKE,
     NUISANCES,
@@ -150,8 +151,8 @@ class Search(Searching):
         else:
             ranked, looked = [], True
         bench = self.bench
-        found = self._factors_anew(self._effects_instead(self._investigate()))
-        found = self._clock_by_a_step(found)
+        found = self._clock_by_a_step(self._factors_anew(self._effects_instead(self._investigate())))
+        found = self._zeros_as_stated(found)
         anew = self.bench is not bench
         if anew or (model.bench is bench and found.null.objective < model.fit.objective - SAME_MINIMUM):
             # What slips gained beside spikes, or on a fit that had stopped short, is none of their own.
@@ -168,9 +169,8 @@ class Search(Searching):
             if better is None:
                 break
             found, ranked = better, []
-        order = sorted(self.findings, key=lambda f: -f.probability)
-        simulations = self.simulations + self._alone.simulations
-        return Outcome(found, tuple(order), self.bench.record, simulations)
+        order = sorted(counted_on(self.findings, found), key=lambda f: -f.probability)
+        return Outcome(found, tuple(order), self.bench.record, self.simulations + self._alone.simulations)
 
     def _sure(self, judged: Judged, model: Model) -> bool:
         """Whether a slip is put right before effects are asked for."""

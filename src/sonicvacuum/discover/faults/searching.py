@@ -20,6 +20,7 @@ from sonicvacuum.discover.faults.judging import Judge
 from sonicvacuum.discover.faults.ranking import Ranking
 from sonicvacuum.discover.faults.slips import hypotheses
 from sonicvacuum.discover.faults.strays import Strays, masked, strays, told
+from sonicvacuum.discover.faults.timing import stated_again
 from sonicvacuum.discover.faults.weights import hollow, unexplained, weight_of
 from sonicvacuum.discover.fit.enough import data
 from sonicvacuum.discover.fit.evidence import Candidate
@@ -65,6 +66,7 @@ class Searching(Ranking):
         self._nominal: Model | None = None
         self._led: Led | None = None
         self._alone = Kept()
+        self._given = bench.record
 
     def _accept(self, ranked: list[Judged], chosen: Judged, share: float = 1.0) -> None:
         """Put a slip right; its rivals are said as far as they are probable."""
@@ -158,6 +160,30 @@ class Searching(Ranking):
             return found
         self.simulations += found.forward.chains
         self.findings = [replace(f, value=step) if f is told else f for f in self.findings]
+        return after
+
+    def _zeros_as_stated(self, found: Investigation) -> Investigation:
+        """The effects beside time zeros as they are stated, where these explain the record as well: what an
+        effect delays looks at first like triggers that nobody knows.
+        """
+        told = [f for f in self.findings if f.corrected and f.fault == "time-zero"]
+        if len(told) != 1 or (told[0].run, told[0].value) != (None, None) or found.final is found.null:
+            return found
+        again = stated_again(self.bench.record, self._given)
+        if again is None:
+            return found
+        record, cost = again
+        bench, one = replace(self.bench, record=record), found.final
+        forward = found.forward.of(self.make(bench))
+        trial = fit(forward, one.hypothesis, one.u[None], np.zeros((1, forward.layout.size)))
+        self.simulations += forward.chains
+        if trial.objective - one.objective > cost:
+            return found
+        after = investigate(self.make(bench), self.threads)
+        self.simulations += found.forward.chains
+        if unexplained(after) and not unexplained(found):
+            return found
+        self.bench, self.findings = bench, [f for f in self.findings if f is not told[0]]
         return after
 
     def _beside_clock(self, ratio: float) -> tuple[Model, float]:

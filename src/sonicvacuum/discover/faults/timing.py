@@ -1,14 +1,19 @@
 """Slips of time: where each run, and each gauge in it, sits in time beside the model's readings."""
 
 import math
+from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
 from sonicvacuum.discover.correlation import correlated
 from sonicvacuum.discover.faults import changes
+from sonicvacuum.discover.faults.found import Finding
 from sonicvacuum.discover.faults.judged import Model
+from sonicvacuum.discover.faults.policy import log_prior
 from sonicvacuum.discover.faults.slips import WIDTH, Slip, constant, ignoring
+from sonicvacuum.discover.rounds import Investigation
 from sonicvacuum.records import Record
 
 # A run is shifted where its traces fit best so many standard errors of its trigger off.
@@ -86,6 +91,33 @@ def unknown_zeros(record: Record, predicted) -> list[Slip]:
     change = partial(ignoring, changes.time_zero, {}, width)
     occam = -len(runs) * math.log(width / interval)
     return [Slip("time-zero", change, value=partial(constant, None), occam=occam)]
+
+
+def stated_again(record: Record, given: Record) -> tuple[Record, float] | None:
+    """A record whose time zeros are known as well as stated once more, and what more χ² that may cost: as
+    much as a time zero of their own in each run must gain. None where nothing was changed.
+    """
+    now, before = record.block.trigger_sigma_us, given.block.trigger_sigma_us
+    if now == before:
+        return None
+    interval = max(s.interval_s for s in record.signals.values()) * 1e6
+    cost = 2.0 * len(record.signals) * math.log(max(now / interval, 1.0)) - 2.0 * log_prior(1)
+    return changes.triggered(record, before), cost
+
+
+def counted_on(findings: Sequence[Finding], found: Investigation) -> tuple[Finding, ...]:
+    """Slips, the time zero of all runs with what the effects found ask for besides: how late pulses are was
+    told by the nominal model's.
+    """
+    layout, sigma = found.forward.layout, found.forward.nuisance_sigma
+    places = [layout.trigger(k) for k, run in enumerate(found.forward.experiment.runs) if run.has_signals]
+    more = 1e6 * float(np.mean(found.final.nu[places] * sigma[places])) if places else 0.0
+    return tuple(
+        replace(f, value=f.value - more)
+        if f.fault == "time-zero" and f.corrected and f.run is None and f.value is not None
+        else f
+        for f in findings
+    )
 
 
 def late_runs(record: Record, model: Model, predicted) -> list[Slip]:
