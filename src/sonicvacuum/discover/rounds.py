@@ -255,15 +255,15 @@ def _lower(forward, null, found, threshold) -> Fit | None:
     """A lower nominal minimum from where the leading effect has left the nuisances; None where there is none.
 
     A nominal fit that has stopped short of its minimum by less than the scatter of χ² looks like noise, and
-    any effect, however weak, seems to gain what it has missed. One that leaves more may have done so where
-    beads are of several materials, whose moduli make up for each other in more than one way.
+    any effect, however weak, seems to gain what it has missed. One that leaves more may have ended where
+    nuisances make up for each other; beside beads of one material it counts where the other leaves noise.
     """
     if not found or found[0].gain <= threshold:
         return None
     alike = len({bead.surface.name for bead in forward.experiment.batches[0].chain.bodies.kinds}) == 1
-    if alike and wide.leaves_much(forward, null.objective):
-        return None
     one = fit(forward, null.hypothesis, np.zeros((1, 0)), found[0].fit.nu[None])
+    if alike and wide.leaves_much(forward, null.objective) and wide.leaves_much(forward, one.objective):
+        return None
     return one if one.objective < null.objective - policy.SAME_MINIMUM else None
 
 

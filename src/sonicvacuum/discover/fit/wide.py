@@ -144,7 +144,8 @@ def nominal(forward: Forward, held: Hypothesis | None = None) -> Fit:
     """
     held = held or Hypothesis()
     start = np.zeros((1, forward.layout.size))
-    direct = unequal.lower(forward, fit(forward, held, np.zeros((1, 0)), start))
+    direct = fit(forward, held, np.zeros((1, 0)), start)
+    direct = unequal.lower(forward, direct, noise(forward))
     if not leaves_much(forward, direct.objective):
         return direct
     tried = [direct, fit(forward, held, np.zeros((1, 0)), start, coarse=COARSE)]
@@ -194,10 +195,15 @@ def _quicker(forward: Forward, held: Hypothesis, one: Fit) -> np.ndarray:
     return rows[left + np.square(rows).sum(axis=1) < one.objective]
 
 
-def leaves_much(forward: Forward, objective: float) -> bool:
-    """Whether a fit of this objective leaves more than noise does, whatever its shape."""
+def noise(forward: Forward) -> float:
+    """χ² that noise may leave, whatever its shape."""
     size = data(forward)
-    return objective - size >= policy.MINIMA * math.sqrt(2.0 * size)
+    return size + policy.MINIMA * math.sqrt(2.0 * size)
+
+
+def leaves_much(forward: Forward, objective: float) -> bool:
+    """Whether a fit of this objective leaves more than noise does."""
+    return objective >= noise(forward)
 
 
 def again(forward: Forward, one: Fit, more: np.ndarray | None = None) -> Fit:
