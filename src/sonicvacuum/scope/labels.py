@@ -45,11 +45,16 @@ _REMARK = re.compile(
 # Counts of samples or of the ticks of a clock.
 TICKS = re.compile(r"(samples?|ticks?|pts|points?|counts?|cycles|scans?|index|idx|n)\.?", re.IGNORECASE)
 _BRACKETS = re.compile(r".*[(\[<]([^()\[\]<>]+)[)\]>]\s*$")
+# A unit in brackets before the words that tell a run or a channel, as in `Time (ms) Run #1`, `F [kN] - Ch1`;
+# what stands there instead of words may be a factor.
+_REMARKED = re.compile(r"(.*\w)\s*[(\[]([^()\[\]]+)[)\]]\s*([-:|,]?\s*(?!x\s*\d|e[-+]?\d)(?:[^\W\d]|#).*)$")
+# Times as programs call them, with the unit as the last part of one word.
+_TIME_IN_WORD = re.compile(r"(time(?:stamp)?|elapsed|zeit|t)(ms|msec|us|µs|usec|ns|nsec|sec)", re.IGNORECASE)
 
 
 def split_unit(label: str) -> tuple[str, Unit | None]:
     """A column's label as name and unit: `CH1 (V)`, `Time [ms]`, `C1 in V`, `F/N`."""
-    label = label.strip().lstrip("#%").strip().strip('"')
+    label = label.strip().lstrip("#%").strip().strip('"').rstrip(":").rstrip()
     for form in _UNIT_AT_END:
         found = form.match(label)
         unit = unit_of(found.group(2)) if found else None
@@ -72,7 +77,17 @@ def split_unit(label: str) -> tuple[str, Unit | None]:
     scaled = quantity(found.group(1)) if found else None
     if scaled and scaled[1] and scaled[1].base == "s" and scaled[0] > 0.0:
         return label[: found.start(1) - 1].strip(), Unit("s", scaled[0] * scaled[1].factor)
-    return label, None
+    return _within(label)
+
+
+def _within(label):
+    """Name and unit where a remark follows the unit, or where name and unit of a time are one word."""
+    found = _REMARKED.match(label)
+    unit = unit_of(found.group(2)) if found else None
+    if unit:
+        return f"{found.group(1)} {found.group(3)}", unit
+    found = _TIME_IN_WORD.fullmatch(label)
+    return (found.group(1), unit_of(found.group(2).lower())) if found else (label, None)
 
 
 def _behind(label):
@@ -100,9 +115,9 @@ def _is_time_word(name):
 def unknown_time_unit(label: str) -> str:
     """What stands where the unit of a time would and is none that is known, "" where nothing does."""
     label = label.strip().strip('"')
-    found = re.search(r"[(\[<{]([^()\[\]<>{}]+)[)\]>}]\s*$", label)
-    if found:
-        text = found.group(1).strip()
+    within, found = _REMARKED.match(label), re.search(r"[(\[<{]([^()\[\]<>{}]+)[)\]>}]\s*$", label)
+    if found or within:
+        text = (found.group(1) if found else within.group(2)).strip()
         words = text.split()
         unit = next((u for u in map(unit_of, (words or [""])[:: max(1, len(words) - 1)]) if u), None)
         if len(words) > 1 and not (unit and unit.base == "s") and not words[0][0].isdigit():
