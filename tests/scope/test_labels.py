@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from odd_files import PULSE, TIMES, recording, rows
+from odd_files import PULSE, SECOND, TIMES, recording, rows
 
 # Labels of times and of forces with their units before a remark, and the name that is left.
 REMARKED = [
@@ -36,3 +36,39 @@ def test_what_follows_brackets_may_be_no_remark(tmp_path, label):
     (channel,) = recording(tmp_path, f"Time (s),{label}\n" + rows(TIMES, PULSE)).channels
     assert (channel.name, channel.unit) == (label, "")
     assert np.array_equal(channel.values, PULSE)
+
+
+@pytest.mark.parametrize("first", ["Frequency (Hz)", "Freq", "Position (mm)", "Displacement", "Voltage (V)"])
+def test_a_column_of_another_quantity_is_no_time(tmp_path, first):
+    channels = recording(tmp_path, f"{first},F (N)\n" + rows(1e-3 * np.arange(200), PULSE)).channels
+    assert [(c.interval_s, c.samples) for c in channels] == [(None, 200)] * 2
+    assert f"the first column, {first.split(' ')[0]!r}, is no time" in channels[1].notes[0]
+
+
+@pytest.mark.parametrize(
+    ("head", "names"),
+    [
+        ("Time,X,Y\n", ["X", "Y"]),
+        ("t,x,y\n", ["x", "y"]),
+        ("mass_A\nt,x,y\n", ["x", "y"]),
+        ("time,in,out\n", ["in", "out"]),
+    ],
+)
+def test_coordinates_beside_times_are_channels(tmp_path, head, names):
+    channels = recording(tmp_path, head + rows(TIMES, PULSE, SECOND)).channels
+    assert [c.name for c in channels] == names
+    for channel, values in zip(channels, (PULSE, SECOND), strict=True):
+        assert channel.values == pytest.approx(values, abs=1e-7)
+        assert channel.interval_s == pytest.approx(1e-6, rel=1e-6)
+
+
+@pytest.mark.parametrize("head", ["t,F1,t,F2\n", "x,F1,x,F2\n", "t1,F1,t2,F2\n"])
+def test_times_of_the_same_name_are_times(tmp_path, head):
+    channels = recording(tmp_path, head + rows(TIMES, PULSE, TIMES + 5e-6, SECOND)).channels
+    assert [c.name for c in channels] == ["F1", "F2"]
+    assert [c.start_s for c in channels] == pytest.approx([-1e-4, -9.5e-5], rel=1e-6)
+
+
+def test_an_empty_column_with_times_is_left_out(tmp_path):
+    text = "Time (s),CH1 (V),CH2 (V)\n" + rows(TIMES, ["nan"] * 200, SECOND)
+    assert [c.name for c in recording(tmp_path, text).channels] == ["CH2"]

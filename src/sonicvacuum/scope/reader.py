@@ -60,6 +60,9 @@ def _why(table):
     for k in sorted(table.odd):
         if k < len(names) and k < table.places[0] and TIME.fullmatch(split_unit(names[k])[0]):
             return f"the column of times is not read: {_told(table, k)}"
+    first = split_unit(names[table.places[0]])[0] if names else ""
+    if first and roles.even(table.columns[table.places[0]]) and not TIME.fullmatch(first):
+        return f"the first column, {first!r}, is no time, and the header gives no interval"
     return "the file has no times and no interval"
 
 
@@ -81,12 +84,14 @@ def _channels(shot: Shot, layout: Layout, path, why):
     for column in found:
         if column.role == "value":
             values, kept = _held(columns[column.place])
+            if len(values) < 2:
+                place += 1
+                continue
             base = _base(clock, column, columns, kept, keys, place, why)
             channel = _channel(names[place], column, values, base, keys, layout, place, shot.several)
             if shot.several:
                 channel = replace(channel, segment=shot.number)
-            if len(values) > 1:
-                yield channel
+            yield channel
             place += 1
         elif clock is None or column.role == "time":
             clock = column

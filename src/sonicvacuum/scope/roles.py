@@ -20,6 +20,14 @@ from sonicvacuum.scope.units import Unit, spelled, unit_of
 
 # Words that name a kind of quantity, not a channel.
 _GENERIC = re.compile(r"(volts?|voltage|value|ampl(itude)?|data|y|level|signal|spannung)", re.IGNORECASE)
+# Quantities that traces are told over, besides time: steps of these are no steps of time.
+_OTHER = re.compile(
+    r"freq(uency|uenz)?\.?|position|pos|dist(ance)?|displ(acement)?|deflection|stroke|weg|angle|winkel|phase"
+    r"|strain|dehnung|volt(s|age)?|spannung|current|strom|force|kraft|load|temp(erature|eratur)?",
+    re.IGNORECASE,
+)
+# Names of times that as often name a coordinate or an input.
+_VAGUE = re.compile("t|x|in", re.IGNORECASE)
 # Steps of a column of times may differ from the usual by the rounding of what is printed.
 _UNEVEN = 1.5
 
@@ -101,7 +109,8 @@ def _with_twins(found, table):
     result, first = list(found), next((c for c in found if c.role == "time"), None)
     for k, column in enumerate(found[:-1]):
         timed = column.unit is not None and column.unit.base == "s"
-        alike = first and column.unit == first.unit and are_twins(first.name, column.name)
+        named = first and (are_twins(first.name, column.name) or first.name == column.name != "")
+        alike = named and column.unit == first.unit
         # What stands beside times or behind counts alone is no trace of them, but may be the first times.
         apart = k > 1 or (k == 1 and found[0].role == "counter" and first is None)
         before = found[k + 1].role == "value" and (first is None or result[k - 1].role == "value")
@@ -127,9 +136,14 @@ def are_twins(one: str, other: str) -> bool:
 
 
 def _by_numbers(found, table):
-    """Without names: an evenly rising first column is time, and so is each with the same steps further on."""
+    """Without names: an evenly rising first column is time, and so is each with the same steps further on.
+
+    A first column with another unit, or called another quantity, is none.
+    """
     first = table.columns[found[0].place]
-    if not even(first):
+    called = re.split(r"\s*[(\[]", found[0].name)[0]
+    other = found[0].unit is not None or _OTHER.fullmatch(called)
+    if (other and not TIME.fullmatch(called)) or not even(first):
         return found
     steps = np.diff(first)
     same = {
@@ -143,7 +157,7 @@ def _by_numbers(found, table):
 def _is_time(name, unit, first):
     if unit is not None and unit.base == "s":
         return first or bool(TIME.fullmatch(name) or unit_of(name) == unit)
-    return unit is None and bool(TIME.fullmatch(name)) and (first or not re.fullmatch("t|in", name, re.I))
+    return unit is None and bool(TIME.fullmatch(name)) and (first or not _VAGUE.fullmatch(name))
 
 
 def counts(values: np.ndarray) -> bool:
