@@ -72,3 +72,25 @@ def test_times_of_the_same_name_are_times(tmp_path, head):
 def test_an_empty_column_with_times_is_left_out(tmp_path):
     text = "Time (s),CH1 (V),CH2 (V)\n" + rows(TIMES, ["nan"] * 200, SECOND)
     assert [c.name for c in recording(tmp_path, text).channels] == ["CH2"]
+
+
+def test_a_time_named_in_a_row_of_its_own(tmp_path):
+    head = "Channel,1,2\nName,near,far\nUnit,mN,mV\nTime (ms),,\n"
+    channels = recording(tmp_path, head + rows(1e3 * TIMES, 1e3 * PULSE, 1e3 * SECOND)).channels
+    assert [(c.unit, c.interval_s) for c in channels] == [("N", 1e-6), ("V", 1e-6)]
+
+
+def test_names_of_the_first_columns_only(tmp_path):
+    text = "Time (ms),CH1 (mV)\n" + rows(1e3 * TIMES, 1e3 * PULSE, SECOND, form="{:.9g}")
+    first, second = recording(tmp_path, text).channels
+    assert (first.name, first.unit, second.unit) == ("CH1", "V", "")
+    assert first.values == pytest.approx(PULSE, abs=1e-9)
+    assert first.interval_s == second.interval_s == 1e-6
+
+
+@pytest.mark.parametrize("key", ["UnitName=", "Unit Name", "Y Axis Units"])
+def test_units_of_the_header_by_any_key(tmp_path, key):
+    text = f"{key}\tmV\tN\n" + rows(TIMES, 1e3 * PULSE, SECOND, cell="\t")
+    first, second = recording(tmp_path, text).channels
+    assert (first.unit, second.unit) == ("V", "N")
+    assert first.values == pytest.approx(PULSE, abs=1e-6)

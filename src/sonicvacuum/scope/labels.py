@@ -197,6 +197,16 @@ def labels(table: Table) -> Labels:
     return Labels(wide.get(names, []), wide.get(at, []), rows, table.places[-1] + 1)
 
 
+def alone(table: Table, place: int) -> Unit | None:
+    """The unit of time in a label that stands by itself in a row of the header, above one column."""
+    for row in table.header[-LOOKED_AT:]:
+        name, unit = split_unit(_at(row, place))
+        single = sum(map(bool, row)) == 1 and TIME.fullmatch(name) and not is_key(name)
+        if single and unit and unit.base == "s":
+            return unit
+    return None
+
+
 def _names_at(wide, units, last, table):
     """Which of the wide rows holds the names: beside that of units, else one that names a time or units."""
     others = {k: cells for k, cells in wide.items() if not _are_units(cells, table)}
@@ -273,6 +283,11 @@ def _cuts(table, k):
         other = Dialect(mark, table.dialect.decimal).cells(raw)
         if len(other) == width:
             yield other
+    if not blanks and table.dialect.delimiter in raw:
+        # Names of the first columns only; blanks stand within them.
+        if 1 < len(cells) < width and k == len(table.header) - 1 and split_unit(cells[0])[1]:
+            yield cells + [""] * (width - len(cells))
+        return
     joined = re.findall(r"[^\s(\[]+(?:\s*[(\[][^)\]]*[)\]])?", raw)
     for parts in (re.split(r"\s{2,}", raw), joined, raw.split()):
         if len(parts) == width:

@@ -10,6 +10,7 @@ from sonicvacuum.scope.labels import (
     COUNTS,
     TICKS,
     TIME,
+    alone,
     labels,
     split_unit,
     unknown_time_unit,
@@ -70,7 +71,9 @@ def _timed(column, label, table, names):
         return replace(column, unit=Unit("s"), said="")
     if column.role != "time" or column.unit is not None:
         return column
-    said = unknown_time_unit(label)
+    said, unit = unknown_time_unit(label), alone(table, column.place)
+    if unit:
+        return replace(column, unit=unit, said="")
     whole = re.compile(rf"(?<![^\W_]){re.escape(said)}(?![^\W_])", re.IGNORECASE)
     if not said or any(whole.search(name) for name in names if name != column.name):
         # Nothing, or the name of the channel that the times are of.
