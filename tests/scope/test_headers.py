@@ -1,10 +1,12 @@
 """What the rows above the samples say of units and time: the right channel, the right factor, or a remark."""
 
+import re
+
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from odd_files import PULSE, SECOND, recording, rows
+from odd_files import PULSE, SECOND, TIMES, recording, rows
 
 from sonicvacuum.scope.units import quantity, unit_of
 
@@ -190,3 +192,36 @@ def test_capitals_that_are_no_prefix(text):
 def test_blanks_part_thousands():
     assert quantity("500 000 Hz")[0] == 5e5
     assert quantity("12 34 Hz") is None
+
+
+BARE = "X Units,us\nX Increment,{}\nY Units,mV\n"
+
+
+@pytest.mark.parametrize(
+    ("head", "columns"),
+    [(BARE.format(1) + "CH1\n", (PULSE,)), (BARE.format(1) + "Time,CH1\n", (1e6 * TIMES, PULSE))],
+)
+def test_an_interval_of_two_units_is_none(tmp_path, head, columns):
+    (channel,) = recording(tmp_path, head + rows(*columns)).channels
+    assert channel.interval_s is None
+    assert re.search("No time: .* unit of time is us; .* --interval", channel.notes[0])
+
+
+@pytest.mark.parametrize(
+    "head",
+    [
+        BARE.format("1 us") + "CH1\n",
+        "X Units,us\nX Increment,1e-6\nSample Rate,1 MHz\nY Units,mV\nCH1\n",
+        "Time Unit,s\nX Increment,1e-6\nY Units,mV\nCH1\n",
+    ],
+)
+def test_an_interval_with_a_unit_or_a_rate_is_one(tmp_path, head):
+    (channel,) = recording(tmp_path, head + rows(PULSE)).channels
+    assert channel.interval_s == pytest.approx(1e-6, rel=1e-9)
+
+
+@pytest.mark.parametrize(("factor", "told"), [("0.001", True), ("1.0", False)])
+def test_a_factor_of_the_header_is_told(tmp_path, factor, told):
+    (channel,) = recording(tmp_path, f"Scale factor,{factor}\nTime (s),F (N)\n" + rows(TIMES, PULSE)).channels
+    assert np.array_equal(channel.values, [float(f"{v:.7g}") for v in PULSE])
+    assert any(f"factor, {factor}, counts as in the numbers" in n for n in channel.notes) == told

@@ -13,24 +13,28 @@ MEANINGS = {
                  "xincrement", "xincr", "deltax", "dx", "dt", "deltat", "hresolution", "horizontalresolution",
                  "resolution", "timestep", "tinc", "timeincrement", "timeinterval", "sampletime", "interval",
                  "horizinterval", "horizontalinterval", "horinterval", "abtastintervall", "timeresolution",
-                 "timepersample", "timebaseinterval", "clock", "signalresolution"},
+                 "timepersample", "timebaseinterval", "clock", "signalresolution", "xaxisdelta", "xaxisstep"},
     "rate": {"samplerate", "samplingrate", "samplefrequency", "samplingfrequency", "sampfreq", "fs", "rate",
              "abtastrate", "samplespersecond", "samplingclock", "abtastfrequenz", "acquisitionrate",
              "sampleratehz", "scanrate", "sampling"},
     "start": {"start", "x0", "xorg", "xorigin", "xorigine", "xstart", "xzero", "hoffset", "t0", "starttime",
               "timeoffirstpoint", "firstsampletime", "horizoffset", "signalxstart",
-              "firstpointtime", "xoffset"},
+              "firstpointtime", "xoffset", "xaxisstart"},
     "stop": {"xstop", "stoptime", "signalxstop"},
     "trigger": {"triggerpoint", "triggeraddress", "zeroindex", "triggersample", "pretriggersamples",
                 "triggerposition", "triggerindex", "pretrigger"},
     "count": {"recordlength", "samples", "points", "numberofdatapoints", "memorylength", "blocksize", "size",
               "numberofsamples", "numberofpoints", "datapoints", "segmentsize", "signalrecordlength"},
     "unit": {"verticalunits", "verticalunit", "vunit", "yunitlabel", "yunits", "yunit", "units", "unit",
-             "verticalunitlabel", "einheit", "dataunits"},
-    "time unit": {"horizontalunits", "horizontalunit", "hunit", "xunits", "xunit", "timeunits", "timeunit"},
+             "verticalunitlabel", "einheit", "dataunits", "unitname", "unitnames", "channelunits",
+             "yaxisunit", "yaxisunits"},
+    "time unit": {"horizontalunits", "horizontalunit", "hunit", "xunits", "xunit", "timeunits", "timeunit",
+                  "xunitlabel", "xaxisunit", "xaxisunits"},
     "name": {"source", "tracename", "channeldata", "channel", "channels", "trace", "channelname",
              "channelnames", "channeltitle", "labels", "waveformsource", "kanal", "ch", "multichannelsource"},
     "scale": {"verticalscale", "voltsdiv", "voltdiv", "vscale"},
+    "factor": {"scalefactor", "scalingfactor", "multiplier", "calibrationfactor", "conversionfactor", "gain",
+               "sensitivity", "kalibrierfaktor", "skalierungsfaktor"},
 }  # fmt: skip
 # Rows above samples that only say where these begin.
 MARKER = re.compile(r"\W*((waveform|measured|raw) )?(data|values|daten|messwerte)\W*|\*+end.*", re.IGNORECASE)
@@ -82,6 +86,11 @@ class Keys:
         """One channel's number as a multiple of a base unit, which is assumed where none is written."""
         text = self.text(meaning, place, column) or next(iter(self.texts(meaning)), "")
         return _number(text, base, self.units.get(meaning, ""), self.decimal)
+
+    def bare(self, meaning: str) -> bool:
+        """Whether a number stands there without any unit of its own."""
+        got = [quantity(t, self.decimal) or quantity(t) for t in self.texts(meaning)[:1]]
+        return not self.units.get(meaning) and any(q and q[1] is None for q in got)
 
     def texts(self, meaning: str) -> list[str]:
         """Values of a meaning that are not empty."""

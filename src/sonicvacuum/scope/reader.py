@@ -16,7 +16,7 @@ from sonicvacuum.scope.recording import Channel, Recording
 from sonicvacuum.scope.shots import Shot, shots
 from sonicvacuum.scope.table import split, whole
 from sonicvacuum.scope.timebase import TimeBase, from_column, from_header
-from sonicvacuum.scope.units import unit_of
+from sonicvacuum.scope.units import quantity, unit_of
 
 _HEAD = 20_000
 # A channel's mark in the name of a file that holds one channel.
@@ -138,6 +138,9 @@ def _channel(name, column, values, base, keys, layout, place, several):
         notes += [said] if said else []
     unit, factor = _unit(column, keys, layout, place, notes)
     values = np.where(np.abs(values) > OVERFLOW, np.copysign(np.inf, values), values) * factor
+    told = keys.text("factor", place, column.place)
+    if (number := quantity(told)) and number[0] != 1.0:
+        notes.append(f"The header's factor, {told}, counts as in the numbers already; if not, give --scale.")
     count = keys.number("count", "", place, column.place)
     if count and not several and abs(count - len(values)) > 1:
         notes.append(f"The header announces {count:g} samples, the file holds {len(values)}.")

@@ -70,6 +70,9 @@ def from_header(
         odd = " and ".join(f"{k} {v!r}" for m, (k, v) in keys.odd.items() if m in ("interval", "rate"))
         said = f"the header's {odd} is not understood" if odd else why
         return TimeBase(None, None, (f"No time: {said}; give --interval.",))
+    if any(keys.bare(m) for m in ("interval", "start")) and (unit := _scaled(keys, interval)):
+        said = f"a number of the header has no unit, and its unit of time is {unit}"
+        return TimeBase(None, None, (f"No time: {said}; give --interval and --start.",))
     trigger = keys.number("trigger", "", place, column)
     if start is None and trigger is not None:
         start = tidy(-trigger * interval)
@@ -100,6 +103,10 @@ def from_column(
             return _headers(keys, place, column, "the times are printed too coarsely to tell an interval")
     if not slope > 0.0:
         return _headers(keys, place, column, "the times do not rise")
+    unit = _scaled(keys, declared) if label is None and declared and keys.bare("interval") else ""
+    if unit and abs(slope / declared - 1.0) < ALIKE:
+        said = f"times and interval have no unit, and the header's unit of time is {unit}"
+        return TimeBase(None, None, (f"No time: {said}; write it behind their name, or give --interval.",))
     factor, said = _factor(slope, label, declared, keys)
     if factor is None and odd:
         return _headers(keys, place, column, f"the unit of time, {odd!r}, is not known")
@@ -126,6 +133,14 @@ def from_column(
         at = float(times[steps.argmax()]) * factor
         notes.append(f"Behind {at:.6g} s {missing} samples are missing: a straight line stands there.")
     return TimeBase(start, interval, tuple(notes), times * factor)
+
+
+def _scaled(keys, interval):
+    """The header's unit of time, "" where it names none but s, or the sampling rate says that it is in s."""
+    said = next((t for t in keys.texts("time unit") if (u := unit_of(t)) and u.base == "s"), "")
+    rate = keys.number("rate", "Hz")
+    sure = not said or unit_of(said).factor == 1.0 or (rate and abs(rate * interval - 1.0) < ALIKE)
+    return "" if sure else said
 
 
 def _headers(keys, place, column, why):
