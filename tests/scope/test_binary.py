@@ -1,4 +1,4 @@
-"""Binary files, made here: LabVIEW's .tdms and LeCroy's .trc; a missing library is named with its extra."""
+"""Binary files, made here: .tdms of LabVIEW, .trc of LeCroy, .isf of Tektronix; what is missing is named."""
 
 import struct
 import sys
@@ -10,6 +10,7 @@ from nptdms import ChannelObject, TdmsWriter
 
 from sonicvacuum.files import InputError
 from sonicvacuum.scope import read
+from sonicvacuum.scope.timebase import SECONDS
 
 
 def tdms(path, channels):
@@ -18,7 +19,22 @@ def tdms(path, channels):
     return path
 
 
-def trc(path, counts, gain):
+def isf(path, counts, gain, units=("V", "s")):
+    """A Tektronix .isf with the words of a preamble and 16-bit counts, the high byte first."""
+    data = np.asarray(counts, dtype=">i2").tobytes()
+    words = {
+        "BYT_NR": 2, "BIT_NR": 16, "ENCDG": "BINARY", "BN_FMT": "RI", "BYT_OR": "MSB",
+        "WFID": '"Ch1, DC coupling"', "NR_PT": len(counts), "PT_FMT": "Y",
+        "XUNIT": f'"{units[1]}"', "XINCR": f"{STEP:.6E}", "XZERO": f"{START:.6E}", "PT_OFF": 0,
+        "YUNIT": f'"{units[0]}"', "YMULT": f"{gain:.6E}", "YOFF": "0.0E+0", "YZERO": "0.0E+0",
+    }  # fmt: skip
+    head = ":WFMPRE:" + ";".join(f"{k} {v}" for k, v in words.items()) + ";:CURVE "
+    length = str(len(data))
+    path.write_bytes(head.encode() + f"#{len(length)}{length}".encode() + data + b"\n")
+    return path
+
+
+def trc(path, counts, gain, units=(b"V", b"S")):
     """A LeCroy .trc: WAVEDESC of template LECROY_2_3, 346 bytes, and 16-bit counts.
 
     Places of the fields: LeCroy, Template of LECROY_2_3 (MAUI Automation Manual).
@@ -30,7 +46,7 @@ def trc(path, counts, gain):
         120: struct.pack("<i", len(counts)), 128: struct.pack("<i", len(counts) - 1),
         136: struct.pack("<i", 1), 144: struct.pack("<i", 1), 156: struct.pack("<ff", gain, 0.0),
         164: struct.pack("<ff", 32767.0, -32768.0), 172: struct.pack("<h", 16), 174: struct.pack("<h", 1),
-        176: struct.pack("<f", STEP), 180: struct.pack("<dd", START, START), 196: b"V", 244: b"S",
+        176: struct.pack("<f", STEP), 180: struct.pack("<dd", START, START), 196: units[0], 244: units[1],
         328: struct.pack("<f", 1.0), 344: struct.pack("<h", 1),
     }  # fmt: skip
     for place, data in fields.items():
@@ -66,6 +82,71 @@ def test_trc(tmp_path):
     assert (recording.layout, channel.unit, channel.samples) == ("trc", "V", len(PULSE))
     assert channel.interval_s == pytest.approx(STEP, rel=1e-6)  # a float of four bytes in the file
     assert channel.values == pytest.approx(PULSE, abs=1e-6)  # so is the gain
+
+
+@pytest.mark.parametrize(
+    ("label", "unit", "factor"), [("Time", "ms", 1e3), ("Time [ms]", "", 1e3), ("Zeit", "us", 1e6)]
+)
+def test_tdms_times_have_a_unit(tmp_path, label, unit, factor):
+    channels = [
+        ChannelObject("shot", label, factor * TIMES, properties={"unit_string": unit}),
+        ChannelObject("shot", "g9", PULSE),
+    ]
+    (channel,) = read(tdms(tmp_path / "a.tdms", channels)).channels
+    assert (channel.start_s, channel.interval_s) == pytest.approx((START, STEP), rel=1e-9)
+
+
+def test_tdms_times_without_a_unit_are_told(tmp_path):
+    channels = [ChannelObject("shot", "Time", 1e6 * TIMES), ChannelObject("shot", "g9", PULSE)]
+    (channel,) = read(tdms(tmp_path / "a.tdms", channels)).channels
+    assert SECONDS in channel.notes
+
+
+def test_tdms_times_that_run_backwards_are_none(tmp_path):
+    channels = [ChannelObject("shot", "Time", -TIMES), ChannelObject("shot", "g9", PULSE)]
+    (channel,) = read(tdms(tmp_path / "a.tdms", channels)).channels
+    assert channel.interval_s is None and any("run backwards" in n for n in channel.notes)
+
+
+def test_tdms_increments_have_a_unit(tmp_path):
+    timed = {"wf_increment": 1e6 * STEP, "wf_start_offset": 1e6 * START}
+    across = [
+        ChannelObject("shot", u, PULSE, properties=timed | {"wf_xunit_string": u}) for u in ("us", "Hz")
+    ]
+    first, second = read(tdms(tmp_path / "a.tdms", across)).channels
+    assert (first.start_s, first.interval_s) == pytest.approx((START, STEP), rel=1e-9)
+    assert second.interval_s is None and any("wf_xunit_string is 'Hz'" in n for n in second.notes)
+
+
+@pytest.mark.parametrize(("unit", "base", "factor"), [("V", "V", 1.0), ("g", "g", 1.0), ("mN", "N", 1e-3)])
+@pytest.mark.parametrize("kind", ["isf", "trc"])
+def test_waveforms_have_the_unit_that_they_bear(tmp_path, kind, unit, base, factor):
+    counts = np.round(PULSE / 1e-4).astype(int)
+    if kind == "isf":
+        path = isf(tmp_path / "a.isf", counts, 1e-4, (unit, "s"))
+    else:
+        path = trc(tmp_path / "a.trc", counts, 1e-4, (unit.encode(), b"S"))
+    (channel,) = read(path).channels
+    assert (channel.unit, channel.samples) == (base, len(PULSE))
+    assert channel.values == pytest.approx(factor * PULSE, abs=1e-6)
+    assert channel.interval_s == pytest.approx(STEP, rel=1e-6)
+
+
+@pytest.mark.parametrize("kind", ["isf", "trc"])
+def test_a_spectrum_has_no_times(tmp_path, kind):
+    if kind == "isf":
+        path = isf(tmp_path / "a.isf", [1, 2, 3] * 20, 1e-4, ("dB", "Hz"))
+    else:
+        path = trc(tmp_path / "a.trc", [1, 2, 3] * 20, 1e-4, (b"dB", b"HZ"))
+    (channel,) = read(path).channels
+    assert channel.interval_s is None and "No time: the unit across is" in channel.notes[0]
+
+
+def test_a_waveform_that_is_cut_off_is_told(tmp_path):
+    path = isf(tmp_path / "a.isf", np.arange(600), 1e-4)
+    path.write_bytes(path.read_bytes()[:-701])
+    (channel,) = read(path).channels
+    assert f"The header announces 600 samples, the file holds {channel.samples}." in channel.notes
 
 
 @pytest.mark.parametrize(("name", "module"), [("a.tdms", "nptdms"), ("a.trc", "RigolWFM")])

@@ -3,15 +3,18 @@
 Both are in the optional extra `scope`. Nothing is ever unpickled or evaluated.
 """
 
+import re
 from pathlib import Path
 
 import numpy as np
 
 from sonicvacuum.files import InputError
+from sonicvacuum.scope.keys import Keys
+from sonicvacuum.scope.labels import split_unit
 from sonicvacuum.scope.recording import Channel, Recording
 from sonicvacuum.scope.roles import unique
-from sonicvacuum.scope.timebase import tidy
-from sonicvacuum.scope.units import unit_of
+from sonicvacuum.scope.timebase import TimeBase, from_column, tidy
+from sonicvacuum.scope.units import Unit, unit_of
 
 _WAVEFORMS = (".wfm", ".trc", ".isf", ".bin", ".wvf", ".hdr")
 # Relative rounding error of a four-byte number, doubled.
@@ -63,32 +66,54 @@ def _tdms(path):
 def _timed(numeric):
     """Channels of a TDMS file, with a time channel of the same group and length where there is one."""
     names = unique([c.name for _, c, _ in numeric])
-    times = {(g, len(v)): v for g, c, v in numeric if _is_time(c)}
+    times = {(g, len(v)): (c, v) for g, c, v in numeric if _is_time(c)}
     for name, (group, channel, values) in zip(names, numeric, strict=True):
         if _is_time(channel):
             continue
-        properties, notes = channel.properties, []
-        said = str(properties.get("unit_string") or properties.get("NI_UnitDescription") or "")
-        unit = unit_of(said)
+        said, unit, notes = _said(channel), unit_of(_said(channel)), []
         if not unit:
             notes.append(
                 f"The unit {said} is not known; numbers are as written." if said else "No unit given."
             )
-        interval = properties.get("wf_increment")
-        start = float(properties.get("wf_start_offset") or 0.0) if interval else None
-        clock = times.get((group, len(values)))
-        if not interval and clock is not None and len(clock) > 1:
-            start, interval = float(clock[0]), tidy(float(clock[-1] - clock[0]) / (len(clock) - 1))
-            notes.append("Times are those of the channel of times in the group, in s.")
-        if not interval:
-            notes.append("No time: the file has no wf_increment; give --interval.")
+        base = _stated(channel.properties)
+        if base is None and (group, len(values)) in times:
+            clock, column = times[group, len(values)]
+            base = from_column(column, split_unit(clock.name)[1] or unit_of(_said(clock)), Keys("."))
+            notes.append("Times are those of the channel of times in the group.")
+        base = base or TimeBase(None, None, ("No time: the file has no wf_increment; give --interval.",))
         values = values * (unit.factor if unit else 1.0)
-        base = unit.base if unit else said
-        yield Channel(name, base, values, start, float(interval) if interval else None, tuple(notes))
+        notes = (*notes, *base.notes)
+        yield Channel(
+            name, unit.base if unit else said, values, base.start_s, base.interval_s, notes, 1, base.times_s
+        )
+
+
+def _said(channel):
+    """The unit of a channel as written."""
+    return str(channel.properties.get("unit_string") or channel.properties.get("NI_UnitDescription") or "")
+
+
+def _stated(properties) -> TimeBase | None:
+    """The time base of a waveform's properties, None where they have none."""
+    interval, said = properties.get("wf_increment"), str(properties.get("wf_xunit_string") or "s")
+    if not interval:
+        return None
+    unit = unit_of(said)
+    if not unit or unit.base != "s":
+        return TimeBase(None, None, (f"No time: wf_xunit_string is {said!r}; give --interval.",))
+    if not float(interval) > 0.0:
+        return TimeBase(None, None, (f"No time: wf_increment is {interval:g}; give --interval.",))
+    start = float(properties.get("wf_start_offset") or 0.0)
+    return TimeBase(_scaled(start, unit.factor), _scaled(float(interval), unit.factor))
+
+
+def _scaled(number, factor):
+    return number if factor == 1.0 else tidy(number * factor)
 
 
 def _is_time(channel):
-    return channel.name.strip().lower() in ("time", "zeit", "t", "time (s)", "time [s]", "times")
+    name, unit = split_unit(channel.name)
+    return name.lower() in ("time", "zeit", "t", "times") and (unit is None or unit.base == "s")
 
 
 def _waveform(path):
@@ -108,19 +133,57 @@ def _waveform(path):
 
 
 def _waveform_channels(waveform, path):
+    upright, across, announced = _written(path)
     for channel in waveform.channels:
         if channel.volts is None or channel.times is None or not len(channel.volts):
             continue
         times = np.asarray(channel.times, dtype=float)
         count = len(times)
         interval = _interval(times, channel.seconds_per_point) if count > 1 else None
+        start, notes = tidy(float(times[0])), []
         name = channel.name.replace(" ", "")
         unit = {"v": "V", "a": "A", "w": "W"}.get(getattr(channel.unit, "name", ""), "V")
-        values, shots = np.asarray(channel.volts, dtype=float), _shots(path)
+        values = np.asarray(channel.volts, dtype=float)
+        if upright:
+            # The library writes V for any unit; numbers are as the file has them.
+            known = unit_of(upright) or Unit(upright)
+            unit, values = known.base, values * known.factor
+        if across and not ((known := unit_of(across)) and known.base == "s"):
+            start, interval = None, None
+            notes.append(f"No time: the unit across is {across!r}; export the trace over time.")
+        if announced > count:
+            notes.append(f"The header announces {announced} samples, the file holds {count}.")
+        shots = _shots(path)
         if count % shots:
             shots = 1
         for k, part in enumerate(values.reshape(shots, -1)):
-            yield Channel(name, unit, part, tidy(float(times[0])), interval, (), k + 1)
+            yield Channel(name, unit, part, start, interval, tuple(notes), k + 1)
+
+
+def _written(path):
+    """Units upright and across and the number of samples as the file writes them, "" and 0 where silent.
+
+    Places 196 and 244 of LeCroy's template LECROY_2_3, 188 and 508 of Tektronix' WFM#002 and #003 (manual
+    077-0220), the words YUNIT, XUNIT and NR_PT, or their beginnings, of an .isf.
+    """
+    with open(path, "rb") as stream:
+        head = stream.read(8192)
+    if (begin := head.find(b"WAVEDESC")) >= 0:
+        sure = b"LECROY_2_3" in head[begin : begin + 40]
+        return (*(_text(head[begin + k : begin + k + 48]) for k in (196, 244)), 0) if sure else ("", "", 0)
+    if head[2:10] in (b":WFM#002", b":WFM#003"):
+        return *(_text(head[k : k + 20]) for k in (188, 508)), 0
+    preamble = head.split(b":CURV")[0].decode("latin-1") if b":CURV" in head else ""
+    units = [re.search(rf'\b{k}UN(?:IT)?\s+"([^"]*)"', preamble) for k in "YX"]
+    count = re.search(r"\bNR_PT?\s+(\d+)", preamble)
+    plain = re.search(r"\bPT_F(?:MT)?\s+Y\b", preamble)
+    told = [u.group(1).strip() if u else "" for u in units]
+    return *told, int(count.group(1)) if count and plain else 0
+
+
+def _text(data):
+    text = data.split(b"\0")[0].decode("latin-1").strip()
+    return text if text.isprintable() else ""
 
 
 def _interval(times, stated):
