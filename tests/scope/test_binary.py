@@ -10,6 +10,7 @@ from nptdms import ChannelObject, TdmsWriter
 
 from sonicvacuum.files import InputError
 from sonicvacuum.scope import read
+from sonicvacuum.scope.binary import ENVELOPE
 from sonicvacuum.scope.timebase import SECONDS
 
 
@@ -140,6 +141,13 @@ def test_a_spectrum_has_no_times(tmp_path, kind):
         path = trc(tmp_path / "a.trc", [1, 2, 3] * 20, 1e-4, (b"dB", b"HZ"))
     (channel,) = read(path).channels
     assert channel.interval_s is None and "No time: the unit across is" in channel.notes[0]
+
+
+def test_an_envelope_is_told(tmp_path):
+    path = isf(tmp_path / "a.isf", np.arange(600), 1e-4)
+    path.write_bytes(path.read_bytes().replace(b"PT_FMT Y", b"PT_FMT ENV"))
+    (channel,) = read(path).channels
+    assert ENVELOPE in channel.notes
 
 
 def test_a_waveform_that_is_cut_off_is_told(tmp_path):

@@ -19,6 +19,8 @@ from sonicvacuum.scope.units import Unit, unit_of
 _WAVEFORMS = (".wfm", ".trc", ".isf", ".bin", ".wvf", ".hdr")
 # Relative rounding error of a four-byte number, doubled.
 FLOAT_ERROR = 1.2e-7
+# Said of what peak detection leaves, of which the library makes means or a zigzag.
+ENVELOPE = "The file holds an envelope (peak detect), not samples: save the trace again in sample mode."
 CURE = "python -m pip install 'sonicvacuum[scope]'"
 
 
@@ -151,6 +153,8 @@ def _waveform_channels(waveform, path):
         if across and not ((known := unit_of(across)) and known.base == "s"):
             start, interval = None, None
             notes.append(f"No time: the unit across is {across!r}; export the trace over time.")
+        if announced < 0:
+            notes.append(ENVELOPE)
         if announced > count:
             notes.append(f"The header announces {announced} samples, the file holds {count}.")
         shots = _shots(path)
@@ -162,6 +166,8 @@ def _waveform_channels(waveform, path):
 
 def _written(path):
     """Units upright and across and the number of samples as the file writes them, "" and 0 where silent.
+
+    The number is -1 where there are no samples, but the least and the most of each stretch.
 
     Places 196 and 244 of LeCroy's template LECROY_2_3, 188 and 508 of Tektronix' WFM#002 and #003 (manual
     077-0220), the words YUNIT, XUNIT and NR_PT, or their beginnings, of an .isf.
@@ -176,9 +182,11 @@ def _written(path):
     preamble = head.split(b":CURV")[0].decode("latin-1") if b":CURV" in head else ""
     units = [re.search(rf'\b{k}UN(?:IT)?\s+"([^"]*)"', preamble) for k in "YX"]
     count = re.search(r"\bNR_PT?\s+(\d+)", preamble)
-    plain = re.search(r"\bPT_F(?:MT)?\s+Y\b", preamble)
+    kept = re.search(r"\bPT_F(?:MT)?\s+(Y|ENV)", preamble)
     told = [u.group(1).strip() if u else "" for u in units]
-    return *told, int(count.group(1)) if count and plain else 0
+    if kept and kept.group(1) == "ENV":
+        return *told, -1
+    return *told, int(count.group(1)) if count and kept else 0
 
 
 def _text(data):
