@@ -17,6 +17,8 @@ from sonicvacuum.scope.labels import TIME, split_unit
 from sonicvacuum.scope.roles import Column
 from sonicvacuum.scope.table import Table
 
+# Said where lines between samples do not end a shot.
+ON = "A table whose times go on where those before it end belongs to the same shot."
 # Steps between samples above this multiple of the usual one part shots, which have at least so many samples.
 GAP, FEWEST = 100.0, 8
 
@@ -51,9 +53,26 @@ def shots(table: Table, companion: list[str], path) -> list[Shot]:
             seen, begin = set(), max((s[0] for s in result), default=0)
         seen |= names
         pieces, notes = _pieces(part, own, said)
+        if k and _goes_on(result[-1], pieces[0], own):
+            number, columns, *rest, before = result.pop()
+            pieces[0] = {p: np.concatenate([columns[p], v]) for p, v in pieces[0].items()}
+            result.append((number, pieces.pop(0), *rest, (*before, *notes, ON)))
+            begin = number
         result += [(begin + j + 1, columns, own, said, notes) for j, columns in enumerate(pieces)]
     several = max(number for number, *_ in result) > 1
     return [Shot(number, several, *rest) for number, *rest in result]
+
+
+def _goes_on(last, columns, found):
+    """Whether times go on behind other lines, one step further on, in columns of the same roles and units."""
+    _, before, own, *_ = last
+    clock = next((c for c in found if c.role == "time"), None)
+    alike = [(c.place, c.role, c.unit) for c in found] == [(c.place, c.role, c.unit) for c in own]
+    if clock is None or not alike:
+        return False
+    first, times = before[clock.place], columns[clock.place]
+    step = float(np.median(np.diff(first)))
+    return bool(step > 0.0 and 0.5 * step < times[0] - first[-1] < 1.5 * step)
 
 
 def _names(found, keys):
