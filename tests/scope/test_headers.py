@@ -225,3 +225,22 @@ def test_a_factor_of_the_header_is_told(tmp_path, factor, told):
     (channel,) = recording(tmp_path, f"Scale factor,{factor}\nTime (s),F (N)\n" + rows(TIMES, PULSE)).channels
     assert np.array_equal(channel.values, [float(f"{v:.7g}") for v in PULSE])
     assert any(f"factor, {factor}, counts as in the numbers" in n for n in channel.notes) == told
+
+
+@pytest.mark.parametrize(
+    ("key", "interval"),
+    [("Abtastintervall: 1,0 µs", 1e-6), ("Sampling rate: 2,5 MHz", 4e-7), ("Sampling rate: 1,000 kHz", None)],
+)
+def test_a_decimal_comma_within_a_key(tmp_path, key, interval):
+    (channel,) = recording(tmp_path, f"{key}\nCH1 (V)\n" + rows(PULSE)).channels
+    assert channel.interval_s == (interval and pytest.approx(interval, rel=1e-9))
+    assert any("is not understood; give --interval" in n for n in channel.notes) == (interval is None)
+
+
+def test_the_unit_of_time_in_a_row_of_units_that_says_so(tmp_path):
+    head = "Name;Time;Force\nUnit;ms;mN\nFactor;1;12.5\n;;\n"
+    text = head + rows([""] * 200, 1e3 * TIMES, 1e3 * PULSE, cell=";", form="{:.9g}")
+    (channel,) = recording(tmp_path, text).channels
+    assert (channel.name, channel.unit) == ("Force", "N")
+    assert (channel.start_s, channel.interval_s) == pytest.approx((-1e-4, 1e-6), rel=1e-6)
+    assert any("factor, 12.5, counts" in n for n in channel.notes)

@@ -13,7 +13,8 @@ MEANINGS = {
                  "xincrement", "xincr", "deltax", "dx", "dt", "deltat", "hresolution", "horizontalresolution",
                  "resolution", "timestep", "tinc", "timeincrement", "timeinterval", "sampletime", "interval",
                  "horizinterval", "horizontalinterval", "horinterval", "abtastintervall", "timeresolution",
-                 "timepersample", "timebaseinterval", "clock", "signalresolution", "xaxisdelta", "xaxisstep"},
+                 "timepersample", "timebaseinterval", "clock", "signalresolution", "xaxisdelta", "xaxisstep",
+                 "xdelta", "tsample"},
     "rate": {"samplerate", "samplingrate", "samplefrequency", "samplingfrequency", "sampfreq", "fs", "rate",
              "abtastrate", "samplespersecond", "samplingclock", "abtastfrequenz", "acquisitionrate",
              "sampleratehz", "scanrate", "sampling"},
@@ -34,7 +35,7 @@ MEANINGS = {
              "channelnames", "channeltitle", "labels", "waveformsource", "kanal", "ch", "multichannelsource"},
     "scale": {"verticalscale", "voltsdiv", "voltdiv", "vscale"},
     "factor": {"scalefactor", "scalingfactor", "multiplier", "calibrationfactor", "conversionfactor", "gain",
-               "sensitivity", "kalibrierfaktor", "skalierungsfaktor"},
+               "sensitivity", "factor", "faktor", "kalibrierfaktor", "skalierungsfaktor"},
 }  # fmt: skip
 # Rows above samples that only say where these begin.
 MARKER = re.compile(r"\W*((waveform|measured|raw) )?(data|values|daten|messwerte)\W*|\*+end.*", re.IGNORECASE)
@@ -210,6 +211,10 @@ def _pairs(row):
         thousands = re.fullmatch(r"\d{1,3}", found.group(2)) and cells[1:]
         if thousands and all(re.fullmatch(r"\d{3}", c) for c in cells[1:]) and cells[1][0] == "0":
             yield found.group(1), ["".join([found.group(2), *cells[1:]])]
+        elif re.fullmatch(r"[-+]?\d+", found.group(2)) and len(cells) == 2 and _ends_number(cells[1]):
+            # A decimal comma that cuts a number, as in 1,5 us; 1,000 kHz may be one of thousands.
+            mark = "," if re.match(r"\d{3}\D", cells[1]) else "."
+            yield found.group(1), [f"{found.group(2)}{mark}{cells[1]}"]
         else:
             yield found.group(1), [found.group(2).rstrip(":"), *cells[1:]]
     else:
@@ -221,6 +226,12 @@ def _pairs(row):
         inline = re.match(r"([A-Za-z][\w ]*?)\s*[:=]\s*(.+)$", cell)
         if inline:
             yield inline.group(1), [inline.group(2)]
+
+
+def _ends_number(cell):
+    """Whether a cell is decimals with their unit."""
+    found = re.fullmatch(r"\d+\s*(\D+)", cell)
+    return bool(found and unit_of(found.group(1)))
 
 
 def _parted(value):

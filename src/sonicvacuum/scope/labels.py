@@ -198,8 +198,11 @@ def labels(table: Table) -> Labels:
 
 
 def alone(table: Table, place: int) -> Unit | None:
-    """The unit of time in a label that stands by itself in a row of the header, above one column."""
+    """The unit of time above one column: in a label that stands by itself, or in a row that begins `Unit`."""
     for row in table.header[-LOOKED_AT:]:
+        below = unit_of(_at(row, place)) if place and meaning(row[0]) == "unit" else None
+        if below and below.base == "s":
+            return below
         name, unit = split_unit(_at(row, place))
         single = sum(map(bool, row)) == 1 and TIME.fullmatch(name) and not is_key(name)
         if single and unit and unit.base == "s":
