@@ -4,6 +4,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from made_files import LAYOUTS, PULSE, TIMES
+from odd_files import recording, rows
 
 from sonicvacuum.files import InputError
 from sonicvacuum.scope.importing import import_files
@@ -69,3 +70,15 @@ def test_every_layout_is_imported(name, tmp_path):
     (tmp_path / name).write_bytes(WHOLE[name])
     said = "\n".join(import_files([tmp_path / name], tmp_path / "record", options()))
     assert "arrives at" in said
+
+
+def test_no_breaking_blanks_behind_one_column(tmp_path):
+    text = "CH1 (V)\n" + rows(PULSE, form="{:.4f}").replace(".", ",").replace("\n", "\u00a0\n")
+    (channel,) = recording(tmp_path, text).channels
+    assert channel.values == pytest.approx(PULSE, abs=1e-4)
+
+
+def test_numbers_cut_within_their_commas_are_refused(tmp_path):
+    lines = [f",0,0{k:03d}" if k % 3 else "," for k in range(200)]
+    with pytest.raises(InputError, match=r"t.csv: .*export"):
+        recording(tmp_path, ",Rate,1M\n,CH1 (V)\n" + "\n".join(lines) + "\n,\n" * 20)

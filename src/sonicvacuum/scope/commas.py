@@ -15,8 +15,8 @@ from sonicvacuum.scope.units import unit_of
 
 _INTEGER = re.compile(r"[-+]?\d+")
 _TAIL = re.compile(r"\d+([eE][-+]?\d+)?")
-_PAIR = re.compile(r"^[ \t]*([-+]?\d*),([-+]?\d+(?:[eE][-+]?\d+)?)[ \t]*$", re.MULTILINE)
-_BARE = re.compile(r"^[ \t]*[-+]?\d+[ \t]*$", re.MULTILINE)
+_PAIR = re.compile(r"^[^\S\n]*([-+]?\d*),([-+]?\d+(?:[eE][-+]?\d+)?)[^\S\n]*$", re.MULTILINE)
+_BARE = re.compile(r"^[^\S\n]*[-+]?\d+[^\S\n]*$", re.MULTILINE)
 # Lines of three and more whole numbers that each have at most three digits, as 100,998,997.
 _GROUPS = re.compile(r"[-+]?\d{1,3}(,\d{3}){2,}")
 # Other numbers behind the comma from which on none of them ends in 0 by chance, if they are whole.
@@ -123,7 +123,7 @@ def _two_named(above):
 def _of_groups(dialect, text, bare, path):
     """One column with thousands apart, or several of whole numbers."""
     count = bare[-1].count(",")
-    rows = re.findall(rf"^[ \t]*[-+]?\d+(?:,[-+]?\d+){{{count}}}[ \t]*$", text, re.MULTILINE)
+    rows = re.findall(rf"^[^\S\n]*[-+]?\d+(?:,[-+]?\d+){{{count}}}[^\S\n]*$", text, re.MULTILINE)
     above = next((x for x in reversed(text.split("\n")) if re.search(r"[^\W\d_]", x)), "")
     named = len([c for c in above.split(",") if re.search(r"\w", c)]) in (count + 1, count + 2)
     if named or not all(_GROUPS.fullmatch(r.strip()) for r in rows):

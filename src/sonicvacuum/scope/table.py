@@ -181,6 +181,11 @@ def _places(text, dialect, path):
             "plain numbers"
         )
     seen = [p for p in (_numeric(r, dialect) for r in rows[-16:]) if p]
+    if not seen:
+        last = " ".join(rows[-1])[:60] if rows else ""
+        raise InputError(
+            f"{path}: the last lines hold no columns of numbers, as {last!r}; export the traces as a table"
+        )
     return list(Counter(seen).most_common(1)[0][0])
 
 
