@@ -94,3 +94,17 @@ def test_units_of_the_header_by_any_key(tmp_path, key):
     first, second = recording(tmp_path, text).channels
     assert (first.unit, second.unit) == ("V", "N")
     assert first.values == pytest.approx(PULSE, abs=1e-6)
+
+
+def test_kinds_of_numbers_name_nothing(tmp_path):
+    head = "Channel;Zeit;Kraft\nEinheit;ms;mN\nDatentyp;double;double\n"
+    counts = [str(k) for k in range(200)]
+    text = head + rows(counts, 1e3 * TIMES, 1e3 * PULSE, cell=";", form="{:.9g}")
+    (channel,) = recording(tmp_path, text).channels
+    assert (channel.name, channel.unit) == ("Kraft", "N")
+    assert channel.interval_s == pytest.approx(1e-6, rel=1e-6)
+
+
+def test_of_more_names_than_channels_the_first_count(tmp_path):
+    text = "Source,CH1,CH2,CH3\nSecond,Volt,Volt\n" + rows(TIMES, PULSE, SECOND)
+    assert [c.name for c in recording(tmp_path, text).channels] == ["CH1", "CH2"]

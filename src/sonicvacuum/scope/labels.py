@@ -44,6 +44,8 @@ _REMARK = re.compile(
 )
 # Counts of samples or of the ticks of a clock.
 TICKS = re.compile(r"(samples?|ticks?|pts|points?|counts?|cycles|scans?|index|idx|n)\.?", re.IGNORECASE)
+# Kinds of numbers, which programs write below the names.
+_KIND = re.compile(r"(double|float|single|real|u?int(eger)?|number|string|date ?time|bool)\d*", re.IGNORECASE)
 _BRACKETS = re.compile(r".*[(\[<]([^()\[\]<>]+)[)\]>]\s*$")
 # A unit in brackets before the words that tell a run or a channel, as in `Time (ms) Run #1`, `F [kN] - Ch1`;
 # what stands there instead of words may be a factor.
@@ -239,7 +241,8 @@ def _only_letters(cells, table):
 
 def _row(table, k):
     """Header row k cut so that it has a word above most columns of samples; None where it has not."""
-    if all(MARKER.fullmatch(c) for c in table.header[k] if c):
+    held = [c for c in table.header[k] if c]
+    if all(map(MARKER.fullmatch, held)) or all(map(_KIND.fullmatch, held[1:] or held)):
         return None
     if _is_setting(table.header[k]) or not any(re.search(r"\w", c) for c in table.header[k]):
         return None

@@ -58,7 +58,7 @@ def columns(table: Table) -> tuple[list[Column], list[list[str]]]:
     for k in table.places:
         name, unit = split_unit(said.name(k))
         below = said.unit(k)
-        unit = unit_of(below) or unit or spelled(name)
+        unit = unit_of(below) or unit or spelled(name) or alone(table, k)
         odd = "" if unit else unknown_unit(said.name(k)) or _unread(below) or said.stray(k)
         found.append((Column(k, "value", name, unit, odd), below))
     others = [column.name for column, _ in found]
@@ -71,9 +71,7 @@ def _timed(column, label, table, names):
         return replace(column, unit=Unit("s"), said="")
     if column.role != "time" or column.unit is not None:
         return column
-    said, unit = unknown_time_unit(label), alone(table, column.place)
-    if unit:
-        return replace(column, unit=unit, said="")
+    said = unknown_time_unit(label)
     whole = re.compile(rf"(?<![^\W_]){re.escape(said)}(?![^\W_])", re.IGNORECASE)
     if not said or any(whole.search(name) for name in names if name != column.name):
         # Nothing, or the name of the channel that the times are of.
@@ -186,7 +184,8 @@ def channel_names(found: list[Column], given: list[str]) -> list[str]:
     telling = [n for n in own if n and not _GENERIC.fullmatch(n)]
     if len(set(telling)) == len(own):
         return own
-    given = given[-len(own) :] if len(given) == len(own) + 1 else given
+    if len(given) == len(own) + 1 and TIME.fullmatch(split_unit(given[0])[0]):
+        given = given[1:]
     if len(given) == len(own) and len(set(given)) == len(given):
         return given
     if len(own) > 1 and all(own) and len(set(own)) == len(own):
