@@ -82,3 +82,9 @@ def test_numbers_cut_within_their_commas_are_refused(tmp_path):
     lines = [f",0,0{k:03d}" if k % 3 else "," for k in range(200)]
     with pytest.raises(InputError, match=r"t.csv: .*export"):
         recording(tmp_path, ",Rate,1M\n,CH1 (V)\n" + "\n".join(lines) + "\n,\n" * 20)
+
+
+def test_rows_of_marks_alone_are_blank(tmp_path):
+    text = ",Time (s),CH1 (V)\n" + rows([""] * 200, TIMES, PULSE).replace("\n", "\n,,\n")
+    (channel,) = recording(tmp_path, text).channels
+    assert (channel.samples, channel.interval_s) == (200, pytest.approx(1e-6, rel=1e-6))

@@ -200,7 +200,7 @@ def _above(text, dialect, places, path):
         if _fits(cells, places, dialect):
             begin = begin if run else offset
             run += 1
-        elif line.strip():
+        elif any(cells):
             run = 0
         above.append(line)
         offset = end + 1
@@ -216,8 +216,9 @@ def _refuse_broken(above, places, dialect, path):
     """Refuse rows of samples above the first stretch of them: odd cells stand in many of them."""
     rows = [dialect.cells(line) for line in above]
     fit = [_fits(c, places, dialect) and not any(c[: places[0]]) for c in rows]
-    if sum(fit) > 2 * BEGINNING:
-        odd = next(k for k in range(fit.index(True), len(rows)) if not fit[k] and any(rows[k]))
+    first = fit.index(True) if any(fit) else len(rows)
+    odd = next((k for k in range(first, len(rows)) if not fit[k] and any(rows[k])), None)
+    if sum(fit) > 2 * BEGINNING and odd is not None:
         raise InputError(
             f"{path}: line {odd + 1} ({above[odd].strip()[:60]!r}) is no row of numbers, and others like it "
             "stand between the samples; export the traces as a table of plain numbers"
