@@ -6,6 +6,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from odd_files import PULSE, SECOND, TIMES, recording, rows
 
+from sonicvacuum.scope.timebase import PAIRS
+
 SETTINGS = settings(
     max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
 )
@@ -170,3 +172,11 @@ def test_rows_in_any_wrong_order_tell_no_time(tmp_path, seed, swaps):
         return
     text = "Time (s),CH1 (V)\n" + rows(TIMES[order], PULSE, form="{:.7f}")
     assert all(c.interval_s is None for c in recording(tmp_path, text).channels)
+
+
+def test_an_envelope_in_rows_of_equal_times_is_told(tmp_path):
+    both = np.ravel(np.column_stack([PULSE - 0.1, PULSE + 0.1]))
+    text = "in s,C1 in V\n" + rows(np.repeat(TIMES, 2), both)
+    (channel,) = recording(tmp_path, text).channels
+    assert PAIRS in channel.notes
+    assert channel.samples == 400

@@ -24,6 +24,8 @@ MOST_LOST, COARSEST = 0.1, 0.1
 NO_TRIGGER = "Time counts from the first sample: the file does not say where the trigger is."
 # Said where the times have no unit, as those of most oscilloscopes, which are in s.
 SECONDS = "The unit of time is not given; s assumed."
+# Said where envelopes are written as two rows of each time.
+PAIRS = "Each time stands twice, as where the least and the most are kept (envelope): export the samples."
 # Steps of missing samples that are told.
 MISSING = 5
 _FACTORS = {1.0: "s", 1e-3: "ms", 1e-6: "us", 1e-9: "ns", 1e-12: "ps"}
@@ -125,6 +127,8 @@ def from_column(
     if not uneven:
         return TimeBase(start, interval, tuple(notes))
     steps = np.diff(times) * factor
+    if not steps[::2].any():
+        notes.append(PAIRS)
     notes.append(
         f"Times are uneven: steps of {steps.min():.4g} to {steps.max():.4g} s; the interval is the mean."
     )
