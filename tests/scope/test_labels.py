@@ -108,3 +108,14 @@ def test_kinds_of_numbers_name_nothing(tmp_path):
 def test_of_more_names_than_channels_the_first_count(tmp_path):
     text = "Source,CH1,CH2,CH3\nSecond,Volt,Volt\n" + rows(TIMES, PULSE, SECOND)
     assert [c.name for c in recording(tmp_path, text).channels] == ["CH1", "CH2"]
+
+
+def test_scans_are_counted(tmp_path):
+    text = "Scan #,Time (s),AI0\n" + rows([str(k + 1) for k in range(200)], TIMES, PULSE)
+    assert [c.name for c in recording(tmp_path, text).channels] == ["AI0"]
+
+
+def test_a_known_unit_of_unknown_place_is_told_as_such(tmp_path):
+    text = "mN,N\nremark,of,some,length\nTime (s),CH1,CH2\n" + rows(TIMES, PULSE, SECOND)
+    for channel in recording(tmp_path, text).channels:
+        assert "That the unit is mN, N is not known; numbers are as written." in channel.notes

@@ -13,7 +13,7 @@ TIME = re.compile(
     r"seconds?|sec|time[ _].*|.*[ _]time|时间|時間)", re.IGNORECASE
 )  # fmt: skip
 COUNTER = re.compile(
-    r"(sequence|samples?|sample[ _-]?(no|nr|number)\.?|nr|no|index|idx|#|points?|n|i)\.?", re.I
+    r"(sequence|(sample|scan)s?([ _-]?(no|nr|number|#))?\.?|nr|no|index|idx|#|points?|n|i)\.?", re.I
 )
 COUNTS = re.compile(r"(sequence|samples?|index|points?|#|no\.?)", re.IGNORECASE)
 # Rows above the samples in which names and units are looked for.

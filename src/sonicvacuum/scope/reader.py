@@ -155,7 +155,9 @@ def _unit(column, keys, layout, place, notes):
     said = keys.text("unit", place, column.place)
     header = unit_of(said)
     if column.said and not header:
-        notes.append(f"The unit {column.said} is not known; numbers are as written.")
+        known = all(map(unit_of, column.said.split(", ")))
+        told = f"That the unit is {column.said}" if known else f"The unit {column.said}"
+        notes.append(f"{told} is not known; numbers are as written.")
         return column.said, 1.0
     if column.unit:
         if header and header != column.unit:
