@@ -42,6 +42,8 @@ MARKER = re.compile(r"\W*((waveform|measured|raw) )?(data|values|daten|messwerte
 # Keys that mean other things too; another key of the same meaning overrules them.
 _VAGUE = {"start", "interval", "samples", "points", "size", "units", "unit", "labels", "channel", "channels",
           "ch", "resolution", "clock", "sampling", "rate", "dx", "t0", "starttime"}  # fmt: skip
+# A number with a decimal comma, which none of thousands can be.
+_DECIMAL = re.compile(r"[-+]?(?:\d+,(?:\d+[eE]|\d{1,2}(?!\d)|\d{4})|(?:0|\d{4,}),\d)")
 # Meaning → base unit of the number that its value must be; anything else says nothing of it.
 _BASE = {"interval": "s", "rate": "Hz", "start": "s", "stop": "s", "trigger": "", "count": "", "scale": "V"}
 # A resolution of whole seconds is one of bits.
@@ -141,6 +143,8 @@ class Keys:
 
 def _number(text, base, unit, decimal):
     got = quantity(text, decimal) or quantity(text)
+    if got is None and _DECIMAL.match(text.strip()):
+        got = quantity(text, ",")
     if got is None and base == "Hz":
         # A bare prefix, as in 500k, counts samples in a second.
         got = quantity(text.strip() + "Hz", decimal)

@@ -4,6 +4,8 @@ Each module describes one family. Another one is one module with its `LAYOUT` an
 whose signature fits is taken, `table` fits all.
 """
 
+import re
+
 from sonicvacuum.scope.layouts import (
     dewesoft,
     digilent,
@@ -45,5 +47,12 @@ LAYOUTS: tuple[Layout, ...] = (
 
 
 def recognise(head: str, path) -> Layout:
-    """The layout whose signature the head of a file, or the file's name, bears."""
-    return next(layout for layout in LAYOUTS if layout.fits(head, str(path)))
+    """The layout whose signature the head of a file, or the file's name, bears.
+
+    Spreadsheets write files again with other marks between the cells, or with quotes around them.
+    """
+    first = next(layout for layout in LAYOUTS if layout.fits(head, str(path)))
+    if first is not table.LAYOUT:
+        return first
+    plain = re.sub(r'[ "]*[,;\t][ "]*', ",", head)
+    return next(layout for layout in LAYOUTS if layout.fits(plain, str(path)))

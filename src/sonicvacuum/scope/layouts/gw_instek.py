@@ -15,8 +15,10 @@ def _readings(values: np.ndarray, keys, place: int) -> Reading:
     """Volts from whole counts; numbers with a fraction are volts already."""
     division = keys.number("scale", "V", place)
     finite = values[np.isfinite(values)]
-    if not division or not len(finite) or np.any(finite != np.round(finite)):
+    if not len(finite) or np.any(finite != np.round(finite)):
         return values, ""
+    if not division:
+        return values, "No vertical scale is read: whole numbers may be counts of the converter."
     said = f"Counts taken as {COUNTS_PER_DIVISION:g} to a division of {division:g} V."
     return values / COUNTS_PER_DIVISION * division, said
 
