@@ -244,3 +244,32 @@ def test_the_unit_of_time_in_a_row_of_units_that_says_so(tmp_path):
     assert (channel.name, channel.unit) == ("Force", "N")
     assert (channel.start_s, channel.interval_s) == pytest.approx((-1e-4, 1e-6), rel=1e-6)
     assert any("factor, 12.5, counts" in n for n in channel.notes)
+
+
+@pytest.mark.parametrize("tail", ["", ";", ";;;"])
+def test_marks_behind_a_row_move_no_values(tmp_path, tail):
+    head = f"Name;Time;Force{tail}\nUnit;ms;kN{tail}\n"
+    text = head + rows([""] * 200, 1e3 * TIMES, 1e-3 * PULSE, cell=";", form="{:.9g}")
+    (channel,) = recording(tmp_path, text).channels
+    assert channel.unit == "N"
+    assert channel.values == pytest.approx(PULSE, abs=1e-6)
+
+
+@pytest.mark.parametrize("units", ["CH1:mV,CH2:A", "CH1:mV,CH2:A,,,", "CH1:mV CH2:A", "mV,A", "mV,A,,"])
+def test_units_that_name_their_channels(tmp_path, units):
+    head = f"Vertical Units,{units}\nSource,CH1,CH2\nSecond,Value,Value\n"
+    first, second = recording(tmp_path, head + rows(TIMES, 1e3 * PULSE, SECOND)).channels
+    assert (first.unit, second.unit) == ("V", "A")
+    assert first.values == pytest.approx(PULSE, abs=1e-6)
+
+
+def test_units_stand_above_the_columns_that_they_are_of(tmp_path):
+    head = "Model,DPO2002B\nVertical Units,V,,A,\n\nTIME,CH1,CH1 Peak Detect,CH2,CH2 Peak Detect\n"
+    found = recording(tmp_path, head + rows(TIMES, PULSE, PULSE, SECOND, SECOND)).channels
+    assert [c.unit for c in found if "Peak" not in c.name] == ["V", "A"]
+
+
+def test_a_decimal_comma_names_no_channel(tmp_path):
+    head = "Horizontal Scale; 0,00001\nSecond;Volt\n"
+    text = head + rows(TIMES, PULSE, cell=";", form="{:.7f}").replace(".", ",")
+    assert [c.name for c in recording(tmp_path, text).channels] == ["CH1"]

@@ -116,7 +116,9 @@ class Keys:
         if better or not self.values.get(meaning):
             (self.vague.add if name in _VAGUE else self.vague.discard)(meaning)
             self.values[meaning] = parted
-            self.rows[meaning] = row if row[1:] == values and len(parted) <= len(values) else []
+            # Values that name their channels, as CH1:V, are in the order of these.
+            plain = parted == [v.strip().strip('"').strip() for v in values if v.strip().strip('"').strip()]
+            self.rows[meaning] = row if row[1:] == values and plain else []
             self.units[meaning] = unit
 
     def _tells(self, name, values, unit):
@@ -179,6 +181,7 @@ def keyed(line: str) -> list[str] | None:
 def read(rows: list[list[str]], dialect: Dialect, channels: int = 1) -> Keys:
     """Keys of rows of cells, above so many channels."""
     keys = Keys(dialect.decimal, channels)
+    rows = [_whole(row) for row in rows]
     for row, below in zip_longest(rows, rows[1:], fillvalue=()):
         alone = [c for c in row if c.strip()]
         if len(alone) == 1 and alone[0].rstrip().endswith(":") and is_key(alone[0]) and not _is_header(below):
@@ -188,6 +191,11 @@ def read(rows: list[list[str]], dialect: Dialect, channels: int = 1) -> Keys:
         for key, values in _pairs(row):
             keys.add(key, values, row)
     return keys
+
+
+def _whole(row):
+    """A row without empty cells at its end, which would keep values from their columns."""
+    return row[: max((k for k, c in enumerate(row, 1) if c.strip()), default=0)]
 
 
 def _is_header(row):

@@ -287,7 +287,7 @@ def _cuts(table, k):
     yield cells if (len(cells) == width if blanks else len(cells) >= width) else []
     for mark in ("\t", ";", ","):
         other = Dialect(mark, table.dialect.decimal).cells(raw)
-        if len(other) == width:
+        if len(other) == width and mark != table.dialect.decimal:
             yield other
     if not blanks and table.dialect.delimiter in raw:
         # Names of the first columns only; blanks stand within them.
