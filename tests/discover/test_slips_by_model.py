@@ -57,7 +57,7 @@ def test_all_errors_in_the_unit_of_a_reading_go_with_its_gain(empty):
 
 
 def test_steps_of_a_recorder_go_with_the_readings_in_which_they_are(empty):
-    """A gain made readings and noise smaller and left the steps as large as before, which hid what was left."""
+    """A gain made readings and noise smaller and left steps as they were, which hid what was left."""
     coarse = replace(empty, steps={"g4": 0.4})
     assert changes.gains(coarse, np.log(2.0)).steps == {"g4": pytest.approx(0.2)}
     assert changes.gauges_swapped(coarse, "g4", "wall").steps == {"wall": 0.4}
