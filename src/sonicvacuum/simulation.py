@@ -111,14 +111,19 @@ def set_up(card: Card, speeds=None, catalogue: Catalogue = CATALOGUE) -> Setup:
     """Chains and gauges of a card with its effects in them; lane k is struck at `speeds[k]` in m/s.
 
     Raises:
-        InputError: for an effect that is not in the catalogue, or parameters that it does not take.
+        InputError: for an effect that is not in the catalogue or cannot act in this chain, or parameters that
+            it does not take.
     """
     setup = Setup(assemble(card.specimen, card.strikers(speeds)), sensors(card))
     for name, parameters in card.effects.items():
         try:
-            setup = catalogue.effect(name).apply(setup, **parameters)
+            one = catalogue.effect(name)
+            told = one.refused(setup, **parameters)
+            setup = setup if told else one.apply(setup, **parameters)
         except ValueError as error:
-            raise InputError(f"{card.name}: effects.{name}: {error}") from None
+            told = str(error)
+        if told:
+            raise InputError(f"{card.name}: effects.{name}: {told}")
     return setup
 
 

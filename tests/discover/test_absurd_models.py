@@ -82,8 +82,16 @@ def record():
 def test_a_model_whose_steps_would_never_end_is_refused_before_the_first(tmp_path, record):
     strong = alone(CATALOGUE.effect("kuwabara-kono"), CATALOGUE.effect("kuwabara-kono").parameters[0], 1.9e6)
     stiff = {"dynamic-modulus": {"modulus_ratio": 5e5}}
-    with pytest.raises(InputError, match=r"the model does not fit this record: asks for .* steps of a bead"):
+    with pytest.raises(InputError, match=r"made: the model of made does not fit .* asks for .* steps of"):
         sv.compare(model(tmp_path / "model.json", strong | stiff), record, threads=1)
+
+
+def test_an_effect_that_cannot_act_on_the_beads_of_a_record_is_refused_by_the_names_of_both(tmp_path, record):
+    layer = next(one for one in CATALOGUE if one.stated)
+    path = model(tmp_path / "model.json", alone(layer, layer.parameters[0], 50.0))
+    told = rf"the model of made does not fit .*{layer.id}: layer_thickness_um is 50, but no coating is stated"
+    with pytest.raises(InputError, match=told):
+        sv.compare(path, record, threads=1)
 
 
 def test_any_number_between_the_smallest_and_the_largest_is_scored_or_refused(tmp_path, record):

@@ -1,11 +1,16 @@
 """A card from simulation to readings: errors shrink with the step, aims are met, effects are simulated."""
 
+import json
+
 import msgspec
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
 from sonicvacuum import simulation
-from sonicvacuum.card import AimBlock, Card, CardSensor, CardStriker
+from sonicvacuum.card import AimBlock, Card, CardSensor, CardStriker, dump
+from sonicvacuum.cli import simulate as verb
+from sonicvacuum.effects import CATALOGUE
 from sonicvacuum.files import InputError
 from sonicvacuum.laboratory.specimen import Bead, Material
 
@@ -143,3 +148,47 @@ def test_times_in_another_unit_are_suspected(times, told):
     with pytest.raises(InputError, match=told):
         simulation.check_scales(card(**times))
     simulation.check_scales(card())
+
+
+ALONE = {"beads": 0, "sensors": (CardSensor(id="wall", kind="wall"),)}
+# Where an effect cannot act, effect by effect: on solid beads, on one ball, without gauges.
+BARE = [
+    (one, changes, simulation.set_up(card(**changes)))
+    for changes in ({}, ALONE, {"sensors": ()})
+    for one in CATALOGUE
+]
+IDLE = [(one, changes, why) for one, changes, setup in BARE if (why := one.why_not(setup))]
+
+
+def stated(one):
+    """An effect at a usual strength, as a card states it."""
+    setup = simulation.set_up(card())
+    return {one.id: {p.name: p.at(1.0, setup) for p in one.parameters}}
+
+
+@pytest.mark.parametrize(("one", "changes", "why"), IDLE, ids=lambda x: getattr(x, "id", None))
+def test_an_effect_that_cannot_act_in_its_chain_is_refused_with_its_value_and_the_cure(one, changes, why):
+    told = rf"c\.nominal: effects\.{one.id}: {one.parameters[0].name} is .*, but {why}; state what it acts on"
+    with pytest.raises(InputError, match=told):
+        simulation.set_up(card(effects=stated(one), **changes))
+
+
+def test_an_effect_that_is_off_acts_nowhere_and_is_refused_nowhere():
+    assert {one.lacks for one in CATALOGUE if one.lacks} == {one.lacks for one, _, _ in IDLE if one.lacks}
+    for one, changes, _ in IDLE:
+        simulation.set_up(card(effects={one.id: {}}, **changes))
+
+
+def test_the_commands_name_the_file_whose_effect_cannot_act(tmp_path):
+    layer = next(one for one in CATALOGUE if one.stated)
+    path, model = tmp_path / "c.json", tmp_path / "model.json"
+    told = f"c.nominal: effects.{layer.id}: layer_thickness_um is 100, but no coating is stated"
+    path.write_bytes(dump(card(effects=stated(layer))))
+    ended = CliRunner().invoke(verb.simulate, [str(path), "--out", str(tmp_path / "h.npz")])
+    assert str(ended.exception).startswith(f"{path}: {told}")
+    path.write_bytes(dump(card()))
+    nuisances = {"speed_ratio": {}, "trigger_us": {}, "gain": {}, "modulus_ratio": 1.0}
+    content = {"format": 1, "record": "other", "effects": stated(layer), **nuisances}
+    model.write_text(json.dumps(content))
+    given = [str(path), "--model", str(model), "--out", str(tmp_path / "h.npz")]
+    assert str(CliRunner().invoke(verb.simulate, given).exception).startswith(f"{path} with {model}: {told}")

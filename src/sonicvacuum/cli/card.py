@@ -69,7 +69,10 @@ def _text(config, path, name, model, own) -> bytes:
     if resolved.effects:
         from sonicvacuum.simulation import set_up
 
-        set_up(resolved, catalogue=catalogue(own))  # an effect that does not exist is best known now
+        try:
+            set_up(resolved, catalogue=catalogue(own))  # an effect that does not exist is best known now
+        except InputError as error:
+            raise InputError(f"{path}{f' with {model}' if model else ''}: {error}") from None
     return dump(resolved)
 
 

@@ -8,6 +8,7 @@ from sonicvacuum.cli import existing, progress
 from sonicvacuum.cli.cards import read_card
 from sonicvacuum.cli.helped import PLACE, places_of, verb
 from sonicvacuum.cli.own_effects import catalogue, own_effects
+from sonicvacuum.files import InputError
 from sonicvacuum.outputs import check_apart
 
 # Steps of a bead that a core does in a second, from a chain in many runs to a long one; told from so many on.
@@ -49,8 +50,11 @@ def simulate(cards, model, no_limits, out, own):
         from sonicvacuum.cli.model import with_model
 
         resolved = [with_model(card, model, known) for card in resolved]
-    for card in resolved:
-        _tell_beforehand(card, known, not no_limits)
+    for path, card in zip(cards, resolved, strict=True):
+        try:
+            _tell_beforehand(card, known, not no_limits)
+        except InputError as error:
+            raise InputError(f"{path}{f' with {model}' if model else ''}: {error}") from None
     for card, place in zip(resolved, places, strict=True):
         with progress():
             simulated = simulation.simulate(card, known, limits=not no_limits)

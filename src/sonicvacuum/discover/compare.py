@@ -142,12 +142,14 @@ def hypothesis(model: Model, setup: Setup, catalogue: Catalogue = CATALOGUE) -> 
     """The model's effects in a record's nominal setup, nothing free.
 
     Raises:
-        ValueError: for an effect of a material of which no bead is.
+        ValueError: for an effect of a material of which no bead is, or one that cannot act in this setup.
     """
     components = []
     for name, given in model.effects.items():
         one = catalogue.effect(name)
         fixed = {k: float(v) for k, v in given.items() if k != one.sits}
+        if told := one.refused(setup, **fixed):
+            raise ValueError(f"effects.{name}: {told}")
         components.append(Component(one.located(setup.chain), (), fixed, _place(one, given, setup)))
     return Hypothesis(tuple(components))
 
@@ -219,7 +221,8 @@ def _made(forward, model, catalogue):
             asked = estimate(chain, 2 * len(forward.experiment.gauges) + 1, batch.duration, batch.interval)
             replace(asked, work=SIMULATIONS * asked.work).check("a model with weaker effects")
     except ValueError as error:
-        raise InputError(f"the model does not fit this record: {error}") from None
+        told = f"{forward.experiment.name}: the model of {model.record} does not fit this record: {error}"
+        raise InputError(told) from None
     return one
 
 

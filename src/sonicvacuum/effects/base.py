@@ -147,6 +147,20 @@ class Effect:
             return f"there is no {self.places} where it could sit"
         return self.lacks(setup) if self.lacks else None
 
+    def refused(self, setup: Setup, **parameters) -> str | None:
+        """Why an effect that somebody states cannot act in a setup, with its values and the cure; None where
+        it can, or is off. `apply` asks for nothing of the kind: a search never tries what cannot act.
+        """
+        self._check(setup, parameters)
+        why = None if self.is_off(setup, **parameters) else self.why_not(setup)
+        if why is None:
+            return None
+        given = ", ".join(
+            f"{name} is {value:g}" if isinstance(value, float | int) else f"{name} is {value}"
+            for name, value in parameters.items()
+        )
+        return f"{given}, but {why}; state what it acts on, or leave the effect out"
+
     def is_off(self, setup: Setup, **parameters) -> bool:
         """Whether every parameter that switches is at its off value in all lanes (absent ones are off)."""
         return all(
