@@ -283,7 +283,7 @@ def test_priors_of_the_record_reach_the_search(quiet):
     asked = {e.id for e in setup.catalogue.candidates(setup, stated.excluded)}
     assert "tsuji" not in asked
     assert "kuwabara-kono" in asked
-    with pytest.raises(InputError, match=r"priors\.gremlins: no such effect"):
+    with pytest.raises(InputError, match=r"/record.yaml: priors\.gremlins: is 2: no such effect"):
         experiment(with_keys(quiet, priors={"gremlins": 2.0}))
 
 

@@ -134,6 +134,10 @@ def test_a_place_is_asked_for_and_checked(one):
         one.apply(setup, **{p.name: p.at(1.0, setup)})
     with pytest.raises(ValueError, match=f"{one.places} is 99; possible here"):
         one.apply(setup, **{p.name: p.at(1.0, setup), one.places: 99})
+    if one.places == "sensor":
+        gauges = ", ".join(setup.sensors[k].id for k in one.candidates(setup))
+        with pytest.raises(ValueError, match=f"sensor is nobody; possible here: {gauges}"):
+            one.apply(setup, **{p.name: p.at(1.0, setup), one.places: "nobody"})
     assert PLACES[one.places] in one.candidates(setup)
 
 
@@ -186,3 +190,5 @@ def test_the_same_effect_twice_is_refused():
 def test_an_unknown_effect_is_told_what_there_is():
     with pytest.raises(ValueError, match=r"no effect is called 'magnetism'.*tsuji"):
         effect("magnetism")
+    with pytest.raises(ValueError, match=r"'linear-dash'; did you mean linear-dashpot\?$"):
+        effect("linear-dash")

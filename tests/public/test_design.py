@@ -99,6 +99,7 @@ def test_a_place_is_in_the_middle(beads):
     ("changes", "said"),
     [
         ({"effects": "sensor-drop"}, "is not in the catalogue; did you mean sensor-droop?"),
+        ({"effects": "tsuji,foo"}, "'foo' is not in the catalogue; the catalogue holds dynamic-modulus, "),
         ({"effects": "coating-thickness"}, "effects: coating-thickness cannot be in this chain"),
         ({"effects": []}, "effects: none is given"),
         ({"most": 0}, "most: is 0; from 1 to 4"),

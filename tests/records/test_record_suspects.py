@@ -6,8 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 from record_cases import BALL, CONTENT, STRIKER, TRACES, content, made, put
 
+from sonicvacuum.cli.discover import discover
 from sonicvacuum.discover.fit.wide import WIDE
 from sonicvacuum.records import Record, Signals
 from sonicvacuum.records.commands import summary
@@ -221,3 +223,25 @@ def test_a_column_that_was_taken_for_two_gauges_is_told():
     run = next(iter(taken))
     (said,) = copies(replace(record, signals={**record.signals, run: taken[run]}))
     assert f", in run {run}: a column" in said
+
+
+@pytest.mark.parametrize(
+    ("prior", "odds", "told"),
+    [
+        ("viscous-drg", 10, "is 10: no such effect; did you mean viscous-drag?"),
+        ("none", 10, "is 10: no such effect; the catalogue holds dynamic-modulus, "),
+        (
+            "my-law",
+            "present",
+            "is present: no such effect; .*; an effect of your own needs its file",
+        ),
+        ("gravity", "present", "cannot be present: the record does not say how well fraction is known"),
+        ("coating-thickness", "present", "cannot be present: no coating is stated; give coating_um"),
+    ],
+)
+def test_priors_that_a_search_refuses_are_told_by_the_check_too(tmp_path, prior, odds, told):
+    folder = put(tmp_path / "mine", priors={prior: odds})
+    said = rf"priors\.{prior}: {re.escape(told).replace(re.escape('.*'), '.*')}"
+    assert re.search(rf"check your set-up: {said}.*discover refuses it", check([folder]))
+    ended = CliRunner().invoke(discover, [str(folder), "--out", str(tmp_path / "found")])
+    assert re.match(rf"{re.escape(str(folder / 'record.yaml'))}: {said}", str(ended.exception))

@@ -9,7 +9,6 @@ from sonicvacuum.cli.helped import PLACE, WRITTEN, places_of, verb
 from sonicvacuum.cli.own_effects import catalogue, own_effects
 from sonicvacuum.files import InputError, replacing
 from sonicvacuum.outputs import check_apart
-from sonicvacuum.schema_errors import likely
 
 
 @verb(
@@ -111,8 +110,7 @@ def effects(name, own):
             click.echo(f"{e.id:18} {e.missing} ({taken})")
         return
     if name not in known:
-        meant = likely(name, known.ids) or f"known: {', '.join(known.ids)}"
-        raise InputError(f"effect {name!r} is not in the catalogue; {meant}")
+        raise InputError(f"effect {name!r} is not in the catalogue; {known.meant(name)}")
     e = known.effect(name)
     for title in (
         "title",

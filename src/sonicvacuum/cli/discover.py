@@ -48,6 +48,7 @@ def discover(records, out, together, figures, threads, own, quiet, no_limits):
     that is told. On a terminal, a line shows how far the search is.
     """
     from sonicvacuum.discover.model import window
+    from sonicvacuum.discover.model.present import check_priors
     from sonicvacuum.records import read
     from sonicvacuum.records.extent import check_extent
     from sonicvacuum.records.guard import check_out
@@ -60,6 +61,7 @@ def discover(records, out, together, figures, threads, own, quiet, no_limits):
     kept = {}
     for path in records:  # all of them are sound before hours are spent on the first
         record = read(path)
+        check_priors(record, known, path)
         if len(groups) == 1:  # of many records, all at once may be more than the memory holds
             kept[path] = record
         elif not no_limits:

@@ -90,9 +90,7 @@ def check_source(path, name: str, sources: Sources, catalogue: Catalogue) -> Non
     """
     told = (sources or {}).get(name)
     if name not in catalogue and told is None:
-        raise InputError(
-            f"{path}: effects.{name}: no such effect; the catalogue holds {', '.join(catalogue.ids)}"
-        )
+        raise InputError(f"{path}: effects.{name}: no such effect; {catalogue.meant(name)}")
     if name not in catalogue:
         raise InputError(
             f"{path}: effects.{name}: comes from {told.name} (SHA-256 {told.sha256[:12]}); "

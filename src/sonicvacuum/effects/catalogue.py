@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from sonicvacuum.effects.sized import ratios_of, sized
+from sonicvacuum.schema_errors import likely
 
 if TYPE_CHECKING:
     from sonicvacuum.effects.base import Effect, Setup
@@ -43,19 +44,24 @@ class Catalogue:
         """Ids in order."""
         return tuple(e.id for e in self.effects)
 
+    def meant(self, id: str, own: bool = True) -> str:
+        """What somebody may mean who writes an unknown id, in words: the nearest, or any of all; `own`: or
+        one of his own, where these are taken.
+        """
+        known = f"the catalogue holds {', '.join(self.ids)}"
+        file = "; an effect of your own needs its file, --effects FILE" if own else ""
+        return likely(id, self.ids) or known + file
+
     def effect(self, id: str) -> Effect:
         """The effect of that id.
 
         Raises:
-            ValueError: for an id that the catalogue does not hold; the message lists those it does.
+            ValueError: for an id that the catalogue does not hold; the message says which may be meant.
         """
         for one in (*self.effects, *self.besides):
             if one.id == id:
                 return one
-        raise ValueError(
-            f"no effect is called {id!r}; the catalogue holds {', '.join(self.ids)}; "
-            "an effect of your own needs its file, --effects FILE"
-        )
+        raise ValueError(f"no effect is called {id!r}; {self.meant(id)}")
 
     def extended(self, more: Iterable[Effect]) -> Catalogue:
         """A catalogue with further effects behind these.

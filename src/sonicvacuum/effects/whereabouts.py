@@ -53,6 +53,6 @@ def place(kind: str, given, possible: Sequence[int], setup: Setup):
             raise ValueError(f"{kind} is {given!r}, not a number{number_cure(given)}")
         number = known.index(given) if given in known else -1
     if not np.all(np.isin(number, possible)):
-        told = known if kind == "material" else possible
+        told = [known[k] for k in possible] if known else possible
         raise ValueError(f"{kind} is {given}; possible here: {', '.join(map(str, told)) or 'none'}")
     return number

@@ -25,7 +25,6 @@ from sonicvacuum.laboratory.next_run import FASTEST, SLOWEST
 from sonicvacuum.materials import MODULUS_REL_SIGMA
 from sonicvacuum.physics.scales import COUNTING, passage_of, sampling_of
 from sonicvacuum.prediction.setup import card_of, check_beads, check_size
-from sonicvacuum.schema_errors import likely
 from sonicvacuum.simulation import set_up
 
 NONE = "none"
@@ -178,8 +177,7 @@ def _effects(given, setup: Setup) -> tuple[Effect, ...]:
     lacking = CATALOGUE.left_out(setup)
     for name in names:
         if name not in CATALOGUE:
-            meant = likely(name, CATALOGUE.ids) or "see sonicvacuum effects"
-            raise InputError(f"effects: {name!r} is not in the catalogue; {meant}")
+            raise InputError(f"effects: {name!r} is not in the catalogue; {CATALOGUE.meant(name, own=False)}")
         if name in lacking:
             raise InputError(f"effects: {name} cannot be in this chain: {lacking[name]}; leave it out")
     return tuple(CATALOGUE.effect(name) for name in names)

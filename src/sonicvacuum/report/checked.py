@@ -6,8 +6,10 @@ anything; the check does the same, so that it says beforehand what the verdict w
 
 import json
 
+from sonicvacuum import plugins
 from sonicvacuum.discover.faults.examine import examine
 from sonicvacuum.discover.model import window
+from sonicvacuum.discover.model.present import refused
 from sonicvacuum.records import Record, read
 from sonicvacuum.records.commands import summary
 from sonicvacuum.records.extent import check_expected
@@ -35,4 +37,5 @@ def looked_through(record: Record) -> Review:
     """The review of a record with what the search would do to its traces."""
     searched, treatment = window.fitted(record)
     slips = tuple(slip(found) for found in examine(searched)[1])
-    return review(record, searched, treatment, slips)
+    priors = tuple(f"{told} (discover refuses it)" for told in refused(record, plugins.catalogue()))
+    return review(record, searched, treatment, (*slips, *priors))

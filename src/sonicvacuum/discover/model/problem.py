@@ -13,7 +13,7 @@ from sonicvacuum.discover.model.experiment import Batch, Experiment, RunData, Sc
 from sonicvacuum.discover.model.masks import repeated
 from sonicvacuum.discover.model.noise import MODEL_FLOOR, believed, doubtful, noise, rounded, stepped
 from sonicvacuum.discover.model.nuisances import shared
-from sonicvacuum.discover.model.present import acting, stated
+from sonicvacuum.discover.model.present import acting, check_known, stated
 from sonicvacuum.discover.model.scatter import scattered
 from sonicvacuum.discover.model.slow import slow
 from sonicvacuum.discover.model.start import started
@@ -46,7 +46,7 @@ def _experiment(record, catalogue):
     sigma, correlation = noise((record,))
     runs = tuple(_run(record, run, sigma) for run in record.runs)
     parts = batches(record)
-    odds = _priors(record, catalogue)
+    check_known(record, catalogue)
     informed = catalogue.informed(parts[0].chain, record.tolerances)
     present = stated(record, parts[0].chain, informed)
     parts = tuple(_as_long(b, record) for b in acting(parts, present, informed)) if present else parts
@@ -64,21 +64,12 @@ def _experiment(record, catalogue):
         record=record,
         catalogue=informed.held(present),
         excluded=tuple(name for name, odds in record.priors.items() if odds == 0.0),
-        prior_odds=odds,
+        prior_odds=record.priors,
         present=present,
         model_floor_rel=record.model_floor_rel,
         shared=shared(record, [part.chain for part in parts]),
         notes=_notes(record, runs),
     )
-
-
-def _priors(record, catalogue):
-    """The record's odds, of effects that the catalogue holds."""
-    for name in (*record.priors, *record.present):
-        if name not in catalogue:
-            known = ", ".join(catalogue.ids)
-            raise InputError(f"{record.name}: priors.{name}: no such effect; the catalogue holds {known}")
-    return record.priors
 
 
 def together(records: Sequence[Record], catalogue: Catalogue = CATALOGUE) -> Experiment:
