@@ -42,6 +42,22 @@ def test_what_no_ball_has_is_refused_by_option(monkeypatch, capsys, tmp_path, ch
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        (("tsuji", "--alpha", "-2"), "--alpha: is -2; use a value from 0 to"),
+        (("tsuji", "--time_us", "2"), "no such option: --time_us; tsuji has --alpha"),
+        (("tsuji", "--alpha", "0.1"), "--mass_g, --diameter_mm, --material, --speeds missing"),
+    ],
+)
+def test_a_law_is_looked_at_before_what_else_is_missing_is_asked_for(monkeypatch, capsys, given, told):
+    monkeypatch.setattr("sys.argv", ["sonicvacuum", "export", "--law", *given])
+    with pytest.raises(SystemExit) as end:
+        cli.main()
+    assert end.value.code == 2
+    assert told in capsys.readouterr().err
+
+
 def test_so_it_is_in_python():
     with pytest.raises(InputError, match="--mass_g: is nan"):
         by_hand(**BALL | {"mass_g": math.nan}, speeds=(0.1, 1.0), effects={})

@@ -14,7 +14,7 @@ NAMES = ("lammps", "liggghts", "yade", "mujoco", "drake", "all")
 
 @verb(
     "sonicvacuum export found/model.json --record my-record",
-    "sonicvacuum export --law tsuji --alpha 0.1 --mass_g 4 --diameter_mm 10 --material brass",
+    "sonicvacuum export --law tsuji --alpha 0.1 --mass_g 4 --diameter_mm 10 --material brass --speeds 0.1 1",
     context_settings={"ignore_unknown_options": True},
     short_help="Write the contact law of one ball for other simulators.",
 )
@@ -126,6 +126,13 @@ def _law(name, parameters, known):
         cure = likely(name, ("none", *known.ids)) or f"one of none, {', '.join(known.ids)}"
         raise click.UsageError(f"--law {name}: no such effect; {cure}")
     one = known.effect(name)
+    own = [p.name for p in one.parameters]
+    for key, value in parameters.items():
+        if key not in (*own, one.sits):
+            raise click.UsageError(f"no such option: --{key}; {name} has {', '.join(f'--{p}' for p in own)}")
+        told = one.parameter(key).refused(value) if key in own else None
+        if told:  # before what else is missing is asked for
+            raise click.UsageError(f"--{key}: {told}")
     needed = [p.name for p in one.parameters if p.switches and p.name not in parameters]
     if needed:
         raise click.UsageError(f"--law {name} needs --{needed[0]}")
