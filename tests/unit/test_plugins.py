@@ -89,6 +89,17 @@ def test_several_effects_come_from_one_file(tmp_path):
             "cannot be compiled: deep_force: TypeError: .* use plain arithmetic and the functions",
         ),
         ("return add_term(", "return id(", "trial with damping_kg_s_m"),
+        (
+            "return damping * delta * rate",
+            "return -damping * delta * rate",
+            r"damping_kg_s_m: is declared dissipative and creates energy, 0\.\d+ of what .*; turn the sign",
+        ),
+        (
+            "return damping * delta * rate",
+            "return damping * delta * rate * __import__('random').random()",
+            "deep_force gives other numbers when called again",
+        ),
+        ("return [damping]", "return [damping * __import__('random').random()]", "coefficients gives other"),
     ],
 )
 def test_a_bad_file_is_refused_in_one_line(tmp_path, old, new, message):
