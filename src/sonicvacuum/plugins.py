@@ -29,6 +29,8 @@ from sonicvacuum.files import InputError, read_text
 
 GROUP = "sonicvacuum.effects"
 _INIT = "__init__.py"
+# Beginning of the names of modules that are files of effects.
+_OWN = "sonicvacuum_own_"
 # Who imports this imports modules that no statement names.
 _WORKED_OUT = ("importlib.import_module",)
 
@@ -55,7 +57,7 @@ def read(path) -> tuple[Effect, ...]:
     """
     text = read_text(path)
     digest = hashlib.sha256(text.encode()).hexdigest()
-    module = ModuleType(f"sonicvacuum_own_{digest[:16]}")
+    module = ModuleType(f"{_OWN}{digest[:16]}")
     module.__file__ = str(path)
     # Where dataclasses of the file look themselves up; named by its content, so that nothing is overwritten.
     sys.modules[module.__name__] = module
@@ -70,6 +72,22 @@ def read(path) -> tuple[Effect, ...]:
             "see the documentation of sonicvacuum.effects for what an effect consists of"
         ) from None
     return _sourced(_found(module.__dict__, path), Source(Path(path).name, digest), path)
+
+
+def blamed(error: BaseException) -> str | None:
+    """What is said of an error in the code of a file that was read: file, line, error; None for any other."""
+    own = {m.__file__ for name, m in list(sys.modules.items()) if name.startswith(_OWN)}
+    frames = [
+        f
+        for one in (error, error.__cause__)
+        if one is not None
+        for f in traceback.extract_tb(one.__traceback__)
+        if f.filename in own
+    ]
+    if not frames:
+        return None
+    told = f"{type(error).__name__}: {' '.join(str(error).split())}"
+    return f"{frames[-1].filename}, line {frames[-1].lineno}: {told}; correct the effect's code"
 
 
 def _line(error, path):

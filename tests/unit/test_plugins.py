@@ -110,6 +110,31 @@ def test_a_bad_file_is_refused_in_one_line(tmp_path, old, new, message):
     assert "\n" not in str(error.value)
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        (
+            "return damping * delta",
+            "return dampin * delta",
+            "trial with damping_kg_s_m: NameError: name 'dampin'",
+        ),
+        ("return [damping]", "raise AssertionError('odd')", "trial with damping_kg_s_m: AssertionError: odd"),
+        ("return [damping]", "raise SystemExit(3)", "trial with damping_kg_s_m: SystemExit: 3"),
+        (
+            "    change=change",
+            "    change=change, lacks=lambda setup: setup.nothing",
+            "trial: AttributeError",
+        ),
+    ],
+)
+def test_errors_of_a_law_s_own_code_name_its_line(tmp_path, old, new, message):
+    path = written(tmp_path, old, new)
+    line = next(k for k, text in enumerate(path.read_text().splitlines(), 1) if new in text)
+    with pytest.raises(InputError) as error:
+        plugins.catalogue([path])
+    assert str(error.value).startswith(f"{path}: effect 'deep-damping': line {line}: {message}")
+
+
 def test_the_command_ends_with_two(tmp_path, monkeypatch, capsys):
     path = written(tmp_path, "EFFECT = Effect(", "EFFECT = Effekt(")
     monkeypatch.setattr("sys.argv", ["sonicvacuum", "effects", "--effects", str(path)])
@@ -117,6 +142,21 @@ def test_the_command_ends_with_two(tmp_path, monkeypatch, capsys):
         main()
     assert end.value.code == 2
     assert "NameError" in capsys.readouterr().err
+
+
+def test_errors_of_a_law_that_its_trial_does_not_meet_are_its_own_too(tmp_path, monkeypatch, capsys):
+    """As in a search, of which the trial knows one chain only."""
+    path = written(tmp_path, "def change(setup", "def fails():\n    return nothing\n\n\ndef change(setup")
+    plugins.catalogue([path])
+    module = next(m for m in sys.modules.values() if getattr(m, "__file__", None) == str(path))
+    monkeypatch.setattr("sys.argv", ["sonicvacuum", "effects"])
+    monkeypatch.setattr("sonicvacuum.plugins.catalogue", lambda files: module.fails())
+    with pytest.raises(SystemExit) as end:
+        main()
+    assert end.value.code == 2
+    told = f"Error: {path}, line 21: NameError: name 'nothing' is not defined; correct the effect's code\n"
+    assert capsys.readouterr().err == told
+    assert plugins.blamed(ValueError("of the program")) is None
 
 
 def test_an_own_effect_is_listed_behind_the_others():

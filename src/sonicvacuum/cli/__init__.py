@@ -14,7 +14,7 @@ from pathlib import Path
 import click
 
 from sonicvacuum.blas import THREADS
-from sonicvacuum.cli.ended import code_of, heard
+from sonicvacuum.cli.ended import blamed, code_of, heard
 from sonicvacuum.cli.helped import BEGINNING, COMPLETION, EXIT_CODES, Checked, locked, strayed
 from sonicvacuum.cli.stage_lines import compiling_told
 from sonicvacuum.files import MACHINE, InputError, check_file, in_one_line
@@ -160,6 +160,11 @@ def main():
         sys.stdout.flush()
         sys.stderr.flush()
         os._exit(code_of(came[0]) if came else 130)
+    except Exception as error:
+        if not (told := blamed(error)):
+            raise
+        click.echo(f"Error: {in_one_line(told)}", err=True)
+        sys.exit(2)
 
 
 def _forget_output():

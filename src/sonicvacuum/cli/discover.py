@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from sonicvacuum import stages
+from sonicvacuum.cli.ended import blamed
 from sonicvacuum.cli.helped import FOLDER, verb
 from sonicvacuum.cli.own_effects import catalogue, own_effects
 from sonicvacuum.cli.stage_lines import compiling_told, stages_shown
@@ -162,6 +163,8 @@ def _attempt(paths, folder, own, figures, threads, limits):
     except (OSError, ImportError, MemoryError):
         raise
     except Exception as error:
+        if own_fault := blamed(error):
+            return Failure(own_fault)
         told = f"the search broke, {type(error).__name__}: {error}; please report it with the record"
         return Failure(told, traceback.format_exc())
 

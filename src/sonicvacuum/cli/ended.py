@@ -7,6 +7,7 @@ from the keyboard: what was begun is put away first.
 import math
 import os
 import signal
+import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -62,3 +63,12 @@ def heard() -> Iterator[list[int]]:
     finally:
         for number in mine:
             signal.signal(number, signal.SIG_DFL)
+
+
+def blamed(error: Exception) -> str | None:
+    """What is said of an error in the code of a user's own effect, None for any other; see `plugins.blamed`.
+
+    Not imported: verbs without such effects do not depend on the engine.
+    """
+    plugins = sys.modules.get("sonicvacuum.plugins")
+    return plugins.blamed(error) if plugins else None
