@@ -12,10 +12,11 @@ from sonicvacuum import config, plugins, simulation
 from sonicvacuum.card import Card
 from sonicvacuum.discover import compare as comparison
 from sonicvacuum.discover.compare import Comparison
+from sonicvacuum.discover.extended import extended
+from sonicvacuum.discover.model.abreast import processors
 from sonicvacuum.discover.verdict import Model
 from sonicvacuum.effects import Catalogue
 from sonicvacuum.files import InputError
-from sonicvacuum.physics.run import available_threads
 from sonicvacuum.records import Record, check_records
 from sonicvacuum.records import read as read_record
 from sonicvacuum.simulation import Simulation
@@ -87,21 +88,28 @@ def catalogue(*files: Path) -> Catalogue:
     return plugins.catalogue(files)
 
 
-def simulate(card: Card, catalogue: Catalogue | None = None, limits: bool = True) -> Simulation:
+def simulate(
+    card: Card,
+    catalogue: Catalogue | None = None,
+    limits: bool = True,
+    model: Model | Path | None = None,
+) -> Simulation:
     """A card integrated at the chosen step and at half of it; `readings()` of the result are its gauges.
 
     Args:
         card: from `sv.case` or `sv.read_case`.
-        catalogue: holds the card's effects, see `sv.catalogue`.
+        catalogue: holds the effects of card and model, see `sv.catalogue`.
         limits: refuse what asks for more time or memory than a computer gives.
+        model: what `discover` found, or the path of a `model.json`, to put into the chain first: its effects
+            and its modulus.
 
     Returns:
         Simulation: `time` (samples,) in s, `force` (samples, contacts, runs) in N, `readings()` gauge →
         (samples, runs) in the gauge's unit without the static part; runs in the order of the speeds.
 
     Raises:
-        InputError: for what is no card, an effect that does not exist, an aim that no speed reaches, or
-            (`limits`) more than a computer gives.
+        InputError: for what is no card or model, an effect that does not exist or cannot act in this chain,
+            an aim that no speed reaches, or (`limits`) more than a computer gives.
 
     Examples:
         >>> import sonicvacuum as sv
@@ -115,7 +123,10 @@ def simulate(card: Card, catalogue: Catalogue | None = None, limits: bool = True
     """
     if not isinstance(card, Card):
         raise InputError(f"simulate: is given {card!r:.100}; give a card, as of sv.case or sv.read_case")
-    return simulation.simulate(card, plugins.catalogue() if catalogue is None else catalogue, limits)
+    effects = plugins.catalogue() if catalogue is None else catalogue
+    if model is not None:
+        card = extended(card, _model("simulate", model, effects), None, effects)
+    return simulation.simulate(card, effects, limits)
 
 
 def compare(
@@ -133,15 +144,20 @@ def compare(
         Comparison: misfit over the noise before and after (`gap`), run by run too, and `warnings`.
 
     Raises:
-        InputError: for a file that holds no model, or a model that does not fit the record.
+        InputError: for a file that holds no model, a model that does not fit the record, or no processor.
     """
     check_records((record,), "compare")
+    threads = processors(threads, "compare")
     effects = plugins.catalogue() if catalogue is None else catalogue
-    if isinstance(model, Model):
-        for name in model.effects:
-            comparison.check_source(f"model of {model.record}", name, model.sources, effects)
-    elif isinstance(model, str | PathLike):
-        model = comparison.read_model(model, effects)
-    else:
-        raise InputError(f"compare: is given {model!r:.100} as a model; give what discover found, or a path")
-    return comparison.compare(model, record, threads or available_threads(), effects)
+    return comparison.compare(_model("compare", model, effects), record, threads, effects)
+
+
+def _model(verb: str, given: object, effects: Catalogue) -> Model:
+    """A model, or that of a file; InputError for what is none, or has effects that the catalogue lacks."""
+    if isinstance(given, Model):
+        for name in given.effects:
+            comparison.check_source(f"model of {given.record}", name, given.sources, effects)
+        return given
+    if isinstance(given, str | PathLike):
+        return comparison.read_model(given, effects)
+    raise InputError(f"{verb}: is given {given!r:.100} as a model; give what discover found, or a path")

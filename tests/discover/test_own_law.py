@@ -80,6 +80,14 @@ def test_python_scores_and_simulates_it_as_the_command_does(folder):
     assert sv.simulate(card, known).readings()["wall"].max() > 0.0
     with pytest.raises(sv.InputError, match="no effect is called 'deep-damping'"):
         sv.simulate(card)
+    plain = sv.case(*parts, duration_us=100)
+    damped = [
+        sv.simulate(plain, known, model=m).readings()["wall"] for m in (model, read_model(model, known))
+    ]
+    assert damped[0].max() < 0.99 * sv.simulate(plain).readings()["wall"].max()
+    assert (damped[0] == damped[1]).all()
+    with pytest.raises(sv.InputError, match=r"comes from deep_damping\.py"):
+        sv.simulate(plain, model=model)
 
 
 def test_without_its_file_the_model_is_refused(folder):

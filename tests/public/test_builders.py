@@ -2,13 +2,18 @@
 
 import numpy as np
 import pytest
+import yaml
+from ball import RECORD as ON_A_WALL
 
 import sonicvacuum as sv
 from sonicvacuum import card
+from sonicvacuum.records import Record
+from sonicvacuum.records.reader import parse
 
 STEEL = {"diameter_mm": 5.0, "mass_g": 0.5, "material": "bearing-steel"}
 BALL = sv.bead(**STEEL)
 WALL = sv.gauge("wall")
+RECORD = Record(parse(yaml.safe_load(ON_A_WALL)))
 
 
 def test_builders_and_mappings_give_the_same_card():
@@ -100,6 +105,17 @@ def whole(**changes):
         (lambda: sv.simulate("card.json"), "simulate: is given 'card.json'; give a card"),
         (lambda: sv.discover("rec"), r"discover: is given 'rec' as a record; give what sv\.read"),
         (lambda: sv.compare("model.json", "rec"), r"compare: is given 'rec' as a record; give what sv\.read"),
+        (
+            lambda: sv.discover([RECORD]),
+            r"discover: is given a list of records; .*\(\*records\)$",
+        ),
+        (lambda: sv.discover(RECORD, threads=0), "discover: threads: is 0; give a whole number from 1 on"),
+        (lambda: sv.discover(RECORD, threads=1.5), r"discover: threads: is 1\.5; give a whole number"),
+        (
+            lambda: sv.compare("model.json", RECORD, threads=-1),
+            "compare: threads: is -1; give a whole number",
+        ),
+        (lambda: sv.simulate(whole(), model=3), "simulate: is given 3 as a model; give what discover found"),
         (lambda: sv.read(""), "the path of a record is empty"),
         (lambda: sv.chain(beads=3), "chain: bead: missing"),
         (lambda: sv.chain(bead=BALL), "chain: beads: missing"),

@@ -77,6 +77,11 @@ def test_three_lines_give_a_verdict(ball):
     assert sv.discover.__name__ == "sonicvacuum.discover"  # a package and a function at once
 
 
+def test_the_package_says_what_the_function_takes():
+    assert inspect.signature(sv.discover) == inspect.signature(session.discover)
+    assert inspect.getdoc(sv.discover) == inspect.getdoc(session.discover)
+
+
 def test_it_takes_what_the_function_takes(ball):
     """Limits and catalogue too; the package handed on nothing but `threads`."""
     found = sv.discover(sv.read(ball), threads=1, limits=False, catalogue=CATALOGUE)

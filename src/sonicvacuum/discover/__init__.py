@@ -10,15 +10,29 @@ on a record, `next_experiment` proposes what to measure next.
 
 import sys
 from importlib import import_module
+from inspect import signature
 from types import ModuleType
 
 
 class _Callable(ModuleType):
-    """This package, which is also the public function of its name: `sonicvacuum.discover(record)`."""
+    # This package, which is also the public function of its name, `sonicvacuum.discover(record)`: who asks
+    # what it takes is told of the function, which is loaded then.
 
     def __call__(self, *records, **how):
         """What `session.discover` returns, which says what it takes."""
-        return import_module(f"{__name__}.session").discover(*records, **how)
+        return self._function(*records, **how)
+
+    @property
+    def _function(self):
+        return import_module(f"{__name__}.session").discover
+
+    @property
+    def __signature__(self):
+        return signature(self._function)
+
+    @property
+    def __doc__(self):
+        return self._function.__doc__
 
 
 sys.modules[__name__].__class__ = _Callable

@@ -29,6 +29,7 @@ from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.judge import degenerate, explanations, locate, strained, whereabouts
 from sonicvacuum.discover.judge.law import surface
 from sonicvacuum.discover.model import window
+from sonicvacuum.discover.model.abreast import processors
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.nuisances import assumed, exact
 from sonicvacuum.discover.rounds import Investigation
@@ -36,7 +37,6 @@ from sonicvacuum.discover.search.free_law import FreeLaw
 from sonicvacuum.discover.verdict import Verdict
 from sonicvacuum.effects import Catalogue
 from sonicvacuum.physics import validity
-from sonicvacuum.physics.run import available_threads
 from sonicvacuum.records import Record, check_records
 from sonicvacuum.records.extent import check_extent
 from sonicvacuum.records.suspects import copies
@@ -98,8 +98,8 @@ def discover(
         that tables and pictures need.
 
     Raises:
-        InputError: for no record, or records that cannot be simulated, do not belong together, or (`limits`)
-            ask too much.
+        InputError: for no record or processor, or records that cannot be simulated, do not belong together,
+            or (`limits`) ask too much.
     """
     check_records(records, "discover")
     catalogue = plugins.catalogue() if catalogue is None else catalogue
@@ -107,7 +107,7 @@ def discover(
     ready, notes = zip(*(window.fitted(one, catalogue) for one in records), strict=True)
     for one in ready if limits else ():
         check_extent(one)
-    outcome = competition.discover(ready, catalogue, threads or available_threads())
+    outcome = competition.discover(ready, catalogue, processors(threads, "discover"))
     found, forward = outcome.found, outcome.found.forward
     clock.mark("search")
     stages.begin("places and limits")

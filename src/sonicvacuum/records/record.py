@@ -252,8 +252,15 @@ def check_records(given: Sequence[Any], place: str) -> None:
         raise InputError(f"{place}: is given no record; give at least one, as in {place}(read(folder))")
     for one in given:
         if not isinstance(one, Record):
-            raise InputError(f"{place}: is given {one!r:.100} as a record; give what sv.read(folder) returns")
+            raise InputError(f"{place}: is given {_no_record(one, place)}")
     check_distinct(given, [one.name for one in given])
+
+
+def _no_record(given, place):
+    """What was given in place of a record, and the cure."""
+    if isinstance(given, list | tuple) and any(isinstance(one, Record) for one in given):
+        return f"a {type(given).__name__} of records; give the records themselves, as in {place}(*records)"
+    return f"{given!r:.100} as a record; give what sv.read(folder) returns"
 
 
 def check_distinct(records: Sequence[Record], names: Sequence[str]) -> None:

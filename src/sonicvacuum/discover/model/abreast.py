@@ -7,11 +7,14 @@ process, where that is known to be safe and gains more than copies cost.
 """
 
 from collections.abc import Callable, Iterable
+from numbers import Integral
 from typing import TypeVar
 
 from sonicvacuum import stages
 from sonicvacuum.discover.model import copies
 from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.files import InputError
+from sonicvacuum.physics.run import available_threads
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
@@ -20,6 +23,17 @@ Result = TypeVar("Result")
 SLOPES, FIT, VALLEY = 1, 20, 30
 # What side by side has to save, in s; a copy of the process takes as long.
 SAVED = 0.01
+
+
+def processors(threads: int | None, place: str) -> int:
+    """How many processors a function called `place` is to use; InputError for what is no number of them."""
+    if threads is None:
+        return available_threads()
+    if not isinstance(threads, Integral) or isinstance(threads, bool) or threads < 1:
+        raise InputError(
+            f"{place}: threads: is {threads!r:.100}; give a whole number from 1 on, or None for all"
+        )
+    return int(threads)
 
 
 def each(
