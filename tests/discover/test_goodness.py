@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 from scipy import signal, stats
 
-from sonicvacuum.discover.fit import goodness
+from sonicvacuum.discover.fit import goodness, smooth
+from sonicvacuum.discover.judge.left import Left
+from sonicvacuum.discover.search.unknown import ShapeTest
 
 SAMPLES, WIDE, TRACES = 400, 30, 200
 
@@ -65,3 +67,11 @@ def test_one_wild_sample_is_seen(noise):
 def test_correlation_beyond_neighbours_is_seen(noise):
     r = noise[2] + 0.7 * np.roll(noise[2], 6)
     assert goodness._whiteness(r) < 1e-6
+
+
+def test_what_is_left_by_single_samples_is_told_as_one_thing():
+    """It stands before "is left"."""
+    shapes = ShapeTest({}, 1.0, "contacts", None)
+    found = goodness.Goodness((), {"outliers": 1e-9}, 1e-9, "outliers")
+    told = Left(shapes, found, smooth.Size(0.0, 0.0)).where
+    assert f"{told} is left" == "scatter far beyond the noise in single samples is left"

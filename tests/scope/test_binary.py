@@ -170,3 +170,14 @@ def test_damaged_files_are_refused(name, tmp_path):
     (tmp_path / name).write_bytes(b"TDSm" + b"\x01\x02\x03" * 40)
     with pytest.raises(InputError, match=name):
         read(tmp_path / name)
+
+
+def test_what_the_library_finds_odd_is_told_with_the_file_and_not_by_itself(tmp_path, capfd):
+    whole = tdms(tmp_path / "a.tdms", [ChannelObject("shot", "g9", PULSE)]).read_bytes()
+    (tmp_path / "cut.tdms").write_bytes(whole[:40])
+    with pytest.raises(InputError, match=r"channel of numbers \(Last segment metadata is incomplete\)"):
+        read(tmp_path / "cut.tdms")
+    odd = tmp_path / "odd.tdms"
+    odd.write_bytes(whole[:8] + b"\xff\xff\x00\x00" + whole[12:])  # of a version that does not exist
+    assert read(odd).notes == ("npTDMS: Unrecognised version number: 65535",)
+    assert capfd.readouterr().err == ""

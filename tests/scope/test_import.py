@@ -211,6 +211,7 @@ def test_listing(tmp_path):
     done = CliRunner().invoke(cli, ["record", "import", *files, "--list"])
     assert done.exit_code == 2
     assert "CH2" in done.stdout and "bad.csv" in done.stderr
+    assert done.output.count("bad.csv") == 1
 
 
 def test_columns_of_one_gauge_are_shots(tmp_path):

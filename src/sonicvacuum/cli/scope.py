@@ -68,11 +68,14 @@ def import_(files, listed, as_json, out, like, template, title, force, **given):
 
 
 def _list(files, as_json):
-    """Print what is in files; exit code 2 where one was refused."""
+    """Print what is in files; exit code 2 where one was refused, which is told once, as an error."""
     from sonicvacuum.scope import listing
 
     entries = listing.listing(files)
-    click.echo(json.dumps(entries, indent=1, ensure_ascii=False) if as_json else listing.text(entries))
+    if as_json:
+        click.echo(json.dumps(entries, indent=1, ensure_ascii=False))
+    elif sound := [e for e in entries if "refused" not in e]:
+        click.echo(listing.text(sound))
     refused = [e["refused"] for e in entries if "refused" in e]
     for reason in refused:
         click.echo(f"Error: {in_one_line(reason)}", err=True)

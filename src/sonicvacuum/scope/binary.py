@@ -4,6 +4,7 @@ Both are in the optional extra `scope`. Nothing is ever unpickled or evaluated.
 """
 
 import re
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -52,17 +53,37 @@ def _tdms(path):
         from nptdms import TdmsFile
     except ImportError:
         raise _missing(path, "npTDMS") from None
-    try:
-        with TdmsFile.open(path) as file:
-            channels = [(g.name, c, c[:]) for g in file.groups() for c in g.channels() if len(c)]
-    except Exception as error:
-        raise InputError(f"{path}: not a sound .tdms file: {error}; export it again") from None
+    with _warnings() as told:
+        try:
+            with TdmsFile.open(path) as file:
+                channels = [(g.name, c, c[:]) for g in file.groups() for c in g.channels() if len(c)]
+        except Exception as error:
+            raise InputError(f"{path}: not a sound .tdms file: {error}; export it again") from None
     numeric = [
         (g, c, np.asarray(v, dtype=float)) for g, c, v in channels if np.asarray(v).dtype.kind in "iufb"
     ]
     if not numeric:
-        raise InputError(f"{path}: holds no channel of numbers; export the traces again")
-    return Recording(path, "tdms", tuple(_timed(numeric)))
+        why = f" ({'; '.join(told)})" if told else ""
+        raise InputError(f"{path}: holds no channel of numbers{why}; export the traces again")
+    return Recording(path, "tdms", tuple(_timed(numeric)), tuple(f"npTDMS: {one}" for one in told))
+
+
+@contextmanager
+def _warnings():
+    """What npTDMS finds odd in a file that it reads, a list; it would go to the terminal, whoever reads."""
+    from nptdms.log import log_manager
+
+    told: list[str] = []
+
+    def keep(record):
+        told.append(record.getMessage())
+        return False
+
+    log_manager.console_handler.addFilter(keep)
+    try:
+        yield told
+    finally:
+        log_manager.console_handler.removeFilter(keep)
 
 
 def _timed(numeric):

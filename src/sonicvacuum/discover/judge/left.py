@@ -55,7 +55,7 @@ _WORDS = {
     "chi2": "more scatter in a trace than its noise",
     "total": "more scatter than the noise",
     "whiteness": "a residual that is correlated from sample to sample",
-    "outliers": "single samples far off",
+    "outliers": "scatter far beyond the noise in single samples",
     "oscillation": "an oscillation in a trace",
     "oscillation of a gauge": "an oscillation in all runs of a gauge",
 }
