@@ -87,11 +87,6 @@ SUSPICIOUS_KEYS = [
         {"sensors__1__bead": 3, "runs__1__observables": None},
         "sensors[1] (far): is in bead 3, as near is, and of the same kind",
     ),
-    (
-        {"priors": {"viscous-drga": 10.0}},
-        "priors.viscous-drga: no such effect in the catalogue: without one of your own of that name, by "
-        "--effects, discover refuses the record; did you mean viscous-drag?",
-    ),
 ]
 
 

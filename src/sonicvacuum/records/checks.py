@@ -5,14 +5,12 @@ from itertools import pairwise
 
 import numpy as np
 
-from sonicvacuum.effects import IDS
 from sonicvacuum.gauges import Gauge, position
 from sonicvacuum.observe.pulse import main_pulse
 from sonicvacuum.physics.scales import impact_scales
 from sonicvacuum.records.assemble import assemble
 from sonicvacuum.records.reader import read
 from sonicvacuum.records.record import Record, Run
-from sonicvacuum.schema_errors import likely
 
 # Samples per contact time below which pulses are poorly resolved.
 FEW_SAMPLES = 8
@@ -39,7 +37,7 @@ def check(path) -> list[str]:
 
 def warnings(record: Record) -> list[str]:
     """One line for each suspicious thing, beginning with the place it concerns."""
-    found = [*_materials(record), *_gauges(record), *_strikers(record), *_priors(record)]
+    found = [*_materials(record), *_gauges(record), *_strikers(record)]
     for run, contact in zip(record.runs, _contact_times(record), strict=True):
         if run.signals is not None:
             found += _traces(record, run, contact)
@@ -75,15 +73,6 @@ def _materials(record):
     touching = record.specimen.first.surface.name
     if record.modulus_rel_sigma(touching) is None:
         yield f"materials.{touching}: no modulus_rel_sigma; say how well the modulus is known"
-
-
-def _priors(record):
-    for name in record.block.priors:
-        if name not in IDS:
-            yield (
-                f"priors.{name}: no such effect in the catalogue: without one of your own of that name, by "
-                f"--effects, discover refuses the record; {likely(name, IDS) or 'see sonicvacuum effects'}"
-            )
 
 
 def _gauges(record):
