@@ -42,9 +42,10 @@ def test_a_nominal_fit_that_leaves_much_starts_once_more(monkeypatch, left, agai
         asked.append(coarse)
         return Fitted(SIZE + (again if coarse else left))
 
-    experiment = SimpleNamespace(runs=[None], size=lambda run: SIZE)
+    alike = SimpleNamespace(chain=SimpleNamespace(bodies=SimpleNamespace(kinds=("bead",))))
+    experiment = SimpleNamespace(runs=[None], size=lambda run: SIZE, batches=(alike,))
     monkeypatch.setattr(wide, "fit", fit)
-    layout = SimpleNamespace(size=3, other=lambda kind: [])
+    layout = SimpleNamespace(size=3, other=lambda kind: [], scattered=[])
     found = wide.nominal(SimpleNamespace(experiment=experiment, layout=layout))
     assert found.objective == SIZE + kept
     assert asked == [0, wide.COARSE][:tries]

@@ -12,7 +12,7 @@ from sonicvacuum.discover.fit import discrepancy, smooth
 from sonicvacuum.discover.fit.normal import linearise
 from sonicvacuum.discover.fit.refit import Fit, polish
 from sonicvacuum.discover.fit.wide import nominal
-from sonicvacuum.discover.judge import gross
+from sonicvacuum.discover.judge import beside, gross
 from sonicvacuum.discover.model.experiment import Part, Smooth
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, variants
@@ -266,3 +266,15 @@ def test_what_a_misfit_strained_does_not_stand_in_the_way_once_it_counts_as_nois
     here = Fit(nothing, linearise(forward, nothing, np.zeros((1, 0)), strained[None]))
     assert polish(forward, here).objective > 2.0 * nominal(forward).objective
     assert restart.moved(forward, here).objective == pytest.approx(nominal(forward).objective, abs=0.1)
+
+
+@pytest.mark.parametrize("idle", [True, False])
+def test_an_effect_whose_size_is_none_within_its_error_is_no_name_beside_what_is_left(empty, idle):
+    """`viscous-drag` was named beside `unknown` with 0.01 ± 78 per s, the least that a search looks at."""
+    forward = Forward(experiment(empty))
+    one = effect("viscous-drag")
+    hypothesis = Hypothesis((Component(one, variants(one, setup_of(forward))[0]),))
+    (rate,) = hypothesis.coordinates
+    u = np.array([[rate.low + 1e-6 if idle else 1.0]])
+    at = linearise(forward, hypothesis, u, np.zeros((1, forward.layout.size)))
+    assert beside._idle(Fit(hypothesis, at)) == idle

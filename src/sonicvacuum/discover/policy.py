@@ -89,6 +89,8 @@ SIGMA_REL = 0.02
 ALIAS_COSINE = 0.999
 # ... unless the data tell them apart by more than this Δχ².
 ALIAS_GAIN = 4.0
+# An effect has a size beside something unknown, which counts as noise, from so many of its errors on.
+IDLE = 1.0
 # χ² of a nominal fit above the number of data, in standard deviations of χ², from which it may have ended in
 # one of several minima and starts once more from running integrals; by how much another minimum is lower.
 MINIMA, SAME_MINIMUM = 3.0, 0.5

@@ -52,11 +52,14 @@ class Beside:
             if not named or explanations.clear(whole, named):
                 break
             reasons.append(f"{' + '.join(named)}: not clearly the best beside what is left")
+        final = restart.moved(self.forward, fit_) if named else self.null
+        if len(named) == 1 and _idle(fit_):
+            reasons.append(f"{named[0]}: none of it is left where what is unknown counts as noise")
+            named, fit_, final = [], grown.null, self.null
         if not named and not more_than_smooth:
             reasons += explanations.one_of(weights)
         likely = of_weights(weights, [*grown.tried.values(), *rivals])
         weights = whole if named else weights
-        final = restart.moved(self.forward, fit_) if named else self.null
         return Decision(
             [*named, explanations.UNKNOWN],
             final,
@@ -117,3 +120,9 @@ class Beside:
         near = [c for c in self.found if c.gain > 0.5 * most and frozenset((c.effect,)) not in grown.tried]
         fits = [restart.moved(grown.forward, c.fit) for c in near[:4]]
         return [pairs.combination(grown.null, f, self.setup) for f in fits]
+
+
+def _idle(one: Fit) -> bool:
+    """Whether the size of the one effect of a fit is none within its error."""
+    inside = one.hypothesis.inside(one.u)
+    return max(one.hypothesis.strengths(inside, one.sigma)) < policy.IDLE
