@@ -148,6 +148,21 @@ def test_merged_pulses_have_no_duration_below_the_valley():
     assert ending(trace, second, 0.01).known
 
 
+@pytest.mark.parametrize("level", [0.01, 0.3])
+def test_pulses_followed_through_others_last_until_the_force_has_fallen(level):
+    """A second hump grows from a shoulder into a pulse of its own; how long the level lasts goes on."""
+    merged = []
+    for gap in (1.3, 1.33, 1.36, 1.39):
+        trace = train((0.0, 1.0), (gap, 0.6))
+        main = main_pulse(trace)
+        assert onset(trace, main, level, through=True) == onset(trace, main, level)
+        fall = ending(trace, main, level, through=True).value
+        # The second one ends as it would alone.
+        assert fall == pytest.approx(gap + COS4.crossings(level * main.force / 0.6)[1], abs=2e-7)
+        merged.append(ending(trace, main, level).reason.startswith("merged"))
+    assert merged == [False, False, True, True]
+
+
 def test_a_pulse_too_low_to_count_belongs_to_the_one_before():
     trace = train((0.0, 1.0), (2.2, 0.14))
     rise, fall = -math.acos(0.02**0.25), 2.2 + math.acos((0.02 / 0.14) ** 0.25)

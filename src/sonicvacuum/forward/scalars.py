@@ -29,6 +29,7 @@ def passages(
     gauges: tuple[Gauge, ...],
     diameters: Bodies | float,
     goes_on: bool = False,
+    through: bool = False,
 ) -> list[Run]:
     """What `observe` measures on: the readings of each lane, those of the virtual gauges added.
 
@@ -39,6 +40,7 @@ def passages(
         gauges: where the S gauges sit.
         diameters: of the beads in m.
         goes_on: whether this is the beginning of a longer simulation.
+        through: see `Run`; so do records, which tell for how long the main pulse exceeds a level.
     """
     from sonicvacuum.forward.together import runs_of  # and with it compiled code, as in `motion.see`
 
@@ -47,7 +49,7 @@ def passages(
     geometry = Geometry(beads, diameters, (*gauges, *extra))
     if extra:
         signals = np.concatenate([signals, readings(extra, history.take(lanes), beads)], axis=1)
-    return runs_of(signals, history.time, geometry, goes_on)
+    return runs_of(signals, history.time, geometry, goes_on, through)
 
 
 def measured(

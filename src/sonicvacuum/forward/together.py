@@ -33,15 +33,25 @@ _OPTIONS = {"error_model": "numpy", "nogil": True, "_nrt": False}
 _USUAL, _PEAK, _SEEN, _LEFT, _RIGHT = range(5)
 
 
-def runs_of(signals: np.ndarray, time: np.ndarray, geometry: Geometry, goes_on: bool = False) -> list[Run]:
+def runs_of(
+    signals: np.ndarray, time: np.ndarray, geometry: Geometry, goes_on: bool = False, through: bool = False
+) -> list[Run]:
     """Simulated runs from their readings (L, S, T), gauges as in the geometry, and times (T,) in s.
 
-    `goes_on`: whether these are the beginnings of longer ones.
+    `goes_on`: whether these are the beginnings of longer ones; `through`: see `Run`.
     """
     ids = [sensor.id for sensor in geometry.sensors]
     together = Together(np.asarray(time, dtype=float), signals, ids, goes_on)
     return [
-        Run(dict(zip(ids, one, strict=True)), time, geometry, together=together, lane=lane, goes_on=goes_on)
+        Run(
+            dict(zip(ids, one, strict=True)),
+            time,
+            geometry,
+            together=together,
+            lane=lane,
+            goes_on=goes_on,
+            through=through,
+        )
         for lane, one in enumerate(signals)
     ]
 

@@ -136,7 +136,7 @@ def onset(run: Run, sensor: str, level: float = 0.01) -> Measured:
     main = run.main(sensor)
     if not main.found:
         return shape.onset(run.trace(sensor), main, level)
-    return run.edge(sensor, level, rising=True)
+    return run.edge(sensor, level, True, run.through)
 
 
 def duration(run: Run, sensor: str, level: float = 0.01) -> Measured:
@@ -144,7 +144,7 @@ def duration(run: Run, sensor: str, level: float = 0.01) -> Measured:
     main = run.main(sensor)
     if not main.found:
         return shape.duration(run.trace(sensor), main, level)
-    return shape.lasting(run.edge(sensor, level, rising=True), run.edge(sensor, level, rising=False))
+    return shape.lasting(*(run.edge(sensor, level, rising, run.through) for rising in (True, False)))
 
 
 def duration_half(run: Run, sensor: str) -> Measured:

@@ -128,6 +128,8 @@ class Run:
         together: the same readings with those of further runs, for a run without noise and floor.
         lane: place of this run there.
         goes_on: whether the readings are the beginning of longer ones.
+        through: follow pulses through others that begin before the force has fallen to a level, for how long
+            they last, see `shape`.
 
     Raises:
         ValueError: for times that are not equidistant; for a malformed reading, when it is used.
@@ -144,6 +146,7 @@ class Run:
     together: Together | None = None
     lane: int = 0
     goes_on: bool = False
+    through: bool = False
     _grid: tuple[float, float] = field(init=False, repr=False)
     _known: dict = field(init=False, repr=False, default_factory=dict)
 
@@ -166,9 +169,10 @@ class Run:
         """The main pulse of a gauge; none where the reflection overlaps it (unless that is accepted)."""
         return self._once("main", sensor, self._main)
 
-    def edge(self, sensor: str, level: float, rising: bool) -> Measured:
+    def edge(self, sensor: str, level: float, rising: bool, through: bool = False) -> Measured:
         """Time in s at which the pulse of `first` rises or falls through `level` × its peak."""
-        return self._once((level, rising), sensor, lambda sensor: self._edge(sensor, level, rising))
+        asked = level, rising, through
+        return self._once(asked, sensor, lambda sensor: self._edge(sensor, *asked))
 
     def reflection_time(self, sensor: str) -> Measured:
         """Time in s at which the reflection of the main pulse peaks at a gauge.
@@ -233,12 +237,12 @@ class Run:
         found = self._seen(sensor) and self.together.pulses(sensor)[self.lane]
         return found or main_pulse(self.trace(sensor), self.floor)
 
-    def _edge(self, sensor, level, rising):
+    def _edge(self, sensor, level, rising, through):
         if self._seen(sensor):
             found = float(self.together.crossings(sensor, level, rising)[self.lane])
             if not math.isnan(found):
                 return Measured(found)
-        return (onset if rising else ending)(self.trace(sensor), self.first(sensor), level)
+        return (onset if rising else ending)(self.trace(sensor), self.first(sensor), level, through)
 
     def _seen(self, sensor):
         """Whether pulses of this gauge are found together with those of other runs."""

@@ -1,9 +1,10 @@
 """The shape of a pulse: when it rises and falls, how long it lasts, how it splits, how it leans.
 
 Levels are fractions of the pulse's own peak. Where a level is not passed (truncated), or not before another
-separate pulse (merged), or is too close to the noise, the value is NaN with that reason. With noise, the
-force passes a level to and fro; the crossings are then balanced so that a duration is the time spent above
-the level.
+separate pulse (merged), or is too close to the noise, the value is NaN with that reason. Where pulses are
+followed `through` others, none is merged: a pulse lasts until the force has fallen to the level, and does not
+cease to last when a shoulder of its own grows into a pulse. With noise, the force passes a level to and fro;
+the crossings are then balanced so that a duration is the time spent above the level.
 """
 
 import math
@@ -17,14 +18,14 @@ _NOISE_LEVEL = 3.0
 _NOISE_DIP = 4.0
 
 
-def onset(trace: Trace, pulse: Pulse, level: float) -> Measured:
+def onset(trace: Trace, pulse: Pulse, level: float, through: bool = False) -> Measured:
     """Time in s at which the force rises through `level` × peak on its way to the peak."""
-    return _edge(trace, pulse, level, rising=True)
+    return _edge(trace, pulse, level, True, through)
 
 
-def ending(trace: Trace, pulse: Pulse, level: float) -> Measured:
+def ending(trace: Trace, pulse: Pulse, level: float, through: bool = False) -> Measured:
     """Time in s at which the force falls through `level` × peak after the peak."""
-    return _edge(trace, pulse, level, rising=False)
+    return _edge(trace, pulse, level, False, through)
 
 
 def duration(trace: Trace, pulse: Pulse, level: float = 0.01) -> Measured:
@@ -86,7 +87,7 @@ def _valley(trace, before, after):
     return -maximum(-force, lowest - half, lowest + half)[1]
 
 
-def _edge(trace, pulse, level, rising):
+def _edge(trace, pulse, level, rising, through):
     """Crossing of `level` × peak next to a pulse, on one side of it."""
     if not 0.0 < level < 1.0:
         raise ValueError(f"level is {level}; it must lie between 0 and 1")
@@ -105,8 +106,8 @@ def _edge(trace, pulse, level, rising):
         return missing(f"truncated: the record {'starts' if rising else 'ends'} above {level:g} of the peak")
     outward = outward[: int(low.argmax()) + 1]
     # What only falls, as a simulated pulse does, has no other peak; that is soon seen.
-    falls = bool((outward[1:] <= outward[:-1]).all())
-    peaks = () if falls else turns(outward, 0, drop_of(trace, pulse, PROMINENCE))
+    alone = through or bool((outward[1:] <= outward[:-1]).all())
+    peaks = () if alone else turns(outward, 0, drop_of(trace, pulse, PROMINENCE))
     if any(outward[peak] >= THRESHOLD * pulse.force for _, peak, _ in peaks):
         return missing(f"merged: the force does not fall to {level:g} of the peak before another pulse")
     return Measured(trace.time(_balanced(trace.force, outward, pulse.peak, target, rising)))

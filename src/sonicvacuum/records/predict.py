@@ -70,7 +70,7 @@ def predict(record: Record, conditions: Conditions | None = None) -> tuple[Predi
     for batch in assemble(record):
         seen = _seen(record, batch, conditions)
         gauges, diameters = seen.setup.sensors, record.specimen.diameters
-        shown = passages(seen, slice(None), seen.readings, gauges, diameters)
+        shown = passages(seen, slice(None), seen.readings, gauges, diameters, through=True)
         for lane, place in enumerate(batch.runs):
             readings = dict(zip((g.id for g in gauges), seen.readings[lane], strict=True))
             wanted = record.runs[place].observables

@@ -91,7 +91,7 @@ def inside(
     unsettled = np.zeros(len(run), dtype=bool)
     if not any(is_inside(one) for scalars in wanted for one in scalars):
         return values, unsettled
-    shown = passages(seen, slice(None), signals, experiment.gauges, experiment.diameter, goes_on)
+    shown = passages(seen, slice(None), signals, experiment.gauges, experiment.diameter, goes_on, True)
     columns = Columns(shown)
 
     def closer(one):

@@ -1,8 +1,12 @@
-"""Lanes that finite differences are taken from: a point, and its neighbours in every unknown."""
+"""Lanes that finite differences are taken from, a point and its neighbours in every unknown, and slopes."""
 
 import numpy as np
 
 from sonicvacuum.discover.model.hypothesis import Hypothesis
+
+# A number that the readings do not show is predicted as 0, and of a ball whose contact does not open far from
+# any datum (`scalars`): from one that they show it differs by more than this share of the larger.
+NONE = 0.99
 
 
 def displaced(hypothesis: Hypothesis, u, nu, steps, orders, nuisances, h: float):
@@ -55,3 +59,38 @@ def sizes(u, displaced_u, orders, each: int, h: float) -> np.ndarray:
         size[:, first + p : first + each] *= order
         size[:, first + own] = (many_u[:, first + own] - u[:, None])[:, own, own]
     return size
+
+
+def slopes(value: np.ndarray, size: np.ndarray, each: int, scalars: int) -> np.ndarray:
+    """(L, each, M) slopes of a run's data, from those (L, sets, M) of lanes that depart by `size`; see
+    `sizes`.
+
+    None is taken from where there is a scalar, of which the last data are so many, to where there is none: it
+    would say how near that cliff is, by which nothing is measured.
+    """
+    change, over = changes(value[:, :1], value[:, 1:], scalars)
+    change /= size[:, 1:, None]
+    if change.shape[1] == each:
+        return change
+    return second(change[:, :each], change[:, each:], over[:, :each], over[:, each:])
+
+
+def changes(before: np.ndarray, after: np.ndarray, scalars: int) -> tuple[np.ndarray, np.ndarray]:
+    """(…, M) changes of data, 0 of those of the last n, the scalars, that there are on one side alone; (…, n)
+    which these are.
+    """
+    change, own = after - before, slice(after.shape[-1] - scalars, None)
+    larger = np.maximum(np.abs(before[..., own]), np.abs(after[..., own]))
+    over = np.abs(change[..., own]) > NONE * larger
+    change[..., own] *= ~over
+    return change, over
+
+
+def second(once: np.ndarray, twice: np.ndarray, near: np.ndarray, far: np.ndarray) -> np.ndarray:
+    """(…, M) slopes of second order from those over one step and over two, of which the last n lead over
+    a cliff (…, n); of first order where only two steps do.
+    """
+    found = 2.0 * once - twice
+    own = slice(found.shape[-1] - near.shape[-1], None)
+    found[..., own] = np.where(near, 0.0, np.where(far, once[..., own], found[..., own]))
+    return found

@@ -216,8 +216,7 @@ class Forward:
         result = []
         for run, (value, timing) in enumerate(found):
             value = value.reshape(lanes, sets, -1)
-            changes = (value[:, 1:] - value[:, :1]) / size[:, 1:, None]
-            slopes = 2.0 * changes[:, :each] - changes[:, each:] if precise else changes
+            slopes = differences.slopes(value, size, each, len(self.experiment.runs[run].scalars))
             kept = None if held is None else held[run][:, 1 + p :]
             columns = self.slopes.columns(hypothesis, run, places, value[:, :1], slopes, timing, kept)
             columns[:, 1:, self.counts(run)] = 0.0

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sonicvacuum.discover.model.differences import changes, second
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Hypothesis
 from sonicvacuum.discover.model.parameters import coordinate, shape_grid
@@ -154,12 +155,15 @@ def _simulated(forward, hypothesis, u, nu, family, rough):
 
     def sloped(strengths, some):
         """For each run the changes (K', M) with some directions, and their slopes."""
-        if rough:
-            once = finite(forward, hypothesis, u, nu, family, strengths, some)
-            return once, [a / strengths[:, None] for a in once]
-        found = finite(forward, hypothesis, u, nu, family, np.concatenate([strengths, 2.0 * strengths]), some)
-        once, twice = ([c[part] for c in found] for part in (slice(len(some)), slice(len(some), None)))
-        return once, [(2.0 * a - 0.5 * b) / strengths[:, None] for a, b in zip(once, twice, strict=True)]
+        both = strengths if rough else np.concatenate([strengths, 2.0 * strengths])
+        once, slopes, each = [], [], len(some)
+        values = _displaced(forward, hypothesis, u, nu, family, both, some)
+        for value, run in zip(values, forward.experiment.runs, strict=True):
+            change, over = changes(value[-1], value[:-1], len(run.scalars))
+            once.append(change[:each])
+            parts = once[-1], 0.5 * change[each:], over[:each], over[each:]
+            slopes.append((once[-1] if rough else second(*parts)) / strengths[:, None])
+        return once, slopes
 
     trial = forward.strengths.get(family.directions)
     if trial is None:
@@ -187,6 +191,11 @@ def finite(forward: Forward, hypothesis: Hypothesis, u, nu, family: Family, stre
     `strengths` are (n K,), one for each direction and then the next for each; None: (K,) of 1. `some` are the
     places (K,) of the directions in the family; None: all.
     """
+    return [v[:-1] - v[-1] for v in _displaced(forward, hypothesis, u, nu, family, strengths, some)]
+
+
+def _displaced(forward, hypothesis, u, nu, family, strengths, some):
+    """For each run, the data (n K + 1, M) with each direction, and with none."""
     some = np.arange(len(family.directions)) if some is None else some
     strengths = np.append(np.ones(len(some)) if strengths is None else strengths, 0.0)
     lanes = len(strengths)
@@ -197,5 +206,4 @@ def finite(forward: Forward, hypothesis: Hypothesis, u, nu, family: Family, stre
         setup = hypothesis.change(many_u)(setup, index)
         return family.change(setup, which[index], strengths[index])
 
-    found = forward.sampled(hypothesis, many_u, many_nu, change=change)
-    return [(v[:-1] - v[-1]) for v in found]
+    return forward.sampled(hypothesis, many_u, many_nu, change=change)
