@@ -5,7 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from sonicvacuum.discover.model.noise import _correlation, _neighbours, _ripple
+from sonicvacuum.discover.model.noise import _correlation, _neighbours
+from sonicvacuum.discover.model.ripples import ripple
 from sonicvacuum.gauges import Gauge
 
 COUNT, REST, SIGMA, PEAK = 480, 100, 0.02, 4.0
@@ -47,10 +48,30 @@ def test_all_samples_tell_more_than_those_at_rest(rho, gauge):
 
 def test_what_third_differences_show_is_the_correlation():
     noise_ = drawn(0.6, 1, 200_000)
-    ripple, variance = _ripple([noise_], SIGMA, 0.0)
-    assert ripple == pytest.approx(0.6, abs=4.0 * math.sqrt(variance))
+    shown, variance = ripple([noise_], SIGMA, 0.0)
+    assert shown == pytest.approx(0.6, abs=4.0 * math.sqrt(variance))
     assert math.sqrt(variance) < 0.003  # one in √200 000, times 1.1
-    assert _ripple([noise_[:3]], SIGMA, 0.0)[1] == math.inf
+    assert ripple([noise_[:3]], SIGMA, 0.0)[1] == math.inf
+
+
+@pytest.mark.parametrize("rho", [0.0, 0.5, 0.93])
+def test_higher_differences_tell_it_beside_steep_pulses_and_short_rests(rho):
+    """A pulse of a dozen samples shows in third differences of quiet noise, and stretches of 13 samples look
+    less correlated than they are: 0.93 was taken for 0.6."""
+    pulse = 100.0 * SIGMA / np.cosh((np.arange(COUNT) - 30.0) / 3.5) ** 2
+    noise_ = [drawn(rho, seed) for seed in range(5)]
+    assert abs(ripple(noise_, SIGMA, 0.0)[0] - rho) < 0.1
+    both, worth = _neighbours([pulse + one for one in noise_], KNOWN, [one[:13] for one in noise_], SIGMA)
+    assert both == pytest.approx(rho, abs=4.0 * math.sqrt((1.0 - rho**2) / worth) + 0.02)
+    assert worth > 1000.0
+
+
+def test_differences_do_not_win_where_rest_contradicts_them():
+    """Nor where a rest is unlikely by what they show: half as loud as stated and correlated by less."""
+    noise_ = [0.4 * drawn(0.5, seed) for seed in range(5)]
+    quiet = [one[:REST] for one in noise_]
+    assert not math.isinf(ripple(noise_, SIGMA, 0.0)[1])
+    assert _neighbours(noise_, KNOWN, quiet, SIGMA) == (_correlation(quiet), 5 * REST)
 
 
 @pytest.mark.parametrize("kind", ["steps", "smooth noise", "spikes", "sharp pulse", "louder", "no rest"])

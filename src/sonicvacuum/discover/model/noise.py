@@ -12,8 +12,10 @@ from functools import lru_cache
 
 import numpy as np
 
+from sonicvacuum.discover.model import coloured
 from sonicvacuum.discover.model.experiment import lag_one
 from sonicvacuum.discover.model.masks import cut, spikes
+from sonicvacuum.discover.model.ripples import ripple, share
 from sonicvacuum.discover.model.weak import wanders, weak
 from sonicvacuum.records.record import Record
 
@@ -35,21 +37,11 @@ STEPPED = 0.64
 _SURE = 4.0
 # Noise is there from the first sample to the last: its first half shows this share of it (in logarithms).
 _BEGUN = 0.5
-# So many third differences of white noise are worth one independent sample: 1 + 2 (15² + 6² + 1)/20², from
-# their correlations −15/20, 6/20, −1/20. They and the quiet stretch agree within so many standard errors.
-_RIPPLE, _AGREE = 1.0 + 2.0 * (15.0**2 + 6.0**2 + 1.0) / 20.0**2, 3.0
+# What differences show and the quiet stretch agree within so many standard errors, or the likelihood of the
+# stretch (χ² of two degrees of freedom, exceeded at 0.003).
+_AGREE, _LIKELY = 3.0, 11.8
 # A recorder's rounding, over the noise, from which on third differences are those of its steps.
 _COARSE = 0.2
-# Mean square of third and of fourth differences of noise of variance 1 whose neighbours are correlated: 1,
-# −3, 3, −1 and 1, −4, 6, −4, 1 times themselves at every lag k, where the correlation is ρᵏ. Both show the
-# same ρ within 0.1 to 0.17 of its standard error, and another one for noise of another kind (of a low-pass,
-# or with white noise beside it): drawn noise, ρ up to 0.95.
-_NEIGHBOURS = np.linspace(-0.9, 0.995, 400)
-_RIPPLES = {
-    3: np.polynomial.Polynomial((20.0, -30.0, 12.0, -2.0)),
-    4: np.polynomial.Polynomial((70.0, -112.0, 56.0, -16.0, 2.0)),
-}
-_SAME = 0.17
 
 
 def believed(trace: np.ndarray, sigma: float) -> np.ndarray:
@@ -145,11 +137,16 @@ def _quiet_of(traces, gauge):
     clear = max((len(q) for q, faint in found if not faint), default=None)
     quiet = [even(q[:clear]) if faint else q for q, faint in found]
     quiet = [q for q in quiet if len(q) >= _LEAST]
-    if gauge.baseline_sigma or gauge.drift_sigma:
+    if _open(gauge):
         # Where level and slope are open, noise is what is left of both.
         quiet = [_off_its_line(q) for q in quiet]
     quiet = [_unrisen(q, sigma) for q in quiet]
     return quiet if sum(map(len, quiet)) >= _FEWEST else []
+
+
+def _open(gauge):
+    """Whether a gauge's level or slope is open, so that stretches of it are without their lines."""
+    return bool(gauge.baseline_sigma or gauge.drift_sigma)
 
 
 def _unrisen(stretch, sigma):
@@ -196,7 +193,7 @@ def _estimated(traces, quiet):
     count = sum(map(len, quiet))
     level = math.sqrt(sum(float(q @ q) for q in quiet) / count)
     steps = np.concatenate([np.diff(t, 3) for t in traces])
-    ripple, worth = math.sqrt(float(steps @ steps) / len(steps) / 20.0), len(steps) / _RIPPLE
+    ripple, worth = math.sqrt(float(steps @ steps) / len(steps) / 20.0), len(steps) / share(3)
     error = math.hypot(1.0 / math.sqrt(2.0 * count), 1.0 / math.sqrt(2.0 * worth))
     white = abs(_correlation(quiet)) < _SURE / math.sqrt(count)
     if white and abs(ripple - level) < _AGREE * error * level:
@@ -247,45 +244,21 @@ def _neighbours(traces, gauge, quiet, sigma) -> tuple[float, float]:
     """Correlation of neighbours at a gauge, and the number of samples that it is worth.
 
     The few samples at rest say little of it, and tests of what a fit leaves would take that for a misfit:
-    third differences of all samples, which smooth signals hardly move, say more where the noise is known and
-    not rounded. Where both disagree, as for noise of another kind, only those at rest count.
+    differences of all samples, which smooth signals hardly move, say more where the noise is known and not
+    rounded. Where both disagree, as for noise of another kind, only those at rest count; short stretches look
+    less correlated than they are, and their likelihood is asked as well.
     """
     own, count = _correlation(quiet), sum(map(len, quiet))
     stated, coarse = bool(gauge.sigma), max(map(rounding, traces), default=0.0) > _COARSE * sigma
     if not count or coarse or (stated and sigma > 1.001 * gauge.sigma):
         return own, count
-    ripple, variance = _ripple(traces, sigma, 0.0 if stated else 2.0 / count)
+    seen, variance = ripple(traces, sigma, 0.0 if stated else 2.0 / count)
     error = max(1.0 - own**2, 0.01) / count
-    if math.isinf(variance) or abs(ripple - own) > _AGREE * math.sqrt(variance + error):
+    apart = abs(seen - own) > _AGREE * math.sqrt(variance + error)
+    if math.isinf(variance) or (apart and coloured.misfit(quiet, sigma, seen, _open(gauge)) > _LIKELY):
         return own, count
-    both = (ripple / variance + own / error) / (1.0 / variance + 1.0 / error)
+    both = (seen / variance + own / error) / (1.0 / variance + 1.0 / error)
     return both, max(1.0 - both**2, 0.01) * (1.0 / variance + 1.0 / error)
-
-
-def _ripple(traces, sigma: float, of_sigma: float) -> tuple[float, float]:
-    """Correlation of neighbours that third differences of traces show, and its variance; infinite where
-    signals or spikes show in them, or noise of another kind. `of_sigma` is the relative variance of σ², of
-    white noise.
-    """
-    each = [np.diff(t / sigma, 3) for t in traces]
-    steps, finer = np.concatenate(each), np.concatenate([np.diff(one) for one in each])
-    if not len(finer):
-        return 0.0, math.inf
-    power, error = float(steps @ steps) / len(steps), 2.0 * _RIPPLE / len(steps)
-    median = (float(np.median(np.abs(steps))) / 0.6745) ** 2
-    ripple, again = _shown(power, 3), _shown(float(finer @ finer) / len(finer), 4)
-    scale = abs(power / _RIPPLES[3].deriv()(ripple))
-    # A median errs 1.65 times as much as a mean square, of which it is not independent.
-    spiky = abs(median - power) > _AGREE * 1.31 * math.sqrt(error) * power
-    if spiky or abs(again - ripple) > _AGREE * _SAME * scale * math.sqrt(error):
-        return 0.0, math.inf
-    of_sigma *= (1.0 + ripple**2) / (1.0 - ripple**2)
-    return ripple, scale**2 * (error + of_sigma)
-
-
-def _shown(power: float, order: int) -> float:
-    """Correlation of neighbours that the mean square of differences of an order shows, σ being 1."""
-    return float(np.interp(power, _RIPPLES[order](_NEIGHBOURS)[::-1], _NEIGHBOURS[::-1]))
 
 
 def _correlation(stretches):

@@ -1,0 +1,78 @@
+"""What differences of all samples say of a trace's noise: smooth signals hardly move them, and the higher
+their order the less.
+
+Noise of variance 1 whose neighbours are correlated (ρᵏ at every lag k) has differences of a known mean square
+at every order. Two orders in a row show the same ρ within `_SAME` of its standard error over the order, and
+another one where signals show in them, or for noise of another kind (of a low-pass, or with white noise
+beside it): drawn noise, ρ up to 0.95.
+"""
+
+import math
+from collections.abc import Sequence
+from functools import lru_cache
+
+import numpy as np
+
+# Orders of differences that are tried, the first one first; each is held against the next.
+ORDERS = (3, 4, 5, 6, 7)
+_NEIGHBOURS = np.linspace(-0.9, 0.995, 400)
+_SAME = 0.51
+# Mean square and median agree within so many standard errors, and two orders as well.
+AGREE = 3.0
+
+
+@lru_cache(maxsize=16)
+def _weights(order):
+    """(order + 1,) sums of products of a difference's coefficients, such as 1, −3, 3, −1, with themselves at
+    every lag: 20, −15, 6, −1.
+    """
+    steps = np.diff(np.eye(order + 1), order, axis=0)[0]
+    return np.correlate(steps, steps, "full")[order:]
+
+
+@lru_cache(maxsize=16)
+def _power(order):
+    """Mean square of differences of an order as a polynomial of ρ."""
+    own, *others = _weights(order)
+    return np.polynomial.Polynomial((own, *(2.0 * other for other in others)))
+
+
+def share(order: int) -> float:
+    """So many differences of white noise are worth one independent sample: 1 + 2 (15² + 6² + 1)/20² of third
+    ones.
+    """
+    own, *others = _weights(order)
+    return 1.0 + 2.0 * float(np.square(others).sum()) / float(own) ** 2
+
+
+def ripple(traces: Sequence[np.ndarray], sigma: float, of_sigma: float) -> tuple[float, float]:
+    """Correlation of neighbours that differences of traces show, and its variance; infinite where spikes or
+    noise of another kind show in them, or signals that are not smooth. `of_sigma` is the relative variance of
+    σ², of white noise.
+
+    Third differences tell it, or the lowest order without signals, which make noise look less correlated
+    than the next order does.
+    """
+    before = -1.0
+    for order in ORDERS:
+        each = [np.diff(t / sigma, order) for t in traces]
+        steps, finer = np.concatenate(each), np.concatenate([np.diff(one) for one in each])
+        if not len(finer):
+            break
+        power, error = float(steps @ steps) / len(steps), 2.0 * share(order) / len(steps)
+        median = (float(np.median(np.abs(steps))) / 0.6745) ** 2
+        rho, again = shown(power, order), shown(float(finer @ finer) / len(finer), order + 1)
+        scale = abs(power / _power(order).deriv()(rho))
+        # A median errs 1.65 times as much as a mean square, of which it is not independent.
+        spiky = abs(median - power) > AGREE * 1.31 * math.sqrt(error) * power
+        if not spiky and abs(again - rho) <= AGREE * _SAME / order * scale * math.sqrt(error):
+            return rho, scale**2 * (error + of_sigma * (1.0 + rho**2) / (1.0 - rho**2))
+        if not before < rho < again:
+            break
+        before = rho
+    return 0.0, math.inf
+
+
+def shown(power: float, order: int) -> float:
+    """Correlation of neighbours that the mean square of differences of an order shows, σ being 1."""
+    return float(np.interp(power, _power(order)(_NEIGHBOURS)[::-1], _NEIGHBOURS[::-1]))
