@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from odd_files import PULSE, SECOND, TIMES, recording, rows
 
 from sonicvacuum.files import InputError
+from sonicvacuum.scope.runs import Shot, common_grid
 
 SETTINGS = settings(
     max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
@@ -75,10 +76,34 @@ def test_a_row_of_units_of_unknown_places_is_no_volt(tmp_path):
     assert [c.unit for c in found.channels] == ["mV, N"] * 2
 
 
-def test_missing_samples_are_told(tmp_path):
-    kept = np.delete(np.arange(200), np.arange(50, 70))
-    (channel,) = recording(tmp_path, "Time (s),CH1 (V)\n" + rows(TIMES[kept], PULSE[kept])).channels
-    assert "Behind -5.1e-05 s 20 samples are missing: a straight line stands there." in channel.notes
+@pytest.mark.parametrize(
+    ("kept", "said"),
+    [
+        (
+            np.delete(np.arange(200), np.arange(50, 70)),
+            "Samples missing, left out: 20, the first behind -5.1e",
+        ),
+        (
+            np.delete(np.arange(200), 120),
+            "Samples missing, left out: 1, the first behind 1.9e-05 s, sample 120.",
+        ),
+        (
+            np.sort([*range(200), 120]),
+            "Times that stand twice: 1, the first 2e-05 s; one sample of each counts.",
+        ),
+    ],
+)
+def test_rows_that_are_lost_or_stand_twice_leave_the_clock_as_it_is(tmp_path, kept, said):
+    """One row of 2,000 moved all others by up to half an interval, and a straight line stood for fifty."""
+    found = recording(tmp_path, "Time (s),CH1 (V)\n" + rows(TIMES[kept], PULSE[kept]))
+    (channel,) = found.channels
+    assert channel.interval_s == pytest.approx(1e-6, rel=1e-9)  # as printed
+    assert [note for note in channel.notes if note.startswith(said)]
+    begin, step, samples, _ = common_grid(Shot("a", {"g": channel}, (), {"g": tmp_path}))
+    lost = np.isin(np.arange(200), kept, invert=True)
+    assert (begin, step) == pytest.approx((TIMES[0], 1e-6))
+    assert np.array_equal(np.isnan(samples["g"]), lost)
+    np.testing.assert_allclose(samples["g"][~lost], PULSE[~lost], atol=1e-9)  # times have rounding errors
 
 
 @pytest.mark.parametrize("label", ["gauge_A", "ch_C", "gauge_m", "bar", "F_5", "min"])

@@ -10,7 +10,7 @@ from sonicvacuum.files import InputError
 from sonicvacuum.scope.options import Options
 from sonicvacuum.scope.reader import read
 from sonicvacuum.scope.recording import Channel, Recording
-from sonicvacuum.scope.timebase import NO_TRIGGER, SECONDS
+from sonicvacuum.scope.timebase import FINE, NO_TRIGGER, SECONDS
 
 # A channel's number in the name of a file, as in F0000CH1, C2Trace00001, shot_Ch3.
 _MARK = re.compile(r"(?<![A-Za-z])ch?[ _-]?([1-8])(?!\d)", re.IGNORECASE)
@@ -207,7 +207,7 @@ def common_grid(shot: Shot) -> tuple[float, float, dict[str, np.ndarray], list[s
     step, begin, end = coarsest.interval_s, coarsest.start_s, np.inf
     same = all(_together(c, coarsest) for c in shot.channels.values())
     begin = max(c.start_s for c in shot.channels.values()) if not same else begin
-    end = min(c.start_s + (c.samples - 0.5) * c.interval_s for c in shot.channels.values())
+    end = min(float(_times(c)[-1]) + 0.5 * c.interval_s for c in shot.channels.values())
     count = int(np.floor((end - begin) / step)) + 1
     if count < FEWEST:
         raise InputError(
@@ -220,8 +220,19 @@ def common_grid(shot: Shot) -> tuple[float, float, dict[str, np.ndarray], list[s
         cut = {g: c.values[:count] for g, c in shot.channels.items()}
         return begin, step, cut, [said] if longest > count else []
     times = begin + step * np.arange(count)
-    samples = {g: np.interp(times, _times(c), c.values) for g, c in shot.channels.items()}
+    samples = {g: _between(times, c) for g, c in shot.channels.items()}
     return begin, step, samples, ["Channels were interpolated linearly onto common, even times."]
+
+
+def _between(times, channel):
+    """(T,) samples of a channel at other times; lost between its own where whole rows are missing there."""
+    own, step = _times(channel), channel.interval_s
+    samples, steps = np.interp(times, own, channel.values), np.diff(own) / step
+    if channel.times_s is None or np.abs(steps - np.round(steps)).max() > FINE:
+        return samples
+    after = np.searchsorted(own, times - TOGETHER * step).clip(1, len(own) - 1)
+    inside = (times > own[after - 1] + TOGETHER * step) & (times < own[after] - TOGETHER * step)
+    return np.where(inside & (steps[after - 1] > 1.0 + FINE), np.nan, samples)
 
 
 def _together(one, other):

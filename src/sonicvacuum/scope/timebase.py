@@ -18,7 +18,11 @@ ALIKE = 0.02
 EVEN = 0.01
 # A header's interval this near to that of rounded times is the finer statement.
 FINER = 2e-3
-# Share of lost times that are filled; relative error of an interval from coarse times that is borne.
+# Steps are whole numbers of the usual one within this share of it; digits are finer than that.
+FINE = 0.1
+# So few odd steps are lost rows, whatever the digits: rounded, the interval would hardly differ from one digit.
+SINGLE = 2
+# Share of lost times that are filled, and of steps that are not the usual one; relative error of an interval from coarse times that is borne.
 MOST_LOST, COARSEST = 0.1, 0.1
 # Said where time zero is that of the first sample for want of anything better.
 NO_TRIGGER = "Time counts from the first sample: the file does not say where the trigger is."
@@ -94,10 +98,11 @@ def from_column(
     if times is None:
         return _headers(keys, place, column, f"the column of times has gaps, the first at sample {gap}")
     declared = declared_interval(keys, place, column)
-    slope = float(times[-1] - times[0]) / (len(times) - 1)
-    rounded, uneven = _spacing(times, slope)
     if (np.diff(times) < 0.0).any():  # rounding never turns times round
         return _backwards(times, keys, place, column)
+    places = _places(times)
+    slope = float(times[-1] - times[0]) / places[-1]
+    rounded, uneven = (False, False) if _broken(places) else _spacing(times, slope)
     begin, rough = float(times[0]), 0.0
     if (rounded and not uneven) or slope == 0.0:
         slope, begin, rough = _line(times)
@@ -124,6 +129,8 @@ def from_column(
             f"Times are printed with few digits; the interval, of a line through them, is good to "
             f"{100.0 * rough:.2g} %: give --interval where it is known better."
         )
+    if _broken(places):
+        return TimeBase(start, interval, (*notes, *_rows(times * factor, places)), times * factor)
     if not uneven:
         return TimeBase(start, interval, tuple(notes))
     steps = np.diff(times) * factor
@@ -137,6 +144,41 @@ def from_column(
         at = float(times[steps.argmax()]) * factor
         notes.append(f"Behind {at:.6g} s {missing} samples are missing: a straight line stands there.")
     return TimeBase(start, interval, tuple(notes), times * factor)
+
+
+def _places(times):
+    """(S,) places of samples on even times: one after the other but where rows are lost or stand twice, which
+    all steps between are whole numbers of most of them tell.
+    """
+    steps, usual = np.diff(times), np.arange(len(times))
+    step = float(np.median(steps)) if len(steps) else 0.0
+    if not step > 0.0:
+        return usual
+    counts = np.round(steps / step)
+    odd = counts != 1.0
+    if not odd.any() or odd.mean() > MOST_LOST or np.abs(steps / step - counts).max() > FINE:
+        return usual
+    # Of times that are multiples of the step rounding makes odd steps too, at even distances.
+    if odd.sum() > SINGLE and _last_digit(times) > FINE * step:
+        return usual
+    return np.concatenate([[0], np.cumsum(counts)]).astype(int)
+
+
+def _broken(places):
+    """Whether samples do not stand one after the other."""
+    return bool(places[-1] != len(places) - 1 or (np.diff(places) != 1).any())
+
+
+def _rows(times, places):
+    """Remarks on rows that are lost or stand twice."""
+    steps = np.diff(places)
+    lost, twice = np.flatnonzero(steps > 1), int((steps == 0).sum())
+    if len(lost):
+        where = f"the first behind {times[lost[0]]:.6g} s, sample {lost[0] + 1}"
+        yield f"Samples missing, left out: {int((steps[lost] - 1).sum())}, {where}."
+    if twice:
+        first = int((steps == 0).argmax())
+        yield f"Times that stand twice: {twice}, the first {times[first]:.6g} s; one sample of each counts."
 
 
 def _scaled(keys, interval):
