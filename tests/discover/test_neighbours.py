@@ -1,13 +1,18 @@
 """How noise is correlated: few samples at rest say little of it, third differences of all of them more."""
 
+import itertools
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from made_records import made
+from made_slips import altered, unstated
 
-from sonicvacuum.discover.model.noise import _correlation, _neighbours
-from sonicvacuum.discover.model.ripples import ripple
+from sonicvacuum.discover.model.noise import _correlation, _neighbours, _of_gauge, noise
+from sonicvacuum.discover.model.ripples import ripple, swing
 from sonicvacuum.gauges import Gauge
+from sonicvacuum.records import Signals
 
 COUNT, REST, SIGMA, PEAK = 480, 100, 0.02, 4.0
 PULSE = PEAK / np.cosh((np.arange(COUNT) - 250.0) / 20.0) ** 2
@@ -72,6 +77,64 @@ def test_differences_do_not_win_where_rest_contradicts_them():
     quiet = [one[:REST] for one in noise_]
     assert not math.isinf(ripple(noise_, SIGMA, 0.0)[1])
     assert _neighbours(noise_, KNOWN, quiet, SIGMA) == (_correlation(quiet), 5 * REST)
+
+
+def rising(rho, seed, first=16):
+    """Two traces of which few samples precede the pulse."""
+    place = np.arange(160.0) - first
+    pulse = np.sin(np.pi * np.clip(place / 40.0, 0.0, 1.0)) ** 3
+    return [PEAK * pulse + drawn(rho, 2 * seed + k, 160) for k in range(2)]
+
+
+@pytest.mark.parametrize("rho", [0.5, 0.8])
+def test_few_samples_at_rest_tell_how_correlated_noise_is_that_nobody_stated(rho):
+    """It was taken for white noise, of 0.62 and 0.35 times its size: by what samples flicker."""
+    found = [_of_gauge(tuple(t.tobytes() for t in rising(rho, seed)), UNKNOWN, 0.0) for seed in range(40)]
+    flickers, own, worth, rests = np.transpose(found)
+    assert np.mean(flickers) < 0.75 * SIGMA
+    assert not rests.any()
+    errors = (own - rho) * np.sqrt(worth)
+    assert np.sqrt(np.mean(errors**2)) < 1.5  # of 40 draws 11 %
+    assert np.median(own) == pytest.approx(rho, abs=0.1)
+    sizes = [float(swing(rising(rho, seed), rho)) for seed in range(40)]
+    assert np.mean(sizes) == pytest.approx(SIGMA, rel=0.05)
+
+
+def in_noise(rho, first):
+    """A record that does not state its correlated noise, drawn from a first seed on."""
+    record, seeds = unstated(made(noise=0.0)[0]), itertools.count(first)
+    for gauge in record.gauges:
+        record = altered(record, gauge.id, lambda y: y + drawn(rho, next(seeds), len(y)))
+    return record
+
+
+def test_all_samples_tell_the_size_of_correlated_noise_that_nobody_stated():
+    """Some 200 samples at rest, worth 44 where neighbours are alike by 0.8, know it to a tenth."""
+    found = [noise((in_noise(0.8, 6 * k),))[0] / SIGMA - 1.0 for k in range(20)]
+    assert np.sqrt(np.mean(np.square(found))) < 0.08  # it was 0.1; 0.06 now
+
+
+def test_a_gauge_with_hardly_a_rest_is_as_correlated_as_the_others_and_louder_than_it_flickers():
+    record = in_noise(0.8, 0)
+    begun = {}
+    for run, read in record.signals.items():
+        first = int((read.readings["g4"] > 5.0 * SIGMA).argmax()) - 12
+        begun[run] = Signals(read.time_us[first:], {k: y[first:] for k, y in read.readings.items()})
+    sigma, rho = noise((replace(record, signals=begun),))
+    assert rho == pytest.approx(0.8, abs=0.1)
+    assert sigma[0] == pytest.approx(SIGMA, rel=0.3)  # by what it flickers 0.35
+
+
+def test_few_samples_at_rest_make_no_correlation_of_white_noise_or_of_a_pulse():
+    for seed in range(40):
+        # A pulse that has begun when the record does.
+        foot = PEAK / np.cosh((np.arange(160.0) - 45.0) / 12.0) ** 2
+        begun = [foot + drawn(0.0, 3 * seed + k, 160) for k in range(3)]
+        for traces in (rising(0.0, seed), rising(0.0, seed, 8), begun):
+            _, own, worth, _ = _of_gauge(tuple(t.tobytes() for t in traces), UNKNOWN, 0.0)
+            assert own * math.sqrt(worth) < 4.0
+    assert noise((unstated(made()[0]),))[1].tolist() == [0.0, 0.0, 0.0]
+    assert _of_gauge((np.zeros(30).tobytes(),), UNKNOWN, 0.0)[1:3] == (0.0, 0.0)
 
 
 @pytest.mark.parametrize("kind", ["steps", "smooth noise", "spikes", "sharp pulse", "louder", "no rest"])

@@ -19,8 +19,8 @@ MUTATIONS = (
     (
         "noise is never correlated",
         "noise.py",
-        "return sigma, _correlations(",
-        "return sigma, 0.0 * _correlations(",
+        "rho = _correlations(",
+        "rho = 0.0 * _correlations(",
     ),
     ("no whitening", "experiment.py", "if not np.any(correlation):", "if True:"),
     (

@@ -18,7 +18,9 @@ _MOST = 0.98
 # A line takes no more of the power of a stretch than leaves this share.
 _LEAST = 0.1
 # Correlations tried where none is told surely.
-_TRIED = np.linspace(0.0, _MOST, 50)
+# Powers of time beside which a stretch is judged: those of a line, and of a foot that rises from rest.
+LINE, FOOT = (0, 1), (1,)
+TRIED = np.linspace(0.0, _MOST, 50)
 
 
 def correlation(left: np.ndarray) -> float:
@@ -88,34 +90,49 @@ def misfit_of_size(stretches: Sequence[np.ndarray], sigma: float) -> float:
     A line takes nearly all of a stretch that is hardly longer than its noise remembers, and leaves something
     that looks white.
     """
-    stated, own = _likelihoods(stretches, sigma, about_lines=True)
+    stated, own = _likelihoods(stretches, sigma, LINE)
     return float(stated.min() - own.min())
 
 
-def misfit(stretches: Sequence[np.ndarray], sigma: float, rho: float, about_lines: bool) -> float:
-    """The same that noise of any size and correlation gains over noise of these."""
-    stated, own = _likelihoods(stretches, sigma, about_lines)
-    return float(np.interp(rho, _TRIED, stated) - own.min())
+def misfit(stretches: Sequence[np.ndarray], sigma: float, rho: float, beside: Sequence[int]) -> float:
+    """The same that noise of any size and correlation gains over noise of these, beside powers of time."""
+    stated, own = _likelihoods(stretches, sigma, beside)
+    return float(np.interp(rho, TRIED, stated) - own.min())
 
 
-def _likelihoods(stretches, sigma, about_lines):
-    """(R,) −2 log likelihood of noise of size `sigma`, and of that of any size, for every correlation tried.
+def told(stretches: Sequence[np.ndarray], sizes: np.ndarray) -> tuple[float, float]:
+    """Correlation of neighbours in (n,) stretches beside the foot of a pulse, and how many samples of white
+    noise would tell it as well, or tell it as surely from none.
 
-    About lines it is the restricted one (Patterson & Thompson, Biometrika 58, 545, 1971), of what no line
-    changes.
+    (R,) `sizes` are those of the noise for every correlation in `TRIED`, of which any is as probable
+    beforehand.
     """
-    root = np.sqrt(1.0 - _TRIED**2)
+    found, _ = _likelihoods(stretches, sizes, FOOT)
+    weights = np.exp(-0.5 * (found - found.min()))
+    mean = float(np.average(TRIED, weights=weights))
+    variance = max(float(np.average((TRIED - mean) ** 2, weights=weights)), 1e-6)
+    return mean, max(1.0 / variance, float(found[0] - found.min()) / max(mean, 0.1) ** 2)
+
+
+def _likelihoods(stretches, sigma, beside):
+    """(R,) −2 log likelihood of noise of size `sigma`, one or (R,), and of that of any size, for every
+    correlation tried.
+
+    Beside powers of time it is the restricted one (Patterson & Thompson, Biometrika 58, 545, 1971), of what
+    these do not change.
+    """
+    root = np.sqrt(1.0 - TRIED**2)
     squares, penalty, free = np.zeros(len(root)), np.zeros(len(root)), 0
     for stretch in stretches:
         n = len(stretch)
-        table = np.stack([np.ones(n), np.arange(n) / n - 0.5, stretch][0 if about_lines else 2 :])
-        ahead = (table[:, 1:] - _TRIED[:, None, None] * table[:, :-1]) / root[:, None, None]
+        table = np.stack([*(((np.arange(n) + 1.0) / n) ** power for power in beside), stretch])
+        ahead = (table[:, 1:] - TRIED[:, None, None] * table[:, :-1]) / root[:, None, None]
         first = np.broadcast_to(table[:, :1], (len(root), len(table), 1))
         white = np.concatenate([first, ahead], axis=2)
         products = white @ np.swapaxes(white, 1, 2)
-        lines = np.linalg.det(products[:, :-1, :-1])
-        squares += np.linalg.det(products) / lines
-        penalty += 2.0 * (n - 1) * np.log(root) + np.log(lines)
+        taken = np.linalg.det(products[:, :-1, :-1])
+        squares += np.linalg.det(products) / taken
+        penalty += 2.0 * (n - 1) * np.log(root) + np.log(taken)
         free += n - len(table) + 1
     own = free * (np.log(np.maximum(squares, 1e-300) / free) + 1.0)
-    return free * math.log(sigma**2) + squares / sigma**2 + penalty, own + penalty
+    return free * np.log(sigma**2) + squares / sigma**2 + penalty, own + penalty

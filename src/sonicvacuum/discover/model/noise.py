@@ -15,7 +15,7 @@ import numpy as np
 from sonicvacuum.discover.model import coloured
 from sonicvacuum.discover.model.experiment import lag_one
 from sonicvacuum.discover.model.masks import cut, spikes
-from sonicvacuum.discover.model.ripples import ripple, share
+from sonicvacuum.discover.model.ripples import ripple, share, swing
 from sonicvacuum.discover.model.weak import wanders, weak
 from sonicvacuum.records.record import Record
 
@@ -101,19 +101,53 @@ def noise(records: Sequence[Record]) -> tuple[np.ndarray, np.ndarray]:
         _of_gauge(tuple(t.tobytes() for t in _traces(records, g)), g, steps)
         for g, steps in zip(gauges, known, strict=True)
     ]
-    sigma, own, weights = np.reshape(seen, (-1, 3)).T
-    return sigma, _correlations(own, weights)
+    sigma, own, weights, rests = np.reshape(seen, (-1, 4)).T
+    rho = _correlations(own, weights)
+    if not rests.any():
+        # A standard error more, lest what swings slowly pass for a misfit: few samples tell it all.
+        rho = np.where(rho > 0.0, np.minimum(rho + max(weights.sum(), 1.0) ** -0.5, 0.99), 0.0)
+    for s in np.flatnonzero(np.isfinite(rests) & (rho > 0.0)):
+        found = float(swing(_traces(records, gauges[s]), rho[s]))
+        error = math.sqrt((1.0 + rho[s] ** 2) / (1.0 - rho[s] ** 2) / (2.0 * max(rests[s], 0.5)))
+        # What samples flicker by is less than they swing by, and all of them know this better than few.
+        if not rests[s]:
+            sigma[s] = max(sigma[s], found)
+        elif abs(found / sigma[s] - 1.0) < _AGREE * error:
+            sigma[s] = found
+    return sigma, rho
 
 
 @lru_cache(maxsize=256)
-def _of_gauge(samples: tuple[bytes, ...], gauge, steps: float) -> tuple[float, float, float]:
-    """Standard deviation, correlation of neighbours and what this is worth; remembered, as each hypothesis of
-    a slip asks again of gauges that it leaves as they are.
+def _of_gauge(samples: tuple[bytes, ...], gauge, steps: float) -> tuple[float, float, float, float]:
+    """Standard deviation, correlation of neighbours and what this is worth, and how many samples at rest tell
+    the first: infinite where it is stated, or a recorder's steps are seen.
+
+    Remembered, as each hypothesis of a slip asks again of gauges that it leaves as they are.
     """
     traces = [np.frombuffer(one) for one in samples]
     quiet = _quiet_of(traces, gauge)
     sigma = _sigma(traces, gauge, quiet, max([steps, *map(rounding, traces)]))
-    return sigma, *_neighbours(traces, gauge, quiet, sigma)
+    if gauge.sigma or not traces or _coarse(traces, sigma):
+        return sigma, *_neighbours(traces, gauge, quiet, sigma), math.inf
+    rest = sum(map(len, quiet))
+    return sigma, *(_neighbours(traces, gauge, quiet, sigma) if rest else _of_short_rests(traces)), rest
+
+
+def _of_short_rests(traces):
+    """Correlation of neighbours, and the number of samples that it is worth, of the few that precede pulses.
+
+    Differences of all samples tell the size of the noise for each correlation, so that few are enough: the
+    more they swing beyond what they flicker by, the more neighbours are alike.
+    """
+    level = QUIET_SIGMAS * max(map(flicker, traces))
+    rests = [q for q in (t[: before(t, level)] for t in traces) if len(q) > 1]
+    sizes = swing(traces, coloured.TRIED)
+    return coloured.told(rests, sizes) if rests and sizes.all() else (0.0, 0.0)
+
+
+def _coarse(traces, sigma):
+    """Whether differences of traces are those of a recorder's steps."""
+    return max(map(rounding, traces), default=0.0) > _COARSE * sigma
 
 
 def _traces(records, gauge):
@@ -249,13 +283,15 @@ def _neighbours(traces, gauge, quiet, sigma) -> tuple[float, float]:
     less correlated than they are, and their likelihood is asked as well.
     """
     own, count = _correlation(quiet), sum(map(len, quiet))
-    stated, coarse = bool(gauge.sigma), max(map(rounding, traces), default=0.0) > _COARSE * sigma
+    stated, coarse = bool(gauge.sigma), _coarse(traces, sigma)
     if not count or coarse or (stated and sigma > 1.001 * gauge.sigma):
         return own, count
     seen, variance = ripple(traces, sigma, 0.0 if stated else 2.0 / count)
     error = max(1.0 - own**2, 0.01) / count
     apart = abs(seen - own) > _AGREE * math.sqrt(variance + error)
-    if math.isinf(variance) or (apart and coloured.misfit(quiet, sigma, seen, _open(gauge)) > _LIKELY):
+    if math.isinf(variance) or (
+        apart and coloured.misfit(quiet, sigma, seen, coloured.LINE if _open(gauge) else ()) > _LIKELY
+    ):
         return own, count
     both = (seen / variance + own / error) / (1.0 / variance + 1.0 / error)
     return both, max(1.0 - both**2, 0.01) * (1.0 / variance + 1.0 / error)

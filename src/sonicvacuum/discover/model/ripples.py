@@ -13,6 +13,8 @@ from functools import lru_cache
 
 import numpy as np
 
+# Differences of this order hold nothing of a pulse of eight samples or more.
+_CLEAR = 6
 # Orders of differences that are tried, the first one first; each is held against the next.
 ORDERS = (3, 4, 5, 6, 7)
 _NEIGHBOURS = np.linspace(-0.9, 0.995, 400)
@@ -76,3 +78,11 @@ def ripple(traces: Sequence[np.ndarray], sigma: float, of_sigma: float) -> tuple
 def shown(power: float, order: int) -> float:
     """Correlation of neighbours that the mean square of differences of an order shows, σ being 1."""
     return float(np.interp(power, _power(order)(_NEIGHBOURS)[::-1], _NEIGHBOURS[::-1]))
+
+
+def swing(traces: Sequence[np.ndarray], rho: np.ndarray) -> np.ndarray:
+    """(…) standard deviation of noise whose neighbours are correlated by (…) `rho`, as differences of traces
+    show it; 0 of traces that are too short.
+    """
+    steps = np.concatenate([np.diff(t, _CLEAR) for t in traces])
+    return np.sqrt(float(steps @ steps) / max(len(steps), 1) / _power(_CLEAR)(np.asarray(rho)))
