@@ -20,9 +20,10 @@ EVEN = 0.01
 FINER = 2e-3
 # Steps are whole numbers of the usual one within this share of it; digits are finer than that.
 FINE = 0.1
-# So few odd steps are lost rows, whatever the digits: rounded, the interval would hardly differ from one digit.
+# So few odd steps are lost rows, whatever the digits: rounded, the interval would hardly be off one digit.
 SINGLE = 2
-# Share of lost times that are filled, and of steps that are not the usual one; relative error of an interval from coarse times that is borne.
+# Share of lost times that are filled, and of steps that are not the usual one; relative error of an interval
+# from coarse times that is borne.
 MOST_LOST, COARSEST = 0.1, 0.1
 # Said where time zero is that of the first sample for want of anything better.
 NO_TRIGGER = "Time counts from the first sample: the file does not say where the trigger is."
