@@ -223,6 +223,7 @@ def test_beside_what_is_left_the_likelier_is_named_though_another_was_found(monk
         _irreplaceable=lambda _grown, one, _seen, _needed, _reasons: one,
     )
     monkeypatch.setattr(beside.restart, "moved", lambda _, one: one)
+    monkeypatch.setattr(beside, "_idle", lambda _: False)
     left = SimpleNamespace(where="a smooth misfit", p=0.0)
     made = beside.Beside.decide(case, grown, 10.0, {}, left, [])
     assert made.named == [*([named] if named else []), "unknown"]
