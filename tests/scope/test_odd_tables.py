@@ -10,7 +10,10 @@ from hypothesis import strategies as st
 from odd_files import PULSE, SECOND, TIMES, recording, rows
 
 from sonicvacuum.files import InputError
+from sonicvacuum.scope.keys import Keys
 from sonicvacuum.scope.runs import Shot, common_grid
+from sonicvacuum.scope.timebase import from_column
+from sonicvacuum.scope.units import unit_of
 
 SETTINGS = settings(
     max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
@@ -104,6 +107,14 @@ def test_rows_that_are_lost_or_stand_twice_leave_the_clock_as_it_is(tmp_path, ke
     assert (begin, step) == pytest.approx((TIMES[0], 1e-6))
     assert np.array_equal(np.isnan(samples["g"]), lost)
     np.testing.assert_allclose(samples["g"][~lost], PULSE[~lost], atol=1e-9)  # times have rounding errors
+
+
+def test_the_time_between_two_records_is_not_filled():
+    """Of two records an hour apart, in one column, even times would be some billions."""
+    times = np.concatenate([TIMES[:100], TIMES[100:] + 3600.0])
+    base = from_column(times, unit_of("s"), Keys("."))
+    assert base.interval_s == pytest.approx(3600.0 / 199, rel=1e-3)  # the mean, as of uneven times
+    assert [note for note in base.notes if "samples are missing" in note]
 
 
 @pytest.mark.parametrize("label", ["gauge_A", "ch_C", "gauge_m", "bar", "F_5", "min"])

@@ -103,7 +103,8 @@ def from_column(
         return _backwards(times, keys, place, column)
     places = _places(times)
     slope = float(times[-1] - times[0]) / places[-1]
-    rounded, uneven = (False, False) if _broken(places) else _spacing(times, slope)
+    broken = bool((np.diff(places) != 1).any())
+    rounded, uneven = (False, False) if broken else _spacing(times, slope)
     begin, rough = float(times[0]), 0.0
     if (rounded and not uneven) or slope == 0.0:
         slope, begin, rough = _line(times)
@@ -130,7 +131,7 @@ def from_column(
             f"Times are printed with few digits; the interval, of a line through them, is good to "
             f"{100.0 * rough:.2g} %: give --interval where it is known better."
         )
-    if _broken(places):
+    if broken:
         return TimeBase(start, interval, (*notes, *_rows(times * factor, places)), times * factor)
     if not uneven:
         return TimeBase(start, interval, tuple(notes))
@@ -162,12 +163,10 @@ def _places(times):
     # Of times that are multiples of the step rounding makes odd steps too, at even distances.
     if odd.sum() > SINGLE and _last_digit(times) > FINE * step:
         return usual
+    # More missing than there are samples: another record follows, and the time between is not filled.
+    if counts.sum() > 2.0 * len(times):
+        return usual
     return np.concatenate([[0], np.cumsum(counts)]).astype(int)
-
-
-def _broken(places):
-    """Whether samples do not stand one after the other."""
-    return bool(places[-1] != len(places) - 1 or (np.diff(places) != 1).any())
 
 
 def _rows(times, places):
