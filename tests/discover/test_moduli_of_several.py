@@ -18,7 +18,7 @@ from sonicvacuum.discover.judge import whereabouts
 from sonicvacuum.discover.judge.rivals import Rival
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.problem import experiment
-from sonicvacuum.discover.search import directions, singles
+from sonicvacuum.discover.search import candidates, directions
 from sonicvacuum.discover.search.screen import screen
 from sonicvacuum.discover.search.starts import setup_of
 from sonicvacuum.discover.verdict import Model
@@ -123,8 +123,8 @@ def test_places_share_the_prior_of_the_effect(stiff):
     setup = setup_of(forward)
     scores = screen(forward, null, directions.catalogue(setup))
     effect = setup.catalogue.effect(EFFECT)
-    assert len(singles.by_direction(scores, effect, 10.0)) == 2
-    own = singles.candidate(forward, null, scores, effect, singles.Effort(True, 14))
+    assert len(candidates.by_direction(scores, effect, 10.0)) == 2
+    own = candidates.candidate(forward, null, scores, effect, candidates.Effort(True, 14))
     assert own.fit.hypothesis.components[0].place == 1
     sits = whereabouts.spread(forward, own.fit, setup)
     assert sum(r.probability for r in sits) == pytest.approx(1.0, abs=0.01)  # that may be left aside
@@ -140,7 +140,9 @@ def test_a_uniform_chain_has_no_material_to_choose():
     forward = Forward(data)
     null = wide.nominal(forward)
     scores = screen(forward, null, directions.catalogue(setup_of(forward)))
-    own = singles.candidate(forward, null, scores, data.catalogue.effect(EFFECT), singles.Effort(True, 14))
+    own = candidates.candidate(
+        forward, null, scores, data.catalogue.effect(EFFECT), candidates.Effort(True, 14)
+    )
     assert list(verdict.parameters(own.fit)[EFFECT]) == ["modulus_ratio"]
 
 

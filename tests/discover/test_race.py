@@ -9,7 +9,7 @@ from made_records import SIGMA, made
 from sonicvacuum.discover.fit import wide
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.problem import experiment
-from sonicvacuum.discover.search import directions, screen, singles
+from sonicvacuum.discover.search import candidates, directions, elsewhere, screen, singles
 from sonicvacuum.effects import CATALOGUE
 
 DRAG = ("viscous-drag", {"rate_per_s": 900.0})
@@ -22,7 +22,7 @@ def raced(hidden, monkeypatch):
     forward = Forward(experiment(made(hidden, seed=11)[0]), 1)
     null, setup = wide.nominal(forward), singles.setup_of(forward)
     scores = screen.screen(forward, null, directions.catalogue(setup, forward.experiment.excluded))
-    assert float(np.square(scores.z).max()) > singles.NONLINEAR
+    assert float(np.square(scores.z).max()) > candidates.NONLINEAR
     glanced, candidate = [], singles.candidate
 
     def noted(branch, null, scores, effect, effort, near):
@@ -64,7 +64,7 @@ def test_a_stiff_wall_seen_by_its_own_gauge_is_tried_all_over_its_range(stiffnes
     null, setup = wide.nominal(forward), singles.setup_of(forward)
     scores = screen.screen(forward, null, directions.catalogue(setup, forward.experiment.excluded))
     promised = float(np.square(scores.z).max())
-    assert promised < singles.NONLINEAR
+    assert promised < candidates.NONLINEAR
     assert singles._beyond_slopes(forward, null, promised) == (stiffness == 5.0)
     best, size = singles.fit_all(forward, null, scores)[0], sum(map(forward.experiment.size, (0, 1)))
     assert best.effect == "wall-compliance"
@@ -109,7 +109,7 @@ def test_what_slopes_did_not_foresee_asks_the_others_too(monkeypatch, gained, pl
     )
     monkeypatch.setattr(singles, "candidate", candidate)
     monkeypatch.setattr(singles, "ranked", lambda found, odds: found)
-    monkeypatch.setattr(singles, "data", lambda forward: 900)
+    monkeypatch.setattr(elsewhere, "data", lambda forward: 900)
     scores = SimpleNamespace(
         best=lambda: {name: k for k, name in enumerate(names)},
         z=np.sqrt(list(promised.values())),

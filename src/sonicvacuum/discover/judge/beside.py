@@ -19,7 +19,7 @@ from sonicvacuum.discover.judge.decided import Decision, View
 from sonicvacuum.discover.judge.left import Left
 from sonicvacuum.discover.judge.rivals import of_weights
 from sonicvacuum.discover.model.forward import Forward
-from sonicvacuum.discover.search import pairs, restart, several, singles, unknown
+from sonicvacuum.discover.search import candidates, pairs, restart, several, unknown
 from sonicvacuum.discover.search.unknown import ShapeTest
 from sonicvacuum.effects import Setup
 
@@ -102,7 +102,7 @@ class Beside:
         if self.known is None:
             return False
         with_it = restart.moved(self.forward, whole)
-        if self.null.objective - with_it.objective < singles.NONLINEAR:
+        if self.null.objective - with_it.objective < candidates.NONLINEAR:
             return False
         less = restart.fewer(self.forward, self.null, with_it, k)
         gain = less.objective - with_it.objective

@@ -23,7 +23,7 @@ from sonicvacuum.discover.judge import explanations, rivals, weighing
 from sonicvacuum.discover.judge.rivals import Rival
 from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.forward import Forward
-from sonicvacuum.discover.search import pairs, profiles, restart, screen, singles, unknown
+from sonicvacuum.discover.search import candidates, pairs, profiles, restart, screen, unknown
 from sonicvacuum.effects import Setup
 
 # Third effects, and further ones, that are fitted beside what stands out.
@@ -203,10 +203,10 @@ def _profiles(forward, null) -> list[Combination]:
     if forward.experiment.beads < 2:
         return []
     seen = screen.screen(forward, null, [profiles.family()])
-    effort = singles.Effort(True, singles.ITERATIONS, 0, wide.FIRST)
+    effort = candidates.Effort(True, candidates.ITERATIONS, 0, wide.FIRST)
 
     def follow(branch, effect):
-        return singles.candidate(branch, null, seen, effect, effort)
+        return candidates.candidate(branch, null, seen, effect, effort)
 
     fits = abreast.each(forward, follow, profiles.effects())
     return [Combination((c.effect,), c.fit, c.gain, c.log_bayes) for c in fits if c is not None]

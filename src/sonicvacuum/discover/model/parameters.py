@@ -88,6 +88,14 @@ class Coordinate:
         # Shares of the way from off to either bound, denser towards off.
         return np.array([s * b for b in (self.low, self.high) for s in (0.05, 0.15, 0.3, 0.5, 0.75)])
 
+    def closely(self) -> np.ndarray:
+        """Values of u all over the range, so near to one another that one of them is in each minimum: where
+        beads part and meet again, those of a force are a fifth of it wide.
+        """
+        if self.endless:
+            return np.arange(self.low, self.high, 0.15)[1:]
+        return np.linspace(self.low, self.high, 41)[1:-1]
+
 
 def coordinate(parameter: Parameter, setup: Setup) -> Coordinate:
     """How a parameter is searched in this setup."""
