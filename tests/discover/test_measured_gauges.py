@@ -135,7 +135,7 @@ def test_whitening_without_gaps_is_that_of_full_records():
     np.testing.assert_allclose(whitened_gaps(noise_, rho, np.ones((3, 50), dtype=bool)), full, atol=1e-14)
 
 
-def test_a_run_without_samples_is_white(empty):
+def test_a_run_without_samples_is_white():
     """Runs of scalars alone stand beside others with correlated noise."""
     assert whitened_gaps(np.zeros((2, 3, 0)), np.full(3, 0.5), None).shape == (2, 3, 0)
 

@@ -184,7 +184,7 @@ def test_several_effects_are_held_against_a_smooth_misfit_before_it_counts_as_no
     assert asked == [("its fit", 98.9, 2)]
 
 
-def test_a_pair_far_behind_is_spared_its_last_steps(monkeypatch):
+def test_a_pair_far_behind_is_spared_its_last_steps():
     """A law with a memory took eight tenths of a second for the errors of a pair 120 in chi2 behind."""
     hidden = [("viscous-drag", {"rate_per_s": 300.0}), ("sensor-gain", {"gain_ratio": 1.2, "sensor": 1})]
     forward = Forward(experiment(made(hidden, seed=3)[0]), 1)

@@ -101,7 +101,7 @@ def test_confusion_shows_the_table_cell_by_cell(folder):
     assert [t.get_text() for t in figure.axes[0].get_xticklabels()] == [*IDS, "none", "unknown", "several"]
 
 
-def test_empty_rows_of_a_small_study_are_drawn_too(folder, tmp_path):
+def test_empty_rows_of_a_small_study_are_drawn_too(tmp_path):
     few = [c for c in accuracy() if c.design == "traces" and c.strength == 10.0]
     write_table(few, breakdown.Accuracy, tmp_path / "accuracy.csv")
     empty = [breakdown.Confusion(c.hidden, c.named, 0, np.nan) for c in confusion()]

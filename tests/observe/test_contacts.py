@@ -20,7 +20,6 @@ from sonicvacuum.physics.chain import Chain
 # Two coated beads of 4.86 mm at the 15 GPa that match the speeds of Daraio & Nesterenko (2006).
 RADIUS = 4.86e-3 / 4
 MODULUS = 15e9 / (2 * (1 - 0.388**2))
-STIFFNESS = 4 / 3 * MODULUS * math.sqrt(RADIUS)
 COATING = Elastic("coating", 15e9, 0.388)
 CHAIN = Chain(
     beads=21, bodies=Body(COATING, 0.44e-3, 2.43e-3), striker=COATING, wall=COATING, striker_radius=math.inf,

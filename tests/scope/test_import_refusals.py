@@ -305,7 +305,7 @@ def test_a_file_that_is_too_short_says_so(tmp_path):
         import_files([tmp_path / "fast.csv"], tmp_path / "r", options())
 
 
-def test_a_folder_is_no_file(tmp_path, shot):
+def test_a_folder_is_no_file(tmp_path):
     assert "is a folder; give the files in it" in asked(tmp_path, tmp_path)[0]
 
 

@@ -71,7 +71,7 @@ def test_what_the_profile_asks_for_is_missed(folder, removed, told):
     assert crate.faults(folder) == told
 
 
-def test_the_table_of_a_plain_processor_counts_what_lies_beyond(tmp_path):
+def test_the_table_of_a_plain_processor_counts_what_lies_beyond():
     kept = pd.DataFrame({"name": ["a", "b"], "value": ["1.0", "-2.0"]})
     rule = {"table": "t", "column": "value", "absolute": 0.0, "relative": 1e-3, "reason": "test"}
     for fresh, beyond in ((["1.0001", "-2.0"], 0), (["1.0", "-2.01"], 1)):

@@ -108,7 +108,7 @@ def test_a_place_that_cannot_be_written_is_the_callers_fault(made, monkeypatch, 
     assert capsys.readouterr().err.startswith("Error: config.yaml")
 
 
-def test_a_full_standard_output_is_told(made):
+def test_a_full_standard_output_is_told():
     run = [sys.executable, "-c", "from sonicvacuum.cli import main; main()", "materials"]
     with open("/dev/full", "w") as full:
         done = subprocess.run(run, stdout=full, stderr=subprocess.PIPE, text=True)

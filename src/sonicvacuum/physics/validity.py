@@ -27,8 +27,6 @@ YIELD = 2.0 * 4.5
 FURTHER = 1.2
 # Contact radius over thickness from which a coating is stiffer than a half-space by a third (docs/layer.md).
 NARROW = 0.3
-# A gauge that reads less than this part of the largest force has seen nothing yet.
-SILENT = 1e-3
 _MICRO = 1e-6
 
 

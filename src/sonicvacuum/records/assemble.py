@@ -60,7 +60,7 @@ def duration_of(record: Record, runs: list[Run], chain: Chain) -> float:
     return max(ends)
 
 
-def interval_of(record: Record, runs: list[Run], chain: Chain, coarser: float = 1.0) -> float:
+def interval_of(runs: list[Run], chain: Chain, coarser: float = 1.0) -> float:
     """Sampling interval in s: the traces' own divided by a whole number, or `sampling_of` without any.
 
     At most `coarser` times as long as `sampling_of`.

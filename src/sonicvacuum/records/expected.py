@@ -89,7 +89,7 @@ def expected(record: Record) -> Expected:
             run = record.runs[batch.runs[lane]]
             found = _features(record, run, shown[lane])
             features += found
-            windows += _window(run, found, shown[lane])
+            windows += _window(run, found)
             passing |= _passing(record, run, found)
     return Expected(tuple(features), tuple(windows), passing)
 
@@ -132,8 +132,8 @@ def _known(value):
     return float(value) if np.isfinite(value) else None
 
 
-def _window(run, features, model):
-    """The window of a run, if the model shows a pulse at any of its gauges."""
+def _window(run, features):
+    """The window of a run, if one is expected at any of its gauges."""
     gauges = [f for f in features if f.quantity == "arrival" and f.expected is not None]
     lasting = {f.gauge: f.expected for f in features if f.quantity == "duration_half"}
     gauges = [f for f in gauges if lasting[f.gauge] is not None]

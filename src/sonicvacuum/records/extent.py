@@ -19,7 +19,7 @@ def check_extent(record: Record) -> None:
         Extent(record.beads, 1.0, 1.0, 1.0).check()  # before anything is made for each bead
         for batch in assemble(record):
             runs = [record.runs[place] for place in batch.runs]
-            spans = duration_of(record, runs, batch.chain), interval_of(record, runs, batch.chain)
+            spans = duration_of(record, runs, batch.chain), interval_of(runs, batch.chain)
             one = estimate(batch.chain, 2 * len(record.gauges) + 1, *spans)
             replace(one, work=SIMULATIONS * one.work, memory=AT_ONCE * one.memory).check()
     except TooLargeError as error:

@@ -87,7 +87,7 @@ def _seen(record, batch, conditions):
     return see(
         setup,
         duration_of(record, runs, setup.chain),
-        interval_of(record, runs, setup.chain),
+        interval_of(runs, setup.chain),
         besides=virtual(record.gauges, record.beads),
         striker=True,
         refine=conditions.refine,

@@ -34,7 +34,7 @@ def settled(dialect: Dialect, text: str, lines: list[str], path) -> Dialect:
     if dialect.decimal == "," and sum(map(bool, map(_PAIR.match, bare))) >= 0.6 * len(bare):
         return _of_pairs(dialect, text, path)
     if dialect.decimal == "." and sum(map(bool, map(_GROUPS.fullmatch, bare))) >= 0.6 * len(bare):
-        return _of_groups(dialect, text, bare, path)
+        return _of_groups(text, bare, path)
     return dialect
 
 
@@ -120,7 +120,7 @@ def _two_named(above):
     return None
 
 
-def _of_groups(dialect, text, bare, path):
+def _of_groups(text, bare, path):
     """One column with thousands apart, or several of whole numbers."""
     count = bare[-1].count(",")
     rows = re.findall(rf"^[^\S\n]*[-+]?\d+(?:,[-+]?\d+){{{count}}}[^\S\n]*$", text, re.MULTILINE)

@@ -47,7 +47,6 @@ _BARE = {"millis": 1e-3, "micros": 1e-6, "mikros": 1e-6, "nanos": 1e-9}
 # Prefixes that recorders write in another case: K for kilo before these, S for seconds behind small ones.
 _CAPITAL_K = re.compile(r"K(?=V$|N$|Pa$|Hz$|Sa?/s$|Ohm$)")
 _SECONDS = re.compile(r"([munp])S")
-_THOUSANDS = re.compile(r"^[-+]?\d{1,3}(?:[ \u00a0\u202f]\d{3})+(?![\d.])")
 # Samples a second, however they are written.
 _SAMPLES = re.compile(r"\s*(?:samples?|sa|s)\s*/\s*(?:s|sec|seconds?)|\s*sps", re.IGNORECASE)
 _NUMBER = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?"

@@ -195,7 +195,7 @@ def batches(record: Record) -> tuple[Batch, ...]:
             runs = [record.runs[k] for k in places]
             chain = chain_of(record, runs)
             coarser = 1.0 if any(r.observables for r in runs) else COARSER
-            room = interval_of(record, runs, chain, coarser)
+            room = interval_of(runs, chain, coarser)
             duration = duration_of(record, runs, chain) + 4.0 * room
             result.append(Batch(chain, tuple(places), room, duration))
     return tuple(result)
