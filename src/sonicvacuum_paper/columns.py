@@ -1,15 +1,44 @@
 """Which card stands for a case in a column of the ledger, and the metrics found under such names."""
 
 from collections.abc import Iterable, Mapping
+from difflib import get_close_matches
 
+from sonicvacuum import config as configuration
 from sonicvacuum.card import Card, variant_names
 from sonicvacuum.config import Config, card
+from sonicvacuum.files import InputError
+from sonicvacuum.schema_errors import likely
+from sonicvacuum_paper.ladder import COLUMNS
 from sonicvacuum_paper.rows import Row
 
 # A variant with this ending is its namesake with the loss effects at their off value; where a column of the
 # ledger is another one's model with a loss, that column serves.
 LOSSLESS = "-lossless"
 TWINS = {"layer_loss": "layer", "matched_loss": "matched"}
+# Names as alike as this are one, misspelt: `handbok`. Those of the paper's own variants are less alike.
+MISSPELT = 0.8
+
+
+def read(path) -> Config:
+    """The configuration in a file, with the columns of its ledger checked: a misspelt one would stay empty.
+
+    Raises:
+        InputError: as of `config.read`; for a column that the ledger does not have, and for a variant that no
+            case has and one has with nearly that name. Others may be missing: a case need not have them all.
+    """
+    config = configuration.read(path)
+    known = list(dict.fromkeys(v for case in config.cases.values() for v in variant_names(case)))
+    for column, variants in config.ledger.items():
+        place = f"{path}: ledger.{column}"
+        if column not in COLUMNS:
+            cure = likely(column, COLUMNS) or f"the columns are {', '.join(COLUMNS)}"
+            raise InputError(f"{place}: the ledger has no such column; {cure}")
+        for number, variant in enumerate(variants):
+            near = [] if variant in known else get_close_matches(variant, known, 1, MISSPELT)
+            if near:
+                told = f"is {variant!r}, which no case has as a variant"
+                raise InputError(f"{place}[{number}]: {told}; did you mean {near[0]}?")
+    return config
 
 
 class Metrics:

@@ -8,11 +8,12 @@ from sonicvacuum import config as configuration
 from sonicvacuum.cli.sources import digest
 from sonicvacuum.files import InputError, read_yaml
 from sonicvacuum_blind import kept
+from sonicvacuum_paper import columns
 from sonicvacuum_paper.figures import caption, cards_of, drawable, names
 from sonicvacuum_paper.shown import ANIMATIONS, own
 
 try:
-    CONFIG = configuration.read(CONFIG_FILE)
+    CONFIG = columns.read(CONFIG_FILE)
 except InputError as error:
     raise WorkflowError(str(error))
 

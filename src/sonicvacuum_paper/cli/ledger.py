@@ -18,11 +18,11 @@ _CONFIG = click.option("--config", "path", default="config.yaml", show_default=T
 @click.option("--out", required=True, type=WRITTEN, help="Ledger (CSV) to write.")
 def ledger(metrics, claims, path, probable, out):
     """Hold the claims against METRICS."""
-    from sonicvacuum import config as configuration
+    from sonicvacuum_paper import columns
     from sonicvacuum_paper.stages import write_ledger
 
     check_apart([out], [metrics, claims, path, *([probable] if probable else [])])
-    write_ledger(metrics, claims, configuration.read(path), out, probable)
+    write_ledger(metrics, claims, columns.read(path), out, probable)
 
 
 @verb("sonicvacuum paper audit metrics.csv --assumptions assumptions.csv --out audit.csv")
@@ -32,8 +32,8 @@ def ledger(metrics, claims, path, probable, out):
 @click.option("--out", required=True, type=WRITTEN, help="Audit (CSV) to write.")
 def audit(metrics, assumptions, path, out):
     """Hold the assumptions against METRICS."""
-    from sonicvacuum import config as configuration
+    from sonicvacuum_paper import columns
     from sonicvacuum_paper.stages import write_assumptions
 
     check_apart([out], [metrics, assumptions, path])
-    write_assumptions(metrics, assumptions, configuration.read(path), out)
+    write_assumptions(metrics, assumptions, columns.read(path), out)

@@ -13,8 +13,8 @@ from sonicvacuum.outputs import check_apart
 @click.option("--out", required=True, type=WRITTEN, help="All metrics (CSV) to write.")
 def metrics(files, path, out):
     """Gather the metrics of all cards (FILES) and add those of theory, arithmetic, audit and comparison."""
-    from sonicvacuum import config
+    from sonicvacuum_paper import columns
     from sonicvacuum_paper.stages import write_metrics
 
     check_apart([out], [*files, path])
-    write_metrics(files, config.read(path), out)
+    write_metrics(files, columns.read(path), out)

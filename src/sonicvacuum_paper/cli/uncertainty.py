@@ -17,11 +17,11 @@ _FILE = existing()
 @click.option("--out", required=True, type=WRITTEN, help="Probabilities (CSV) to write.")
 def uncertainty(claims, path, draws, named, out):
     """Find how probable each statement of the paper is under each model."""
-    from sonicvacuum import config as configuration
     from sonicvacuum.cli.cards import read_card
+    from sonicvacuum_paper import columns
 
     check_apart([out], [claims, path, *named])
-    cases, cards = configuration.read(path), [read_card(card) for card in named]
+    cases, cards = columns.read(path), [read_card(card) for card in named]
     # Long to load: what is wrong is said before.
     from sonicvacuum_paper.uncertainty.inputs import DRAWS
     from sonicvacuum_paper.uncertainty.stage import write_uncertainty
