@@ -77,7 +77,7 @@ WRONG_OBSERVABLES = [
     ({"quantity": None}, ["quantity", "missing"]),
     ({"unit": "km/h"}, ["unit", "'km/h'", "given in m/s"]),
     ({"bound": "below"}, ["bound", "'below'"]),
-    ({"shared": {"places": 4.1}}, ["shared.places", "4.1", "fraction"]),
+    ({"shared": {"places": 4.1}}, ["shared.places", "4.1", "in %: divide it by 100"]),
     ({"shared": {"gauge": 0.1, "places": "4%"}}, ["shared.places", "'4%'", "float"]),
     ({"shared": {"places": -0.1}}, ["shared.places", "-0.1", ">"]),
     (
@@ -103,7 +103,10 @@ WRONG_UNITS = [
     ),
     ({"materials__stainless-steel__modulus_GPa": 193e3}, ["stainless-steel.modulus_GPa", "in MPa"]),
     ({"materials__ptfe": {"modulus_GPa": 500.0}}, ["materials.ptfe.modulus_GPa", "the table has", "in MPa:"]),
-    ({"materials__stainless-steel__modulus_rel_sigma": 5.0}, ["modulus_rel_sigma", "in %:"]),
+    (
+        {"materials__stainless-steel__modulus_rel_sigma": 5.0},
+        ["modulus_rel_sigma: is 5, outside 0 to 2; ", "in %: divide it by 100"],
+    ),
     ({"runs__0__striker__speed_m_s": 440.0}, ["runs[0].striker.speed_m_s", "mm/s"]),
     ({"runs__0__striker__speed_rel_sigma": 3.0}, ["runs[0].striker.speed_rel_sigma", "in %:"]),
     ({"runs__0__striker__mass_g": 0.00047}, ["runs[0].striker.mass_g", "in kg:"]),
@@ -121,7 +124,7 @@ WRONG_VALUES = [
     (SCALARS[2] | {"value": 0.032}, ["us", "in ms:"]),
     (SCALARS[2] | {"value": 32e3}, ["us", "in ns:"]),
     (SCALARS[5] | {"value": 980.0}, ["in %:"]),
-    (SCALARS[7] | {"value": 95.0}, ["in %:"]),
+    (SCALARS[7] | {"value": 95.0}, ["is 95, outside -1 to 1.2; ", "in %: divide it by 100"]),
 ]
 
 

@@ -27,6 +27,8 @@ FORCE = (3e-3, 100.0)
 DURATION = (0.03, 300.0)
 SHORTEST_RECORD = 0.2
 LONGEST_INTERVAL = 2.0
+# The unit of a number without one: a fraction, a ratio, a count.
+PURE = "1"
 # A striker lighter than this fraction of a bead suggests its mass was given in kg.
 LIGHTEST_STRIKER = 3e-3
 
@@ -58,15 +60,18 @@ class Range:
         """LaboratoryError for a value outside the range, or next to zero without being it."""
         inside = self.low <= value <= self.high
         if inside and 0.0 < abs(value) < FINEST:
-            told = f"is {value:g} {self.unit}, nearer to 0 than {FINEST:g}; write 0 where it is meant"
+            told = f"is {self._shown(value)}, nearer to 0 than {FINEST:g}; write 0 where it is meant"
             raise LaboratoryError(key, told)
         if inside:
             return
         raise LaboratoryError(
             key,
-            f"is {value:g} {self.unit}, outside {self.low:g} to {self.high:g} {self.unit}"
+            f"is {self._shown(value)}, outside {self.low:g} to {self._shown(self.high)}"
             + suspicion(self.unit, value, self.low, self.high, self.others),
         )
+
+    def _shown(self, value):
+        return f"{value:g}" if self.unit == PURE else f"{value:g} {self.unit}"
 
 
 def suspicion(unit: str, value: float, low: float, high: float, others: Mapping[str, float]) -> str:
@@ -74,7 +79,8 @@ def suspicion(unit: str, value: float, low: float, high: float, others: Mapping[
     fitting = [name for name, factor in others.items() if low <= value / factor <= high]
     if not fitting:
         return "; correct the number"
-    return f"; the number looks like one in {' or '.join(fitting)}: convert it to {unit}"
+    cure = f"divide it by {others[fitting[0]]:g}" if unit == PURE else f"convert it to {unit}"
+    return f"; the number looks like one in {' or '.join(fitting)}: {cure}"
 
 
 # More would overflow the engine's counters; what a computer can do lies far below (`physics.extent`).
@@ -86,22 +92,22 @@ MASS = Range("g", 1e-9, 1e6, {"kg": 1e-3, "mg": 1e3})
 MODULUS = Range("GPa", 1e-5, 1500.0, {"MPa": 1e3, "Pa": 1e9})
 SPEED = Range("m/s", 1e-5, 100.0, {"mm/s": 1e3, "cm/s": 1e2, "km/s": 1e-3})
 STATIC_FORCE = Range("N", 0.0, 1e4, {"mN": 1e3})
-RELATIVE = Range("(a fraction)", 0.0, 2.0, {"%": 1e2})
+RELATIVE = Range(PURE, 0.0, 2.0, {"%": 1e2})
 TRIGGER = Range("us", 0.0, 1e4, {"ns": 1e3})
 DROOP = Range("us", 1.0, 1e9, {"s": 1e-6, "ms": 1e-3})
 LOWPASS = Range("us", 0.0, 1e4, {"ns": 1e3})
 SOLID = Range("kg/m3", *DENSITY, {"g/cm3": 1e-3})
 STRENGTH = Range("MPa", 1e-2, 2e5, {"Pa": 1e6, "GPa": 1e-3})
 # A quartz clock is good to 1e-4, a badly set time base to a few per cent.
-CLOCK = Range("(a fraction)", 0.0, 0.2, {"%": 1e2, "ppm": 1e6})
-TOLERANCE = Range("(a fraction)", 0.0, 1.0, {"%": 1e2})
-ODDS = Range("(odds)", 0.0, 1e6, {})
+CLOCK = Range(PURE, 0.0, 0.2, {"%": 1e2, "ppm": 1e6})
+TOLERANCE = Range(PURE, 0.0, 1.0, {"%": 1e2})
+ODDS = Range(PURE, 0.0, 1e6, {})
 _FORCES = {"mN": 1e3, "kN": 1e-3}
 AMPLITUDE = Range("N", 1e-9, 1e9, _FORCES)
 WAVE_SPEED = Range("m/s", 1.0, 6000.0, {"km/s": 1e-3, "mm/s": 1e3, "cm/s": 1e2})
-RATIO = Range("(a ratio)", 0.0, 100.0, {"%": 1e2})
-RESTITUTION = Range("(a ratio)", -1.0, 1.2, {"%": 1e2})
-COUNT = Range("(a count)", 0.0, 1000.0, {})
+RATIO = Range(PURE, 0.0, 100.0, {"%": 1e2})
+RESTITUTION = Range(PURE, -1.0, 1.2, {"%": 1e2})
+COUNT = Range(PURE, 0.0, 1000.0, {})
 WIDTH = Range("diameters", 0.3, 1e3, {"m": 5e-3, "mm": 5.0})
 
 
