@@ -162,7 +162,7 @@ def _block(written, case, variant, path) -> CaseBlock:
     try:
         return msgspec.convert(content, CaseBlock)
     except msgspec.ValidationError as error:
-        told = explain(error, content, "", "", CaseBlock).removeprefix(": ")
+        told = explain(error, content, "", "", CaseBlock)
         place = _written(written, case, variant, told.partition(":")[0])
         raise InputError(f"{path}: {place}.{told}") from None
 

@@ -47,22 +47,23 @@ def explain(
     unknown = re.search(r"unknown field `([^`]*)`", problem)
     missing = re.search(r"missing required field `([^`]*)`", problem)
     place = ".".join(p for p in (prefix, inner, *(m.group(1) for m in (unknown, missing) if m)) if p)
+    where = ": ".join(p for p in (str(path), place) if p)
     if unknown:
         near = likely(unknown.group(1), keys_of(kind, content, inner) if kind else [])
         meant = f"{near} Otherwise " if near else ""
-        return f"{path}: {place}: unknown key; {meant}check its spelling and its place, or remove it"
+        return f"{where}: unknown key; {meant}check its spelling and its place, or remove it"
     if missing:
-        return f"{path}: {place}: missing; this key is required"
+        return f"{where}: missing; this key is required"
     value = _value_at(content, inner)
     own = cures or {}
     name = re.sub(r"\[\d+\]$", "", inner).rpartition(".")[2]
     if found and found.group(1):
         odd, cure = _odd_key(problem, value)
         told = "" if "regex" in problem else f": {_plain(problem)}"
-        return f"{path}: {place}: a key here is not allowed{odd}{told}; {own.get(name + '[]', cure)}"
-    shown = "" if value is _ABSENT else f"is {_shown(value)}: "
+        return f"{where}: a key here is not allowed{odd}{told}; {own.get(name + '[]', cure)}"
+    shown = f"is {_shown(value)}: " if place and value is not _ABSENT else ""
     cure = _cure(problem, value, _words(kind, content, inner) if kind else [], own.get(name, ""))
-    return f"{path}: {place}: {shown}{_plain(problem)}; {cure}"
+    return f"{where}: {shown}{_plain(problem)}; {cure}"
 
 
 def likely(name: str, known: Sequence[str]) -> str:

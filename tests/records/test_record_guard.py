@@ -132,6 +132,17 @@ def test_a_page_is_not_written_into_a_record(place, monkeypatch, capsys):
     assert "is the folder of a record" in refused(monkeypatch, capsys, "page", "rec")
 
 
+def test_a_page_of_no_verdict_is_refused(place, monkeypatch, capsys):
+    (place / "out").mkdir()
+    told = "out: has no verdict.json; give a folder that sonicvacuum discover wrote"
+    assert told in refused(monkeypatch, capsys, "page", "out")
+
+
+def test_a_record_that_is_given_twice_need_not_be_renamed(place, monkeypatch, capsys):
+    told = "rec: is given twice; give it once"
+    assert told in refused(monkeypatch, capsys, "discover", "./rec", "rec", "--out", "out")
+
+
 def test_a_card_is_not_written_over_what_it_is_made_of(place, monkeypatch, capsys):
     (place / "card.json").write_text("{}")
     assert "which is read here" in refused(

@@ -7,6 +7,7 @@ import os
 import shutil
 import subprocess
 import sys
+from pathlib import Path
 
 import click
 import numpy as np
@@ -167,16 +168,17 @@ def test_a_missing_file_is_named(monkeypatch, capsys, tmp_path):
         ["simulate", "pipe", "--out", "h.npz"],
         ["card", "--config", "pipe"],
         ["compare", "rec", "--model", "pipe", "--json", "score.json"],
-        ["metrics", "/dev/zero", "--out", "m.csv"],
+        ["paper", "metrics", "/dev/zero", "--out", "m.csv"],
         ["record", "check", "rec"],
     ],
 )
-def test_a_pipe_or_a_device_is_refused_and_not_waited_for(monkeypatch, capsys, tmp_path, arguments):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "rec").mkdir()
+def test_a_pipe_or_a_device_is_refused_and_not_waited_for(monkeypatch, capsys, config, arguments):
+    monkeypatch.chdir(config.parent)
+    Path("rec").mkdir()
     os.mkfifo("pipe")
     os.mkfifo("rec/record.yaml")
-    failing(monkeypatch, capsys, *arguments)
+    told = failing(monkeypatch, capsys, *arguments)
+    assert "is a pipe or a device" in told or "has no record.yaml" in told
 
 
 def test_a_card_with_a_fault_is_named_with_its_field(monkeypatch, capsys, card, tmp_path):
@@ -192,6 +194,9 @@ def test_a_file_that_is_no_card_is_named(monkeypatch, capsys, tmp_path):
     path = tmp_path / "x.json"
     path.write_text("{")
     assert "x.json: not a card" in failing(monkeypatch, capsys, "simulate", path, "--out", tmp_path / "h.npz")
+    path.write_text("[1]")
+    told = failing(monkeypatch, capsys, "simulate", path, "--out", tmp_path / "h.npz")
+    assert "x.json: expected `object`, got `array`; write keys with their values" in told
 
 
 def packed(**header):

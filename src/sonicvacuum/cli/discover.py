@@ -224,7 +224,10 @@ def _folders(records, out):
         return {records[0]: out}
     folders: dict[str, Path] = {}
     for path in records:
-        folder = out / Path(path).resolve().name
+        own = Path(path).resolve()
+        folder = out / own.name
+        if own in (Path(p).resolve() for p in folders):
+            raise InputError(f"{path}: is given twice; give it once")
         if folder in folders.values():
             raise InputError(f"{path}: another record has the folder name {folder.name}; rename one of them")
         folders[path] = folder

@@ -18,13 +18,15 @@ from sonicvacuum.cli.own_effects import catalogue, own_effects
 @own_effects
 def page(folders, png, own):
     """Draw the pictures of what discover wrote into FOLDERS, and write its page, index.html."""
-    from sonicvacuum.files import reading
+    from sonicvacuum.files import InputError, reading
     from sonicvacuum.records.guard import check_out
     from sonicvacuum.report.record import section
 
     known = catalogue(own)
     for folder in map(Path, folders):
         check_out(folder)
+        if not (folder / "verdict.json").is_file():
+            raise InputError(f"{folder}: has no verdict.json; give a folder that sonicvacuum discover wrote")
         # What is not a discovery's folder is refused before anything is drawn.
         section(folder, known)
         with reading(folder, "run sonicvacuum discover again"):
