@@ -1,55 +1,19 @@
 """Scores of made-up verdicts whose value is known."""
 
-import csv
 import json
 import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from case_files import put
-from click.testing import CliRunner
+from made_truths import IDEAL, truth, verdict
 from scipy import stats
 
-from sonicvacuum.cli import cli
-from sonicvacuum.files import InputError
 from sonicvacuum_blind import breakdown
-from sonicvacuum_blind.score import Row, read_table, row, score, write_table
-from sonicvacuum_blind.shares import quantile, wilson
-from sonicvacuum_blind.stated import Parameter, parameters
+from sonicvacuum_blind.score import Row, read_table, row, write_table
+from sonicvacuum_blind.shares import wilson
+from sonicvacuum_blind.stated import parameters
 from sonicvacuum_blind.summary import summary
-
-
-def truth(id="x", kind="single", effects=("tsuji",), d_prime=10.0, **changes):
-    hidden = [{"id": e, "parameters": {"alpha": 0.1}, "d_prime": d_prime} for e in effects]
-    base = {
-        "id": id,
-        "kind": kind,
-        "design": "traces",
-        "noise": "white",
-        "effects": list(effects),
-        "d_prime": d_prime,
-        "hidden": hidden,
-        "leftover_d_prime": 9.0 if kind == "foreign" else 0.5,
-        "nearest": {"id": "viscous-drag", "leaves_d_prime": 3.0},
-    }
-    return base | changes
-
-
-def verdict(named=("tsuji",), probabilities=None, **changes):
-    base = {
-        "named": list(named),
-        "probabilities": probabilities or {"none": 0.0, "unknown": 0.02, "tsuji": 0.98},
-        "confusable": [],
-        "parameters": {"tsuji": {"alpha": {"value": 0.11, "sigma": 0.01}}},
-        "gap": {"held_out": {"before": 50.0, "after": 1.02, "floor": 1.0, "closed": 0.9996}},
-        "timing_s": {"total": 2.0},
-        "simulations": 100,
-    }
-    return base | changes
-
-
-IDEAL = {"ideal": "0.9", "before": "0.3", "cells": "r1/g1=9 r1/wall=2 r2/g1=0.2 r2/wall=6"}
 
 
 def test_right_name():
@@ -228,144 +192,3 @@ def test_a_goal_beside_the_ideal_rule_is_one_of_records_that_have_one():
     judged = exact["traces, d' 10, where an ideal rule is known"]
     assert (judged.count, judged.value, judged.ideal) == (1, 1.0, pytest.approx(0.9))
     assert judged.goal
-
-
-def test_confusion_has_every_name_and_counts_every_single_case():
-    two = truth("b", effects=("tsuji", "gravity"), kind="pair")
-    rows = [
-        row(truth("a"), verdict()),
-        row(truth("c"), verdict(["gravity", "tsuji"])),
-        row(truth("d"), verdict(["tsuji", "unknown"])),
-        row(truth("e", kind="foreign", effects=("dimer",)), verdict(["tsuji"])),
-        row(truth("f", kind="null", effects=()), verdict([])),
-        row(two, verdict(["gravity", "tsuji"])),
-    ]
-    cells = {(c.hidden, c.named): c for c in breakdown.confusion(rows)}
-    assert len(cells) == 24 * 25
-    filled = {key: c.count for key, c in cells.items() if c.count}
-    assert filled == {
-        ("tsuji", "tsuji"): 1,
-        ("tsuji", "several"): 2,
-        ("unknown", "tsuji"): 1,
-        ("none", "none"): 1,
-    }
-    assert cells["tsuji", "several"].share == pytest.approx(2 / 3)
-
-
-def test_accuracy_by_design_and_strength():
-    rows = [row(truth(str(k), d_prime=d), verdict()) for k, d in enumerate((5.0, 5.4, 20.0))]
-    alike = verdict(["gravity"], confusable=[["gravity", "tsuji"]])
-    rows.append(row(truth("w", design="ball"), alike, ideal=IDEAL))
-    found = {(a.design, a.strength): a for a in breakdown.accuracy(rows)}
-    assert set(found) == {("traces", 5.0), ("traces", 20.0), ("ball", 10.0)}
-    assert found["traces", 5.0].d_prime == pytest.approx(5.2)
-    ball = found["ball", 10.0]
-    assert (ball.exact, ball.class_level, ball.ideal) == (0.0, 1.0, 0.9)
-    assert (ball.exact_low, ball.exact_high) == wilson(0, 1)
-
-
-def test_coverage_by_effect_and_seconds_by_kind():
-    far = verdict(parameters={"tsuji": {"alpha": {"value": 0.12, "sigma": 0.01}}}, timing_s={"total": 4.0})
-    rows = [row(truth("a"), verdict()), row(truth("b"), far)]
-    intervals = [*parameters(truth("a"), verdict()), *parameters(truth("b"), far)]
-    found = {(c.effect, c.level): c for c in breakdown.coverage(intervals)}
-    assert (found["tsuji", 0.9].count, found["tsuji", 0.9].value) == (2, 0.5)
-    assert found["tsuji", 0.5].value == 0.0
-    assert (found["all", 0.9].count, found["gravity", 0.9].count) == (2, 0)
-    times = {s.kind: s for s in breakdown.seconds(rows)}
-    # Linear between order statistics, numpy's default.
-    assert (times["single"].median, times["single"].percentile_90) == pytest.approx((3.0, 3.8))
-    assert times["null"].count == 0
-
-
-def test_intervals_are_counted_of_right_names_apart_and_without_truths_at_an_end():
-    """Four records: an interval that holds, one that does not, one of a set that is wrong, one at an end."""
-    given = {"a": verdict(), "b": verdict(), "c": verdict(["gravity"]), "d": verdict()}
-    rows = [row(truth(id), one) for id, one in given.items()]
-    case = "single", "traces", 10.0
-    middle = [
-        Parameter(id, *case, "tsuji", "alpha", 0.1, 0.1, 0.01, pit)
-        for id, pit in zip("abc", (0.5, 0.999, 0.0), strict=True)
-    ]
-    end = Parameter("d", *case, "gravity", "fraction", 1.0, 0.99, 0.01, 1.0)
-    lines = [s for s in summary(rows, [*middle, end]) if "interval holds" in s.measure]
-    assert [s.count for s in lines] == [4] * 4 + [2] * 4
-    assert [s.value for s in lines] == [0.25] * 4 + [0.5] * 4
-
-
-def test_interval_of_a_median():
-    """The binomial interval of the median of ten values is from the third to the ninth; binom(10, 1/2) holds
-    1.07 % below 2 and 5.47 % up to 2, so 2 and 8 are its 2.5 % and 97.5 % points.
-    """
-    assert quantile(range(10), 0.5) == (10, 4.5, 2.0, 8.0)
-
-
-def test_command_writes_both_tables(tmp_path):
-    for id in ("p", "q"):
-        put(tmp_path / "truth" / "0", id, "truth.json", truth(id))
-        put(tmp_path / "verdicts" / "0", id, "verdict.json", verdict())
-    arguments = ["blind", "score", "--truth", tmp_path / "truth", "--verdicts", tmp_path / "verdicts"]
-    outputs = ["--out", tmp_path / "score.csv", "--summary", tmp_path / "summary.csv"]
-    done = CliRunner().invoke(cli, [str(a) for a in arguments + outputs], catch_exceptions=False)
-    assert done.exit_code == 0
-    with open(tmp_path / "score.csv", newline="") as stream:
-        assert [r["exact"] for r in csv.DictReader(stream)] == ["1", "1"]
-    assert "exact name" in (tmp_path / "summary.csv").read_text()
-    assert set(Row.__dataclass_fields__) == set(
-        (tmp_path / "score.csv").read_text().splitlines()[0].split(",")
-    )
-
-
-def test_tables_of_several_studies_count_all_their_records(tmp_path):
-    """Studies number their records alike: none takes the place of another."""
-    for study in ("one", "other"):
-        put(tmp_path / study / "truth", "p", "truth.json", truth("p"))
-        put(tmp_path / study / "verdicts", "p", "verdict.json", verdict())
-        folder = tmp_path / study
-        arguments = ["--truth", folder / "truth", "--verdicts", folder / "verdicts", "--tables", folder]
-        arguments += ["--out", folder / "score.csv", "--summary", folder / "summary.csv"]
-        CliRunner().invoke(cli, ["blind", "score", *map(str, arguments)], catch_exceptions=False)
-    both = [str(tmp_path / study) for study in ("one", "other")]
-    for folders, records in ((both[:1], 1), (both, 2)):
-        out = tmp_path / f"of-{records}"
-        CliRunner().invoke(cli, ["blind", "tables", *folders, "--out", str(out)], catch_exceptions=False)
-        with open(out / "summary.csv", newline="") as stream:
-            lines = {(line["measure"], line["group"]): line for line in csv.DictReader(stream)}
-        assert lines["exact name", "all"]["count"] == str(records)
-        with open(out / "coverage.csv", newline="") as stream:
-            held = {(line["effect"], line["level"]): line for line in csv.DictReader(stream)}
-        assert held["all", "0.9"]["count"] == str(records)
-
-
-def test_missing_verdicts_are_named(tmp_path):
-    put(tmp_path / "truth", "p", "truth.json", truth("p"))
-    (tmp_path / "verdicts").mkdir()
-    with pytest.raises(InputError, match="no verdict for 1 of 1 cases, first p"):
-        score(tmp_path / "truth", tmp_path / "verdicts")
-    with pytest.raises(InputError, match=r"holds no truth\.json"):
-        score(tmp_path / "verdicts", tmp_path / "verdicts")
-
-
-def test_verdicts_without_a_needed_key_are_named():
-    broken = verdict()
-    del broken["probabilities"]
-    with pytest.raises(InputError, match="probabilities: missing"):
-        row(truth(), broken, "here/verdict.json")
-
-
-def test_hide_command_lists_cases_and_asks_for_folders(tmp_path):
-    runner = CliRunner()
-    listed = runner.invoke(cli, ["blind", "hide", "--study", "small", "--list", str(tmp_path / "cases.csv")])
-    assert listed.exit_code == 0
-    assert len((tmp_path / "cases.csv").read_text().splitlines()) > 24
-    for arguments, words in (
-        (["blind", "hide"], "--study or --cases"),
-        (["blind", "hide", "--study", "small"], "--records and --truth"),
-        (
-            ["blind", "hide", "--study", "small", "--batch", "4/4", "--records", "r", "--truth", "t"],
-            "write k/n",
-        ),
-    ):
-        refused = runner.invoke(cli, arguments)
-        assert isinstance(refused.exception, InputError)
-        assert words in str(refused.exception)

@@ -13,8 +13,8 @@ import yaml
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "tests" / folder) for folder in ("blind", "figures")]
 
+from made_truths import truth, verdict  # noqa: E402
 from test_digitised import block  # noqa: E402
-from test_score import truth, verdict  # noqa: E402
 
 from sonicvacuum import config  # noqa: E402
 from sonicvacuum_blind import score, study  # noqa: E402

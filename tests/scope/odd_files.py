@@ -4,7 +4,7 @@ from made_files import PULSE, TIMES
 
 from sonicvacuum.scope import read
 
-__all__ = ["PULSE", "SECOND", "TIMES", "recording", "rows"]
+__all__ = ["PULSE", "SECOND", "TIMES", "recording", "rows", "seen"]
 SECOND = -0.5 * PULSE
 
 
@@ -20,3 +20,8 @@ def rows(*columns, cell=",", form="{:.7g}"):
         cell.join(c if isinstance(c, str) else form.format(c) for c in row) + "\n"
         for row in zip(*columns, strict=True)
     )
+
+
+def seen(found):
+    """Name, segment, unit and number of samples of each channel."""
+    return [(c.name, c.segment, c.unit, c.samples) for c in found.channels]
