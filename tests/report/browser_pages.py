@@ -9,9 +9,9 @@ import shutil
 from itertools import combinations
 
 import pytest
+from made_chains import STEEL, STRIKER, record
 from made_verdicts import KINDS, WITHOUT_TRACES, write
 from playwright.sync_api import sync_playwright
-from test_page_parts import STEEL, STRIKER, record
 
 from sonicvacuum.discover import given
 from sonicvacuum.discover.verdict import write_json
