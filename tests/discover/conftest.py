@@ -5,8 +5,10 @@ from made_records import DAMPING, made
 
 from sonicvacuum.discover import session
 from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, variants
 from sonicvacuum.discover.model.problem import experiment
 from sonicvacuum.discover.search import singles
+from sonicvacuum.effects import effect
 
 
 @pytest.fixture(scope="session")
@@ -37,3 +39,17 @@ def verdict(hidden):
 def nothing(empty):
     """What is found in the nominal record."""
     return session.discover(empty)
+
+
+@pytest.fixture(scope="session")
+def quiet():
+    """A record of the nominal model, nuisances at zero, its noise left out."""
+    return made(noise=0.0)[0]
+
+
+@pytest.fixture
+def two():
+    """A hypothesis of one effect with two parameters, which nearly replace one another."""
+    own = effect("relaxing-contact")
+    (free,) = variants(own, None)
+    return Hypothesis((Component(own, free),))

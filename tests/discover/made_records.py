@@ -87,3 +87,20 @@ def made(
         noisy = clean + noise * sigma * rng.normal(size=clean.shape)
         signals[run.id] = Signals(time, dict(zip(ids, noisy, strict=True)))
     return Record(content, signals, "made"), nu[0]
+
+
+TOLERANCES = {
+    "bead_mass_rel": 0.01,
+    "bead_diameter_rel": 0.005,
+    "striker_mass_rel": 0.01,
+    "speed_common_rel": 0.02,
+    "gain_common_rel": 0.03,
+}
+
+
+def with_keys(record: Record, sensors=None, materials=None, **keys) -> Record:
+    """The record with other errors: `sensors` go to every gauge, `materials` are added."""
+    content = block([r.striker.speed_m_s for r in record.block.runs])
+    content["sensors"] = [{**s, **(sensors or {})} for s in content["sensors"]]
+    content["materials"] |= materials or {}
+    return Record(parse({**content, **keys}), record.signals, "other")

@@ -2,20 +2,15 @@
 
 import math
 
-import msgspec
 import numpy as np
 import pytest
-from made_records import block, made
+from made_records import TOLERANCES, block, made, with_keys
 
-from sonicvacuum.discover import session, verdict
-from sonicvacuum.discover.faults import changes
-from sonicvacuum.discover.fit import unequal
-from sonicvacuum.discover.fit.refit import fit
 from sonicvacuum.discover.fit.wide import nominal
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Hypothesis
-from sonicvacuum.discover.model.nuisances import SCATTER, Layout, Shared, assumed, exact
-from sonicvacuum.discover.model.problem import experiment, together
+from sonicvacuum.discover.model.nuisances import SCATTER, Layout, Shared
+from sonicvacuum.discover.model.problem import experiment
 from sonicvacuum.discover.model.scatter import DIRECTIONS
 from sonicvacuum.discover.model.slow import columns
 from sonicvacuum.discover.search import directions, screen
@@ -23,28 +18,6 @@ from sonicvacuum.discover.search.singles import setup_of
 from sonicvacuum.files import InputError
 from sonicvacuum.records import Record, Signals
 from sonicvacuum.records.reader import parse
-
-TOLERANCES = {
-    "bead_mass_rel": 0.01,
-    "bead_diameter_rel": 0.005,
-    "striker_mass_rel": 0.01,
-    "speed_common_rel": 0.02,
-    "gain_common_rel": 0.03,
-}
-
-
-def with_keys(record: Record, sensors=None, materials=None, **keys) -> Record:
-    """The record with other errors: `sensors` go to every gauge, `materials` are added."""
-    content = block([r.striker.speed_m_s for r in record.block.runs])
-    content["sensors"] = [{**s, **(sensors or {})} for s in content["sensors"]]
-    content["materials"] |= materials or {}
-    return Record(parse({**content, **keys}), record.signals, "other")
-
-
-@pytest.fixture(scope="module")
-def quiet():
-    """A record of the nominal model, nuisances at zero, its noise left out."""
-    return made(noise=0.0)[0]
 
 
 def test_every_column_is_the_slope_of_the_predictions(quiet):
@@ -112,78 +85,6 @@ def test_drift_begins_at_zero_and_ends_as_stated():
     assert variance[0] == pytest.approx(0.0, abs=1e-20)
     # Four terms of the series hold 95 % of the variance at the end: Σ 2/((k − ½) π)² = 0.95.
     assert variance[-1] == pytest.approx(4.0, rel=0.06)
-
-
-def test_heavier_beads_are_no_misfit_where_their_tolerance_allows():
-    heavier = [("mass", bead, 1.03) for bead in range(1, 11)]
-    record, _ = made(departures=heavier, noise=1.0, seed=5)
-    sharp = {"parylene-c": {"modulus_rel_sigma": 0.001}}
-    exact, open_ = (
-        nominal(Forward(experiment(with_keys(record, materials=sharp, tolerances={"bead_mass_rel": sigma}))))
-        for sigma in (0.0, 0.03)
-    )
-    data = 2 * 3 * 700
-    # A χ² of 4200 data has the standard deviation 92.
-    assert exact.objective > data + 5 * 92 and open_.objective < data + 3 * 92
-
-
-def test_beads_that_differ_within_their_tolerance_are_no_misfit():
-    """One bead lighter, the next heavier: what all beads have in common does not make up for that."""
-    rng = np.random.default_rng(np.random.SeedSequence(9))
-    ratios = np.exp(0.02 * rng.normal(size=10))
-    unequal = [("mass", bead, float(ratio)) for bead, ratio in enumerate(ratios, start=1)]
-    record, _ = made(departures=unequal, noise=1.0, seed=5)
-    exact, open_ = (
-        nominal(Forward(experiment(with_keys(record, tolerances={"bead_mass_rel": sigma}))))
-        for sigma in (0.0, 0.02)
-    )
-    data = 2 * 3 * 700
-    assert exact.objective > data + 5 * 92 and open_.objective < data + 3 * 92
-
-
-def test_directions_that_data_do_not_show_are_empty(empty):
-    """Errors of masses ten times smaller show in fewer directions, and the rest adds little to chi2."""
-
-    def shown(sigma):
-        data = experiment(with_keys(empty, tolerances={"bead_mass_rel": sigma}))
-        return sum(any(one.weights) for one in data.shared if one.kind == SCATTER)
-
-    assert shown(0.03) > shown(0.003) > shown(0.00003) == 0
-
-
-def test_beads_that_differ_are_followed_to_a_lower_minimum():
-    """A fit from beads that weigh alike ends 17 above one from draws about them; the same in any order."""
-    rng = np.random.default_rng(np.random.SeedSequence(9))
-    unequal_ = [("mass", bead, float(np.exp(0.02 * rng.normal()))) for bead in range(1, 11)]
-    record, _ = made(departures=unequal_, noise=0.2, seed=5)
-    forward, exact = (
-        Forward(experiment(with_keys(record, tolerances={"bead_mass_rel": sigma}))) for sigma in (0.02, 0.0)
-    )
-    start = np.zeros((1, forward.layout.size))
-    one = fit(forward, Hypothesis(), np.zeros((1, 0)), start)
-    found = [unequal.lower(forward, one) for _ in range(2)]
-    assert found[0].objective < one.objective - 10.0
-    np.testing.assert_array_equal(found[0].nu, found[1].nu)
-    alike = fit(exact, Hypothesis(), np.zeros((1, 0)), np.zeros((1, exact.layout.size)))
-    assert unequal.lower(exact, alike) is alike
-
-
-def test_single_beads_differ_in_as_many_directions_in_any_record(empty):
-    """None of them moves all beads alike; where masses are exact there are none."""
-    open_ = experiment(with_keys(empty, tolerances={"bead_mass_rel": 0.003}))
-    weights = np.array([one.weights for one in open_.shared if one.kind == SCATTER])
-    assert weights.shape == (DIRECTIONS, 10)
-    shown = int(weights.any(axis=1).sum())
-    assert 4 <= shown <= 9  # these data show half of the contrasts of ten beads, or more
-    np.testing.assert_allclose(weights @ weights.T, np.diag(np.arange(DIRECTIONS) < shown), atol=1e-9)
-    np.testing.assert_allclose(weights.sum(axis=1), 0.0, atol=1e-9)
-    assert not any(one.kind == SCATTER for one in experiment(empty).shared)
-    # What all beads have in common is told, patterns of many that nobody could weigh are not; those that the
-    # data do not show take no simulation: modulus, mass of all, speed remain.
-    forward = Forward(open_)
-    assert len(forward.slopes.simulated) == 3 + shown
-    assert len(forward.layout.empty) == DIRECTIONS - shown
-    assert set(verdict.nuisances(forward, nominal(forward))) == {"bead-mass"}
 
 
 def test_speeds_that_are_high_together_are_no_striker_error_where_that_may_be():
@@ -285,106 +186,3 @@ def test_priors_of_the_record_reach_the_search(quiet):
     assert "kuwabara-kono" in asked
     with pytest.raises(InputError, match=r"/record.yaml: priors\.gremlins: is 2: no such effect"):
         experiment(with_keys(quiet, priors={"gremlins": 2.0}))
-
-
-def test_what_counts_as_exact_is_said(empty):
-    bodies = "the beads' mass, the beads' diameter, the striker's mass"
-    assert exact(empty, experiment(empty).shared) == f"{bodies}: taken as exact, no tolerance being stated"
-    some = with_keys(empty, tolerances={"bead_mass_rel": 0.002, "bead_diameter_rel": 0.0005})
-    words = exact(some, experiment(some).shared)
-    assert words == "the striker's mass: taken as exact, no tolerance being stated"
-    assert exact(some, experiment(with_keys(empty, tolerances=TOLERANCES)).shared) == ""
-
-
-def test_what_is_taken_of_moduli_is_said(empty):
-    chains = [batch.chain for batch in experiment(empty).batches]
-    taken = "errors of moduli taken so, none being stated"
-    assert assumed(empty, chains) == f"alumina 5 %, stainless-steel 1 %: {taken}"
-    given = {name: {"modulus_rel_sigma": 0.02} for name in ("alumina", "stainless-steel")}
-    assert (
-        assumed(with_keys(empty, materials={"alumina": given["alumina"]}), chains)
-        == f"stainless-steel 1 %: {taken}"
-    )
-    assert assumed(with_keys(empty, materials=given), chains) == ""
-    steel = wall_of(empty, "stainless-steel", {"modulus_rel_sigma": 0.0}, "bearing-steel")
-    unstated = msgspec.structs.replace(steel.block, materials={})
-    assert "bearing-steel 5 %" in assumed(
-        Record(unstated, empty.signals, "other"), [experiment(steel).batches[0].chain]
-    )
-
-
-def test_a_static_force_has_an_error_where_there_is_one(empty):
-    chain = {**block((0.3, 0.9))["chain"], "static_force_N": 2.0}
-    pressed = Record(parse({**block((0.3, 0.9)), "chain": chain}), empty.signals, "pressed")
-    kinds = {one.kind: one.sigma for one in experiment(pressed).shared}
-    assert kinds["static-force"] == 0.02
-    assert "static-force" not in {one.kind for one in experiment(empty).shared}
-    assert "static force 2 %" in assumed(pressed, [b.chain for b in experiment(pressed).batches])
-    known = with_keys(pressed, tolerances={"static_force_rel": 0.0})
-    assert "static-force" not in {one.kind for one in experiment(known).shared}
-    assert "static force" not in assumed(known, [b.chain for b in experiment(known).batches])
-
-
-def test_materials_of_all_strikers_are_open_in_an_order_of_their_own():
-    """Where runs are exchanged their strikers are; what a slip is weighed in must stay as it is."""
-    given = block((0.3, 0.6, 0.9))
-    for run, material in zip(given["runs"], ("ptfe", "nylon", "delrin"), strict=True):
-        run["striker"] = {**run["striker"], "material": material}
-    record, _ = made(seed=5, given=given)
-    names = [one.of for one in experiment(record).shared if one.kind == "modulus"]
-    assert names == ["delrin", "nylon", "ptfe"]
-    turned = changes.runs_swapped(record, "v0", "v2")
-    assert [one.of for one in experiment(turned).shared if one.kind == "modulus"] == names
-    assert session.discover(turned).verdict.faults[0].fault == "runs-swapped"
-
-
-def wall_of(record: Record, name: str, given: dict | None, bead: str = "brass") -> Record:
-    """The record with solid beads of `bead` on a wall of a material, of which `given` is stated."""
-    content = block([r.striker.speed_m_s for r in record.block.runs])
-    solid = {k: v for k, v in content["chain"]["bead"].items() if k not in ("coating_um", "core")}
-    content["chain"] |= {"bead": solid | {"material": bead}, "wall": {"material": name}}
-    content["materials"] = {bead: {"modulus_rel_sigma": 0.05}} | ({name: given} if given else {})
-    return Record(parse(content), record.signals, "other")
-
-
-@pytest.mark.parametrize(
-    ("name", "given", "error"),
-    [
-        ("stainless-steel", None, 0.01),  # 20 samples within 1 %, see materials.py
-        ("stainless-steel", {"modulus_GPa": 193.0}, 0.01),  # key by key: the error stays the table's
-        ("tool-steel", {"modulus_GPa": 207.0, "poisson": 0.3}, 0.01),
-        ("glass", None, 0.05),
-        ("plate", {"modulus_GPa": 207.0, "poisson": 0.3}, 0.05),
-        ("stainless-steel", {"modulus_rel_sigma": 0.1}, 0.1),
-    ],
-)
-def test_a_wall_is_as_well_known_as_its_material(quiet, name, given, error):
-    moduli = {o.of: o.sigma for o in experiment(wall_of(quiet, name, given)).shared if o.kind == "modulus"}
-    assert moduli[name] == error
-
-
-def test_beads_without_a_stated_error_are_known_to_a_twentieth_whatever_they_are_made_of(quiet):
-    content = wall_of(quiet, "glass", None, "stainless-steel").block
-    unstated = msgspec.structs.replace(content, materials={})
-    assert experiment(Record(unstated, quiet.signals, "other")).modulus_rel_sigma == 0.05
-
-
-def test_so_are_beads_of_every_material_of_a_pattern(quiet):
-    given = block((0.3, 0.9))
-    bead = given["chain"].pop("bead")
-    given["chain"]["pattern"] = [{**bead, "material": name} for name in ("delrin", "stainless-steel")]
-    record = Record(parse({**given, "materials": {}}), quiet.signals, "dimer")
-    assert (
-        record.taken_modulus_rel_sigma("delrin") == record.taken_modulus_rel_sigma("stainless-steel") == 0.05
-    )
-    assert record.taken_modulus_rel_sigma("bearing-steel") == 0.01
-
-
-def test_a_static_force_of_any_record_of_several_is_open():
-    records = []
-    for force in (0.0, 2.0):
-        given = block((0.3, 0.9))
-        given["chain"]["static_force_N"] = force
-        records.append(made(seed=7, given=given)[0])
-    for order in (records, records[::-1]):
-        assert [one.kind for one in together(order).shared] == ["static-force"]

@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-from made_records import made
-from test_nuisances import with_keys
+from made_records import made, with_keys
 
 from sonicvacuum.discover.fit.wide import nominal
 from sonicvacuum.discover.model.forward import Forward

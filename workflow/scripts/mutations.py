@@ -41,7 +41,9 @@ MUTATIONS = (
     ("temper is 1 in the package", "calibration.json", None, None),
     ("FALSE_ALARM is 0.05", "policy.py", "FALSE_ALARM = 0.01", "FALSE_ALARM = 0.05"),
 )
-TESTS = ("tests/discover/test_linear_gaussian.py", "tests/discover/test_statistics.py")
+TESTS = tuple(
+    f"tests/discover/test_{name}.py" for name in ("linear_gaussian", "linear_predictions", "statistics")
+)
 
 
 def mutated(text: str, old: str | None, new: str | None) -> str:
