@@ -1,114 +1,13 @@
-"""The command: every verb explains itself, and bad input ends in one line and exit code 2."""
+"""Bad input of the command ends in one line and exit code 2."""
 
-import hashlib
 import io
 import json
 import os
-import shutil
-import subprocess
-import sys
 from pathlib import Path
 
-import click
 import numpy as np
 import pytest
-
-from sonicvacuum import cli
-from sonicvacuum.cli import VERBS
-from sonicvacuum.cli.helped import strayed
-
-
-def call(monkeypatch, *arguments):
-    """Exit code of the command as the shell sees it."""
-    monkeypatch.setattr(sys, "argv", ["sonicvacuum", *map(str, arguments)])
-    try:
-        cli.main()
-    except SystemExit as end:
-        return end.code or 0
-    return 0
-
-
-CONFIG = """\
-ledger: {handbook: [nominal]}
-cases:
-  small:
-    title: Three beads
-    chain:
-      beads: 3
-      orientation: vertical
-      bead: {diameter_mm: 5.0, mass_g: 0.5, material: bearing-steel}
-      wall: {material: bearing-steel}
-    striker: {shape: sphere, diameter_mm: 5.0, material: bearing-steel, mass_g: 0.5, speed_m_s: 0.5}
-    sensors: [{id: g2, kind: embedded, bead: 2}, {id: wall, kind: wall}]
-    duration_us: 200
-"""
-
-
-@pytest.fixture
-def config(tmp_path):
-    path = tmp_path / "config.yaml"
-    path.write_text(CONFIG)
-    return path
-
-
-@pytest.fixture
-def card(monkeypatch, config, tmp_path):
-    path = tmp_path / "small.nominal.json"
-    assert call(monkeypatch, "card", "--config", config, "--case", "small", "--out", path) == 0
-    return path
-
-
-@pytest.mark.parametrize("verb", VERBS)
-def test_every_verb_has_help(monkeypatch, capsys, verb):
-    assert call(monkeypatch, verb, "--help") == 0
-    assert "Usage: " in capsys.readouterr().out
-
-
-def test_the_help_lists_all_verbs(monkeypatch, capsys):
-    assert call(monkeypatch, "--help") == 0
-    shown = capsys.readouterr().out
-    assert all(f"  {verb}" in shown for verb in VERBS)
-
-
-def test_from_card_to_signals(monkeypatch, card, tmp_path):
-    history, signals, metrics = (tmp_path / name for name in ("h.npz", "s.csv", "m.csv"))
-    assert call(monkeypatch, "simulate", card, "--out", history) == 0
-    assert (
-        call(monkeypatch, "paper", "observe", card, history, "--signals", signals, "--metrics", metrics) == 0
-    )
-    assert signals.read_text().splitlines()[0] == "run,speed_m_s,time_us,g2,wall"
-    table = np.loadtxt(signals, delimiter=",", skiprows=1)
-    assert table.shape == (401, 5)
-    assert np.all(table[0, 3:] == 0.0)
-    assert table[:, 3:].max() > 1.0
-    assert metrics.read_text().splitlines()[0] == "case,quantity,sensor,value,unit,numerical_error,reason"
-
-
-def test_of_several_cards_each_has_the_files_that_it_has_alone(monkeypatch, tmp_path):
-    text = CONFIG + "    variants: {nominal: {}, slow: {duration_us: 150}}\n"
-    config, alone, many = tmp_path / "config.yaml", tmp_path / "alone", tmp_path / "many"
-    config.write_text(text)
-    names = ["small.nominal", "small.slow"]
-    for name in names:
-        card, history = alone / "cards" / f"{name}.json", alone / "histories" / f"{name}.npz"
-        outputs = [alone / kind / f"{name}.csv" for kind in ("signals", "metrics")]
-        case, variant = name.split(".")
-        assert (
-            call(monkeypatch, "card", "--config", config, "--case", case, "--variant", variant, "--out", card)
-            == 0
-        )
-        assert call(monkeypatch, "simulate", card, "--out", history) == 0
-        told = ("--signals", outputs[0], "--metrics", outputs[1])
-        assert call(monkeypatch, "paper", "observe", card, history, *told) == 0
-    both = [word for name in names for word in ("--case", name)]
-    assert call(monkeypatch, "card", "--config", config, *both, "--out", many / "cards") == 0
-    cards = [many / "cards" / f"{name}.json" for name in names]
-    assert call(monkeypatch, "simulate", *cards, "--out", many / "histories") == 0
-    folders = [word for kind in ("histories", "signals", "metrics") for word in (f"--{kind}", many / kind)]
-    assert call(monkeypatch, "paper", "observe", *cards, *folders) == 0
-    made = {path.relative_to(alone): path.read_bytes() for path in alone.rglob("*") if path.is_file()}
-    assert len(made) == 8
-    assert made == {path.relative_to(many): path.read_bytes() for path in many.rglob("*") if path.is_file()}
+from commands import CONFIG, call, failing
 
 
 def test_cards_of_one_name_or_without_a_folder_are_refused(monkeypatch, capsys, card, config, tmp_path):
@@ -119,21 +18,6 @@ def test_cards_of_one_name_or_without_a_folder_are_refused(monkeypatch, capsys, 
     outputs = ["--signals", tmp_path / "s", "--metrics", tmp_path / "m"]
     assert "--histories" in failing(monkeypatch, capsys, "paper", "observe", card, *outputs)
     assert not [path for path in tmp_path.iterdir() if path not in (card, config)]
-
-
-def test_the_same_card_gives_the_same_bytes(monkeypatch, card, tmp_path):
-    files = [tmp_path / name for name in ("a.npz", "b.npz")]
-    for file in files:
-        assert call(monkeypatch, "simulate", card, "--out", file) == 0
-    assert files[0].read_bytes() == files[1].read_bytes()
-
-
-def failing(monkeypatch, capsys, *arguments):
-    """The one line on standard error of a call that must fail."""
-    assert call(monkeypatch, *arguments) == 2
-    shown = capsys.readouterr().err
-    assert "Traceback" not in shown
-    return shown
 
 
 @pytest.mark.parametrize(
@@ -148,13 +32,6 @@ def failing(monkeypatch, capsys, *arguments):
 )
 def test_an_unknown_verb_is_refused_and_the_nearest_named(monkeypatch, capsys, written, meant):
     assert failing(monkeypatch, capsys, *written).rstrip().endswith(meant)
-
-
-@pytest.mark.parametrize("group", ["paper", "blind"])
-def test_every_verb_of_a_group_has_help(monkeypatch, capsys, group):
-    for verb in cli.cli.get_command(None, group).verbs:
-        assert call(monkeypatch, group, verb, "--help") == 0
-        assert f"sonicvacuum {group} {verb}" in capsys.readouterr().out.replace("__main__.py", "sonicvacuum")
 
 
 def test_a_missing_file_is_named(monkeypatch, capsys, tmp_path):
@@ -251,44 +128,6 @@ def test_an_unknown_figure_is_refused(monkeypatch, capsys, tmp_path):
     assert "'fig9': unknown; use one of fig3" in shown
 
 
-def leaves(group, path=()):
-    """(words, command) of every verb, those in groups included."""
-    for name in group.list_commands(None):
-        command = group.get_command(None, name)
-        below = isinstance(command, click.Group)
-        yield from leaves(command, (*path, name)) if below else [((*path, name), command)]
-
-
-@pytest.mark.parametrize(("words", "command"), list(leaves(cli.cli)))
-def test_the_help_of_every_verb_ends_with_examples_that_parse(words, command):
-    whole = command.epilog.replace("\\\n", " ")
-    examples = [line.strip() for line in whole.splitlines() if "sonicvacuum" in line]
-    assert examples
-    for line in examples:
-        given = line.split()
-        assert given[: 1 + len(words)] == ["sonicvacuum", *words]
-        rest = given[1 + len(words) :]
-        # Files of an example need not be there; verbs and options must.
-        context = click.Context(command, resilient_parsing=True)
-        given, _, _ = command.make_parser(context).parse_args(rest)
-        required = [p.name for p in command.params if p.required]
-        assert [name for name in required if not given.get(name)] == []
-
-
-def test_exit_codes_and_completion_are_told(monkeypatch, capsys):
-    assert call(monkeypatch, "--help") == 0
-    told = capsys.readouterr().out
-    for code in ("0    done", "1    the machine", "2    input refused", "130  interrupted"):
-        assert code in told
-    assert "_SONICVACUUM_COMPLETE" in told
-
-
-def test_the_version_names_the_lock(monkeypatch, capsys, pytestconfig):
-    assert call(monkeypatch, "--version") == 0
-    digest = hashlib.sha256((pytestconfig.rootpath / "requirements.lock").read_bytes()).hexdigest()
-    assert f"requirements.lock sha256 {digest[:12]}" in capsys.readouterr().out
-
-
 def test_a_bad_record_is_refused_before_the_good_ones_are_searched(monkeypatch, capsys, tmp_path):
     good, bad = tmp_path / "good", tmp_path / "bad"
     for folder in (good, bad):
@@ -328,38 +167,3 @@ def test_a_number_written_as_text_is_named_with_its_material(monkeypatch, capsys
     told = capsys.readouterr().err
     assert "materials.parylene-c.modulus_GPa" in told
     assert "YAML reads this as text: write 2.0e+1" in told
-
-
-def test_the_command_notices_that_another_clone_s_environment_runs(tmp_path):
-    """As after copying a clone: its .venv, activated, runs what it was copied from."""
-    for clone in ("first", "copy"):
-        (tmp_path / clone / "src/sonicvacuum").mkdir(parents=True)
-        (tmp_path / clone / ".venv").mkdir()
-    told = strayed(tmp_path / "copy", tmp_path / "first/.venv")
-    assert str(tmp_path / "first/.venv") in told
-    assert "make env" in told
-    assert strayed(tmp_path / "copy", tmp_path / "copy/.venv") == ""
-    assert strayed(tmp_path, tmp_path / "first/.venv") == ""
-
-
-def test_make_notices_a_clone_that_was_moved(tmp_path, pytestconfig):
-    names = ("Makefile", "requirements.lock", "requirements-build.lock")
-    for name in names:
-        shutil.copy(pytestconfig.rootpath / name, tmp_path)
-    (tmp_path / ".venv").mkdir()
-    stamp = tmp_path / ".venv/locked"
-    locks = "".join(
-        (tmp_path / name).read_text() for name in ("requirements-build.lock", "requirements.lock")
-    )
-
-    def make():
-        # A Python that is none: nothing is ever built here.
-        call = ["make", "PYTHON=false", ".venv/locked"]
-        return subprocess.run(call, cwd=tmp_path, capture_output=True, text=True)
-
-    stamp.write_text(f"built in {tmp_path.resolve()}\n{locks}")
-    assert make().returncode == 0
-    stamp.write_text(f"built in /elsewhere\n{locks}")
-    assert make().returncode != 0
-    stamp.write_text(f"built in {tmp_path.resolve()}\n{locks}changed\n")
-    assert make().returncode != 0

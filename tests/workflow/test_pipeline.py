@@ -11,86 +11,22 @@ import re
 import shutil
 import subprocess
 import sys
-from collections import Counter
 from pathlib import Path
 
 import pytest
 import yaml
 from ball import RECORD
 from click.testing import CliRunner
-from planner import Planner
+from small_pipeline import ALL, CONFIG, ODD, TARGET, without_batch
 
 from sonicvacuum.cli import cli
 
-# A folder's name may be anything; of this one a shell would make commands.
-ODD = """a b; touch pwned $(touch pwned) `touch pwned` 'q' "d" * ü"""
-CONFIG = (
-    f"""\
-discover: [records/ball, {json.dumps("records/" + ODD, ensure_ascii=False)}]
-"""
-    + """\
-ledger:
-  handbook: [soft, nominal]
-  matched: [hard, nominal]
-  named: [found]
-cases:
-  coated:
-    title: Five coated beads
-    chain: &chain
-      beads: 5
-      orientation: horizontal
-      bead: {diameter_mm: 4.86, mass_g: 0.44, material: parylene-c, coating_um: 50, core: stainless-steel}
-      wall: {material: stainless-steel}
-    striker: {shape: flat, material: alumina, mass_g: 0.47, speed_m_s: 0.44}
-    sensors: [{id: g2, kind: embedded, bead: 3}, {id: wall, kind: wall}]
-    duration_us: 400
-    variants:
-      soft: {}
-      hard: {materials: {parylene-c: {modulus_GPa: 15.0}}}
-      found: {model: {record: ball}}
-  sweep:
-    title: Two speeds
-    chain: *chain
-    striker: {shape: flat, material: alumina, mass_g: 0.47, speed_m_s: [0.3, 0.6]}
-    sensors: [{id: g2, kind: embedded, bead: 3}, {id: wall, kind: wall}]
-    duration_us: 400
-"""
-)
-TARGET = "results/metrics.csv"
-# Cards are made in three batches: two variants of one case, the other case, what takes the model of a record.
-ALL = {"discover": 1, "card": 3, "simulate": 3, "observe": 3, "metrics": 1}
 # What follows from the record alone.
 FOUND = {"discover": 1, "card": 1, "simulate": 1, "observe": 1, "metrics": 1}
+
 PAGE = "results/discover/ball/index.html"
+
 ODD_PAGE = f"results/discover/{ODD}/index.html"
-
-
-def without_batch(rule):
-    """Name of a rule but for the number of its batch of cards."""
-    return re.sub(r"_\d+$", "", rule)
-
-
-@pytest.fixture(scope="session")
-def snakemake():
-    """Call of snakemake in a folder: (returncode, said)."""
-    with Planner() as planner:
-        yield planner
-
-
-@pytest.fixture(scope="session")
-def planned(snakemake):
-    """Call: rule → number of jobs that a run in a folder would start now."""
-
-    def plan(folder, *targets):
-        done = snakemake(folder, "--dry-run", *(targets or [TARGET]))
-        assert done.returncode == 0, done.said
-        rows = re.findall(r"^(\w+)\s+(\d+)$", done.said, flags=re.MULTILINE)
-        jobs = Counter()
-        for rule, count in dict(rows).items():  # a dry run tells its jobs twice
-            jobs[without_batch(rule)] += int(count)
-        return {rule: count for rule, count in jobs.items() if rule != "total"}
-
-    return plan
 
 
 @pytest.fixture(scope="session")
@@ -126,31 +62,6 @@ def test_a_second_run_plans_nothing(finished, planned):
 def test_a_folder_whose_name_a_shell_would_run_is_only_a_folder(finished):
     assert (finished / ODD_PAGE).is_file()
     assert list(finished.rglob("pwned")) == []
-
-
-def write_config(folder):
-    """A configuration in a folder of its own, with the records that it names."""
-    (folder / "own.yaml").write_text(CONFIG)
-    for name in ("ball", ODD):
-        (folder / "records" / name).mkdir(parents=True)
-        (folder / "records" / name / "record.yaml").write_text(RECORD)
-
-
-@pytest.mark.parametrize("rule", ["publish_study", "publish_again"])
-def test_what_is_kept_in_git_is_that_of_the_project_wherever_the_workflow_is_used(
-    rule, tmp_path, pytestconfig, snakemake
-):
-    root = pytestconfig.rootpath
-    write_config(tmp_path)
-    done = snakemake(
-        tmp_path,
-        *("--snakefile", str(root / "workflow/Snakefile"), "--config", "configuration=own.yaml"),
-        *("--dry-run", "--printshellcmds", rule),
-    )
-    assert done.returncode == 0, done.said
-    (command,) = re.findall(r"sonicvacuum blind (?:publish|tables) .*--page .*", done.said)
-    written = re.findall(r"--(?:page|readme|keep) (\S+)", command)
-    assert written and all(path.startswith(f"{root}/") for path in written), command
 
 
 def test_touching_without_changing_plans_nothing(project, planned):
@@ -289,37 +200,6 @@ def test_a_bad_configuration_stops_with_one_sentence(project, snakemake):
     assert "Traceback" not in done.said
 
 
-def test_the_root_makes_by_default_all_that_the_workflow_makes(pytestconfig, snakemake):
-    done = snakemake(pytestconfig.rootpath, "--dry-run", "--forceall", "--quiet", "host")
-    jobs = set(re.findall(r"^(\w+)\s+\d+$", done.said, flags=re.MULTILINE))
-    assert {
-        "pipeline",
-        "provenance",
-        "page",
-        "ledger",
-        "draw",
-        "record_page",
-        "timings",
-        "draw_kept",
-        "score",
-    } <= jobs
-
-
-def test_another_workflow_can_use_this_one_as_a_module(tmp_path, pytestconfig, planned):
-    """Config and records are the other's, code and resources stay here."""
-    write_config(tmp_path)
-    (tmp_path / "Snakefile").write_text(
-        f"""
-module sonicvacuum:
-    snakefile: {str(pytestconfig.rootpath / "workflow/Snakefile")!r}
-    config: {{"configuration": "own.yaml"}}
-
-use rule * from sonicvacuum as sv_*
-"""
-    )
-    assert planned(tmp_path) == {f"sv_{rule}": count for rule, count in ALL.items()}
-
-
 def test_another_configuration_may_be_named_and_needs_no_ledger(
     project, snakemake, monkeypatch, pytestconfig
 ):
@@ -349,8 +229,3 @@ def test_another_configuration_may_be_named_and_needs_no_ledger(
     assert not [
         part for part in ("first", "asked", "disagreements", "ledger", "audit") if f'id="{part}"' in page
     ]
-
-
-def test_the_workflow_passes_its_lint(pytestconfig, snakemake):
-    done = snakemake(pytestconfig.rootpath, "--lint")
-    assert done.returncode == 0, done.said
