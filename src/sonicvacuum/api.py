@@ -1,12 +1,14 @@
 """Public functions, as `import sonicvacuum as sv` shows them.
 
-Cases are built in `builders`; `sv.discover` stands in `discover.session`, `sv.predict` in `prediction`.
+Cases are built in `builders`; `sv.discover` stands in `discover.session`, `sv.predict` and `sv.design` in
+`prediction`.
 
 Each is a few lines over the module that does the work. SI units throughout, except where a key carries its
 unit in its name, as in `config.yaml` and `record.yaml`.
 """
 
 from os import PathLike
+from typing import TYPE_CHECKING
 
 from sonicvacuum import config, plugins, simulation
 from sonicvacuum.card import Card
@@ -20,6 +22,9 @@ from sonicvacuum.files import InputError
 from sonicvacuum.records import Record, check_records
 from sonicvacuum.records import read as read_record
 from sonicvacuum.simulation import Simulation
+
+if TYPE_CHECKING:
+    from sonicvacuum.discover.session import Result
 
 Path = str | PathLike[str]
 
@@ -92,7 +97,7 @@ def simulate(
     card: Card,
     catalogue: Catalogue | None = None,
     limits: bool = True,
-    model: Model | Path | None = None,
+    model: "Result | Model | Path | None" = None,
 ) -> Simulation:
     """A card integrated at the chosen step and at half of it; `readings()` of the result are its gauges.
 
@@ -100,8 +105,8 @@ def simulate(
         card: from `sv.case` or `sv.read_case`.
         catalogue: holds the effects of card and model, see `sv.catalogue`.
         limits: refuse what asks for more time or memory than a computer gives.
-        model: what `discover` found, or the path of a `model.json`, to put into the chain first: its effects
-            and its modulus.
+        model: what `discover` returned, or the path of a `model.json`, to put into the chain first: its
+            effects and its modulus.
 
     Returns:
         Simulation: `time` (samples,) in s, `force` (samples, contacts, runs) in N, `readings()` gauge →
@@ -130,18 +135,22 @@ def simulate(
 
 
 def compare(
-    model: Model | Path, record: Record, threads: int | None = None, catalogue: Catalogue | None = None
+    model: "Result | Model | Path",
+    record: Record,
+    threads: int | None = None,
+    catalogue: Catalogue | None = None,
 ) -> Comparison:
     """A model's score on a record; only the record's own nuisances are fitted.
 
     Args:
-        model: what `discover` found, or the path of a `model.json`.
+        model: what `discover` returned, its `model`, or the path of a `model.json`.
         record: what to score it on.
         threads: as in `discover`.
         catalogue: holds the model's effects, see `sv.catalogue`.
 
     Returns:
-        Comparison: misfit over the noise before and after (`gap`), run by run too, and `warnings`.
+        Comparison: χ² per datum of the nominal model and of this one (`gap`; 1 is the noise), run by run too
+        (`runs`), and `warnings`.
 
     Raises:
         InputError: for a file that holds no model, a model that does not fit the record, or no processor.
@@ -154,10 +163,13 @@ def compare(
 
 def _model(verb: str, given: object, effects: Catalogue) -> Model:
     """A model, or that of a file; InputError for what is none, or has effects that the catalogue lacks."""
+    found = getattr(given, "model", None)
+    if isinstance(found, Model):  # of a Result, whose type would load the whole search
+        given = found
     if isinstance(given, Model):
         for name in given.effects:
             comparison.check_source(f"model of {given.record}", name, given.sources, effects)
         return given
     if isinstance(given, str | PathLike):
         return comparison.read_model(given, effects)
-    raise InputError(f"{verb}: is given {given!r:.100} as a model; give what discover found, or a path")
+    raise InputError(f"{verb}: is given {given!r:.100} as a model; give what discover returned, or a path")

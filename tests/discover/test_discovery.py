@@ -9,10 +9,11 @@ from click.testing import CliRunner
 from made_records import DAMPING, made
 from scipy.optimize import least_squares
 
+import sonicvacuum as sv
 from sonicvacuum import records
 from sonicvacuum.cli.compare import compare
 from sonicvacuum.cli.discover import discover
-from sonicvacuum.discover import session
+from sonicvacuum.discover import session, written
 from sonicvacuum.discover.compare import read_model
 from sonicvacuum.discover.fit.refit import fit
 from sonicvacuum.discover.fit.wide import nominal
@@ -93,7 +94,7 @@ def test_the_verdict_does_not_depend_on_threads(hidden, verdict, monkeypatch):
 
 
 def test_files_are_written_and_read_back(verdict, tmp_path):
-    session.write(verdict, tmp_path / "out")
+    written.write(verdict, tmp_path / "out")
     text = (tmp_path / "out/verdict.json").read_bytes()
     assert msgspec.json.decode(text, type=Verdict) == verdict.verdict
     names = {p.name for p in (tmp_path / "out").iterdir()}
@@ -105,8 +106,18 @@ def test_files_are_written_and_read_back(verdict, tmp_path):
     assert list(model.effects) == [n for n in verdict.verdict.named if n != "unknown"]
 
 
+def test_python_takes_what_was_found_as_it_takes_the_file(verdict, tmp_path):
+    written.write(verdict, tmp_path / "out")
+    assert read_model(tmp_path / "out/model.json") == verdict.model
+    new = made([("kuwabara-kono", {"time_us": 0.3})], seed=9, speeds=(0.6,))[0]
+    given = (verdict, verdict.model, tmp_path / "out/model.json")
+    first, *others = (sv.compare(model, new, threads=1) for model in given)
+    assert first.effects == ["kuwabara-kono"]
+    assert others == [first, first]
+
+
 def test_a_model_closes_the_gap_of_a_record_it_has_not_seen(verdict, tmp_path):
-    session.write(verdict, tmp_path / "out")
+    written.write(verdict, tmp_path / "out")
     records.write(made([("kuwabara-kono", {"time_us": 0.3})], seed=9, speeds=(0.6,))[0], tmp_path / "new")
     call = [str(tmp_path / "new"), "--model", str(tmp_path / "out/model.json")]
     result = CliRunner().invoke(compare, [*call, "--json", str(tmp_path / "score.json")])

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from made_records import made
 
-from sonicvacuum.discover import session
+from sonicvacuum.discover import session, written
 from sonicvacuum.discover.fit.wide import nominal
 from sonicvacuum.discover.model.experiment import whitened_gaps
 from sonicvacuum.discover.model.forward import Forward
@@ -38,13 +38,13 @@ def test_a_vibrometer_record_is_written_read_and_discovered(tmp_path):
     assert result.verdict.gap.fitted.after == pytest.approx(
         1.0, abs=0.1
     )  # 4200 data: 4 errors of the mean square
-    header, rows = session.trace_rows(result)
+    header, rows = written.trace_rows(result)
     assert header == ["run", "sensor", "time_us", "measured", "nominal", "extended", "sigma", "unit"]
     assert {(r[1], r[-1]) for r in rows} == {("laser", "m/s"), ("far", "m/s"), ("wall", "N")}
 
 
 def test_force_records_keep_their_columns(nothing):
-    header, _ = session.trace_rows(nothing)
+    header, _ = written.trace_rows(nothing)
     assert header == ["run", "sensor", "time_us", "measured_N", "nominal_N", "extended_N", "sigma_N"]
 
 
@@ -76,7 +76,7 @@ def test_gauges_in_volts_find_the_effect_that_calibrated_ones_find(hidden, verdi
     assert found.named
     assert set(found.named) <= family
     assert found.gap.fitted.after == pytest.approx(calibrated.gap.fitted.after, abs=0.05)
-    header, rows = session.trace_rows(result)
+    header, rows = written.trace_rows(result)
     assert header[-1] == "unit"
     assert {(r[1], r[-1]) for r in rows} == {("g4", "as recorded"), ("g7", "as recorded"), ("wall", "N")}
     assert label_of("as recorded") == "reading (as recorded)"

@@ -9,7 +9,7 @@ from made_records import block, made
 
 import sonicvacuum as sv
 from sonicvacuum.card import ModelBlock
-from sonicvacuum.discover import session, verdict
+from sonicvacuum.discover import session, verdict, written
 from sonicvacuum.discover.compare import compare, hypothesis, read_model
 from sonicvacuum.discover.draws import PLACES, Draws
 from sonicvacuum.discover.extended import extended
@@ -67,7 +67,7 @@ def test_the_material_is_named_with_the_effect(found):
 
 
 def test_the_model_holds_the_material_by_its_name_and_is_read_back(found, stiff, tmp_path):
-    session.write(found, tmp_path)
+    written.write(found, tmp_path)
     model = read_model(tmp_path / "model.json")
     assert model.effects[EFFECT]["material"] == "parylene-c"
     score = compare(model, stiff, threads=1)

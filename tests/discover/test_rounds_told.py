@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from sonicvacuum.discover import session
+from sonicvacuum.discover import written
 
 
 @pytest.mark.parametrize(
@@ -28,6 +28,6 @@ def test_the_adopted_model_is_among_those_of_the_rounds(adopted, rounds):
     found = SimpleNamespace(
         null=model().fit, candidates=[model("a"), model("b")], combinations=[model("a", "b")], final=final
     )
-    told = session.rounds_of(found)
+    told = written.rounds_of(found)
     assert [name for name, _ in told] == rounds
     assert [chi2 for _, chi2 in told[:3]] == [10.0, 9.0, 8.0]

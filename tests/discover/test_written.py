@@ -11,6 +11,7 @@ from sonicvacuum import records
 from sonicvacuum.cli import discover as verb
 from sonicvacuum.cli import page
 from sonicvacuum.discover import session
+from sonicvacuum.discover import written as files
 
 ALWAYS = ["where.csv", "candidates.csv", "gap.csv", "limits.csv", "traces.csv"]
 ALWAYS += ["given.json", "model.json", "verdict.json"]
@@ -46,20 +47,19 @@ def written(monkeypatch, folder, scalars, posterior, law):
     result = SimpleNamespace(
         places=[], after=[], found=search, limits=[], law=law, posterior=posterior, notes=()
     )
-    result.extended = result.given = result.verdict = None
+    result.extended = result.given = result.verdict = result.model = None
     with monkeypatch.context() as patch:
-        patch.setattr(session.verdict, "write_table", lambda path, *_: names.append(path.name))
-        patch.setattr(session.verdict, "write_json", lambda _, path: names.append(path.name))
-        patch.setattr(session.draws, "write_csv", lambda path, *_: names.append(path.name))
-        patch.setattr(session.draws, "_rows", lambda _: [])
-        patch.setattr(session.verdict, "model", lambda *_: None)
-        patch.setattr(session.quantities, "rows", lambda *_: [])
-        patch.setattr(session.given, "inputs", lambda *_: None)
-        patch.setattr(session.law, "rows", lambda _: ([], []))
-        patch.setattr(session, "surface", lambda _: None)
+        patch.setattr(files.verdict, "write_table", lambda path, *_: names.append(path.name))
+        patch.setattr(files.verdict, "write_json", lambda _, path: names.append(path.name))
+        patch.setattr(files.draws, "write_csv", lambda path, *_: names.append(path.name))
+        patch.setattr(files.draws, "_rows", lambda _: [])
+        patch.setattr(files.quantities, "rows", lambda *_: [])
+        patch.setattr(files.given, "inputs", lambda *_: None)
+        patch.setattr(files.law, "rows", lambda _: ([], []))
+        patch.setattr(files, "surface", lambda _: None)
         for name in ("candidates", "gap_rows", "trace_rows"):
-            patch.setattr(session, name, lambda _: ([], []))
-        session.write(result, folder)
+            patch.setattr(files, name, lambda _: ([], []))
+        files.write(result, folder)
     return names
 
 

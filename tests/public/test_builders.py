@@ -115,7 +115,10 @@ def whole(**changes):
             lambda: sv.compare("model.json", RECORD, threads=-1),
             "compare: threads: is -1; give a whole number",
         ),
-        (lambda: sv.simulate(whole(), model=3), "simulate: is given 3 as a model; give what discover found"),
+        (
+            lambda: sv.simulate(whole(), model=3),
+            "simulate: is given 3 as a model; give what discover returned",
+        ),
         (lambda: sv.read(""), "the path of a record is empty"),
         (lambda: sv.chain(beads=3), "chain: bead: missing"),
         (lambda: sv.chain(bead=BALL), "chain: beads: missing"),

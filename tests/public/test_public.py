@@ -144,7 +144,7 @@ def test_a_verdict_has_the_same_bytes_whatever_the_threads(ball):
     code = f"""
 import sonicvacuum as sv, json
 from pathlib import Path
-from sonicvacuum.discover.session import write
+from sonicvacuum.discover.written import write
 found = sv.discover(sv.read({str(ball)!r}))
 write(found, Path({str(ball / "out")!r}))
 """

@@ -39,7 +39,7 @@ with watch.told_to(lambda part: part > 0.0 and moving.touch()):
 # A search whose verdict takes for ever to be written, and whose putting away takes a moment.
 WRITING = """
 import pathlib, sys, time
-from sonicvacuum.discover import session
+from sonicvacuum.discover import session, written
 begun = pathlib.Path(sys.argv.pop(1))
 
 def write(result, folder):
@@ -50,7 +50,7 @@ def write(result, folder):
     finally:
         time.sleep(0.5)
 
-session.discover, session.write = lambda *given, **how: None, write
+session.discover, written.write = lambda *given, **how: None, write
 """
 
 

@@ -171,12 +171,12 @@ def _attempt(paths, folder, own, figures, threads, limits):
 
 def _search(records, folder, known, figures, threads, limits):
     """Search records, write what is found; what is told of it."""
-    from sonicvacuum.discover import session
+    from sonicvacuum.discover import session, written
     from sonicvacuum.outputs import renewed
 
     result = session.discover(*records, threads=threads, catalogue=known, limits=limits)
     with renewed(folder, last="verdict.json", stale=sometimes()) as fresh:
-        session.write(result, fresh)
+        written.write(result, fresh)
         undrawn = _draw(fresh, folder, known) if figures else None
     return Found(result.notes, _sentence(result.verdict), undrawn)
 
