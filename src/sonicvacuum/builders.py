@@ -13,6 +13,8 @@ from msgspec.structs import asdict, replace
 
 from sonicvacuum.card import Card, CaseBlock, SensorBlock, StrikerBlock, resolve
 from sonicvacuum.files import InputError, check_values, convert
+from sonicvacuum.gauges import KINDS
+from sonicvacuum.gauges.base import misplaced
 from sonicvacuum.laboratory.blocks import BeadBlock, ChainBlock
 from sonicvacuum.laboratory.ranges import DIAMETER, LaboratoryError, check_coating
 from sonicvacuum.materials import MATERIALS
@@ -200,7 +202,13 @@ def gauge(
         'velocity-15'
     """
     keys = {"kind": kind, "bead": bead, "id": id or (kind if bead is None else f"{kind}-{bead}")}
-    return _block(SensorBlock, "gauge", keys | {"droop_us": droop_us, "lowpass_us": lowpass_us})
+    made = _block(SensorBlock, "gauge", keys | {"droop_us": droop_us, "lowpass_us": lowpass_us})
+    if made.kind not in KINDS:
+        raise InputError(f"gauge: kind: is {kind!r}; the kinds of gauges are {', '.join(KINDS)}")
+    # How many beads there are the case will say.
+    if problem := misplaced(made.kind, made.bead, made.bead or 1):
+        raise InputError(f"gauge: bead: {problem}")
+    return made
 
 
 def case(
@@ -284,5 +292,6 @@ def _mass_g(made: Any, place: str) -> float:
         check_coating(place, made)
     for name in filter(None, (made.material, core)):
         if name not in MATERIALS:
-            raise InputError(f"{place}: mass_g: missing; the table of materials has no density of {name!r}")
+            told = f"mass_g: missing; the table of materials has no density of {name!r}"
+            raise InputError(f"{place}: {told}: give mass_g, or one of {', '.join(MATERIALS)}")
     return 1e3 * ball_mass(made.diameter_mm / 1e3, made.material, coating_um / 1e6, core)

@@ -63,6 +63,11 @@ class Simulation:
     warnings: tuple[str, ...] = ()
     catalogue: Catalogue = CATALOGUE
 
+    def __repr__(self) -> str:
+        gauges = ", ".join(s.id for s in self.card.sensors)
+        runs = ", ".join(f"{speed:.3g} m/s" for speed in self.speeds)
+        return f"<Simulation {self.card.name}: {len(self.time)} samples at {runs}, {gauges}>"
+
     @cached_property
     def _setup(self) -> Setup:
         return set_up(self.card, self.speeds, self.catalogue)

@@ -125,7 +125,17 @@ def whole(**changes):
         (lambda: sv.striker(speed_m_s=1.0, shape="flat", material="glass"), "striker: mass_g: missing"),
         (lambda: sv.striker(BALL, speed_m_s=object()), "striker: holds a object"),
         (lambda: whole(sensors=[sv.gauge("velocity", bead=9)]), r"case: sensors\[0\]\.bead"),
-        (lambda: whole(sensors=[sv.gauge("speed", bead=2)]), r"case: sensors\[0\]\.kind: .*velocity"),
+        (lambda: whole(sensors=[{"id": "g", "kind": "speed"}]), r"case: sensors\[0\]\.kind: .*velocity"),
+        (lambda: sv.gauge("speed", bead=2), r"gauge: kind: is 'speed'; the kinds of gauges are .*velocity"),
+        (
+            lambda: sv.gauge("velocity"),
+            "gauge: bead: missing; a velocity sensor needs",
+        ),
+        (lambda: sv.gauge("wall", bead=2), "gauge: bead: is 2; the wall sensor sits in no bead"),
+        (
+            lambda: sv.bead(diameter_mm=5.0, material="steel"),
+            "mass_g: missing; .* no density of 'steel': give mass_g, or one of .*bearing-steel",
+        ),
         (lambda: whole(chain=sv.chain(bead=BALL, beads=3, bodies={9: BALL})), r"case: chain\.bodies\.9"),
     ],
 )

@@ -198,3 +198,15 @@ def test_public_classes_name_their_attributes_and_formulas_their_source():
 def test_what_is_no_path_is_refused_with_the_cure(verb, given):
     with pytest.raises(sv.InputError, match=r"^(catalogue|read|read_case): is given .*; give the path of"):
         verb(given)
+
+
+def test_what_is_made_shows_itself_in_a_line(ball):
+    """A notebook shows what stands last in a cell: a record of four runs was 128 kB of numbers."""
+    steel = sv.bead(diameter_mm=5.0, material="bearing-steel")
+    parts = sv.chain(bead=steel, beads=3), sv.striker(steel, speed_m_s=0.5), [sv.gauge("wall")]
+    record = sv.read(ball)
+    assert repr(record) == f"<Record {ball.name}: 0 beads, 1 run, no gauges>"
+    assert repr(sv.discover(record, threads=1)).startswith(f"<Result {ball.name}: none, probability 0.")
+    seen = sv.simulate(sv.case(*parts, duration_us=100))
+    assert repr(seen) == "<Simulation case.own: 201 samples at 0.5 m/s, wall>"
+    assert len(repr(sv.solitary.SolitaryWave.compute())) < 80

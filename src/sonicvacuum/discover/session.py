@@ -64,6 +64,10 @@ class Result:
     law: FreeLaw | None = None
     posterior: tuple[Draws, ...] = ()
 
+    def __repr__(self) -> str:
+        named, sure = " + ".join(self.verdict.named) or "none", self.verdict.probability
+        return f"<Result {self.verdict.record}: {named}{'' if sure is None else f', probability {sure:.2f}'}>"
+
     @property
     def extended(self) -> tuple[Forward, Fit]:
         """The extended model as it was fitted: what is named, and the free-form law where one was needed."""

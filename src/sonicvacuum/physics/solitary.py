@@ -14,7 +14,7 @@ Pego).
 All in SI units; ``stiffness`` is k [N/mⁿ], which is `theory.hertz_stiffness` when n = 3/2.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 
 import numpy as np
@@ -61,9 +61,9 @@ class SolitaryWave:
     """n of the contact law."""
     speed_constant: float
     """s of V = s a √(k/M) (F_m/k)^{(n−1)/(2n)}; 0.9055 for Hertz contacts (long-wave: 2/√5 = 0.8944)."""
-    phase: np.ndarray
+    phase: np.ndarray = field(repr=False)
     """Tabulated phases, shape (N,), evenly spaced."""
-    profile: np.ndarray
+    profile: np.ndarray = field(repr=False)
     """Compression d = δ/δ_m of a contact at these phases, shape (N,)."""
 
     @classmethod

@@ -127,6 +127,12 @@ class Record:
     digest: str = ""
     steps: Mapping[str, float] = field(default_factory=dict)
 
+    def __repr__(self) -> str:
+        runs, gauges = len(self.block.runs), ", ".join(s.id for s in self.block.sensors)
+        return (
+            f"<Record {self.name}: {self.beads} beads, {runs} run{'s' * (runs > 1)}, {gauges or 'no gauges'}>"
+        )
+
     @property
     def title(self) -> str:
         """One line."""
