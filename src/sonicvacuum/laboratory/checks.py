@@ -45,7 +45,7 @@ def lightest_g(chain: ChainBlock) -> float:
 
 
 def check_speeds(key: str, *speeds: float) -> None:
-    """Speeds of a striker in m/s."""
+    """LaboratoryError for a speed of a striker, in m/s, that none has."""
     for speed in speeds:
         ranges.SPEED.check(key, speed)
 
@@ -54,6 +54,9 @@ def check_sensor(key: str, sensor, columns: Mapping[str, str] = _COLUMNS) -> Non
     """Name and times of a gauge: a block with `id` and `droop_us`, and with `lowpass_us` where it has one.
 
     `columns` are those that stand beside the gauges in tables of traces: heading → what it holds.
+
+    Raises:
+        LaboratoryError: naming the key, for such a column as a name and for times that no gauge has.
     """
     if sensor.id in columns:
         told = f"is {sensor.id!r}, the column of the {columns[sensor.id]}; choose another"

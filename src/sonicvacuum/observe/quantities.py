@@ -106,7 +106,11 @@ def _entry(quantity, options):
 
 
 def speed(run: Run, from_: str, to: str) -> Measured:
-    """Distance between two gauges over the peak-to-peak time of the main pulse, in m/s."""
+    """Distance between two gauges over the peak-to-peak time of the main pulse, in m/s.
+
+    Raises:
+        ValueError: for two gauges at one place.
+    """
     apart = run.geometry.position(from_) - run.geometry.position(to)
     if apart == 0.0:
         raise ValueError(f"speed from {from_} to {to}: both sit at the same place")

@@ -68,6 +68,6 @@ def contact_time(mass, stiffness, speed):
     """The time (m²/(K² v))^{1/5} in s that sets the duration of a Hertz impact.
 
     Johnson, Contact Mechanics (1985), Sec. 11.4: an impact of reduced mass m at speed v lasts
-    3.218 times this (2.94 (5/4)^{2/5}).
+    3.218 times this (2.943 (5/4)^{2/5}).
     """
     return (mass**2 / (stiffness**2 * speed)) ** 0.2

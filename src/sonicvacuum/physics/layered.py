@@ -130,6 +130,9 @@ def solve(layer: Layer, radius, refine: float = 1.0) -> Solution:
     """The contacts of radii `radius` (float or array, in layer thicknesses, positive).
 
     `refine` multiplies the number of points, to measure the error or to trade it for time.
+
+    Raises:
+        ValueError: for a radius that is not positive.
     """
     radius = np.asarray(radius, dtype=float)
     if not np.all(radius > 0.0):

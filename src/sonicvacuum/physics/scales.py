@@ -12,7 +12,8 @@ CROSSINGS, COUNTING = 2.5, 5.0
 _PASSAGE = 1.5
 # Share of the impact's force that the weakest pulses still have that are looked at.
 WEAK = 0.1
-# A Hertz impact lasts so many times (m²/(K² v))^{1/5} (Johnson, Contact Mechanics, 1985, Sec. 11.4).
+# A Hertz impact lasts 3.218 times (m²/(K² v))^{1/5} (Johnson, Contact Mechanics, 1985, Sec. 11.4), here
+# without the third decimal: sampling intervals follow from it, and with them the last digits of verdicts.
 _HERTZ = 3.21
 # Speed of a striker by the peak force that it makes in a Hertz impact, and speed of a wave by its force, as
 # powers (Nesterenko; Eq. (6) of Daraio & Nesterenko, PRE 73, 026612, 2006).

@@ -95,6 +95,9 @@ def overlap(chain: Chain, history: History, depth: np.ndarray) -> str:
     Args:
         chain, history: see `warnings`.
         depth: (contacts, lanes) largest compression in m.
+
+    Raises:
+        MeaninglessError: from one effective radius on, where no contact law says anything.
     """
     share = depth / _radii(chain, history)
     contact, lane = np.unravel_index(np.argmax(share), share.shape)
