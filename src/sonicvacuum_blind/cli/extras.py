@@ -2,21 +2,17 @@
 effects, and what was made of them.
 """
 
-from pathlib import Path
-
 import click
 
 from sonicvacuum.cli.helped import verb
 from sonicvacuum.outputs import check_apart
-from sonicvacuum_blind import TRUTH
-from sonicvacuum_blind.cli.hide import check_truth
+from sonicvacuum_blind.cli.made import make
 from sonicvacuum_blind.cli.options import (
     batch_of,
     counted_into,
     held_against,
     keep,
     made_into,
-    making,
     partly,
 )
 
@@ -29,18 +25,11 @@ from sonicvacuum_blind.cli.options import (
 @click.option("--seed", type=click.IntRange(min=0), help="Another list, all of it drawn anew.")
 def extras(batch, first, seed, records_folder, truth_folder):
     """Make records with smooth systematic errors, and with three and four effects."""
-    from sonicvacuum.records.guard import check_collection
     from sonicvacuum_blind import extra_cases
     from sonicvacuum_blind.study import batch as part
 
     every = extra_cases.cases() if seed is None else extra_cases.cases(seed)
-    chosen = part(every[:first], *batch_of(batch))
-    check_truth(truth_folder, records_folder)
-    check_collection(records_folder, [c.id for c in chosen], lambda name: Path(truth_folder) / name / TRUTH)
-    for case in chosen:
-        with making():
-            extra_cases.write(case, records_folder, truth_folder)
-        click.echo(case.id)
+    make(part(every[:first], *batch_of(batch)), extra_cases.write, records_folder, truth_folder)
 
 
 @verb(

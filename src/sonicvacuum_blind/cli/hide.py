@@ -1,14 +1,12 @@
 """`sonicvacuum blind hide`: data with something hidden in them."""
 
-from pathlib import Path
-
 import click
 
 from sonicvacuum.cli.helped import FOLDER, WRITTEN, verb
 from sonicvacuum.files import InputError
 from sonicvacuum.outputs import check_apart
-from sonicvacuum_blind import TRUTH
-from sonicvacuum_blind.cli.options import batch_of, making, of_cases
+from sonicvacuum_blind.cli.made import make
+from sonicvacuum_blind.cli.options import batch_of, of_cases
 
 
 @verb(
@@ -23,7 +21,6 @@ from sonicvacuum_blind.cli.options import batch_of, making, of_cases
 )
 def hide(study, path, listing, batch, records_folder, truth_folder):
     """Make records in which an effect is hidden, and keep the truth elsewhere."""
-    from sonicvacuum.records.guard import check_collection
     from sonicvacuum_blind import study as studies
 
     specs = studies.chosen(study, path, *((0, 1) if listing else batch_of(batch)))
@@ -35,19 +32,4 @@ def hide(study, path, listing, batch, records_folder, truth_folder):
         raise InputError("hide: --records and --truth are both needed to make data (or --list to list cases)")
     from sonicvacuum_blind.hide import write
 
-    check_truth(truth_folder, records_folder)
-    check_collection(records_folder, [s.id for s in specs], lambda name: Path(truth_folder) / name / TRUTH)
-    for spec in specs:
-        with making(path):
-            write(spec, records_folder, truth_folder)
-        click.echo(spec.id)
-
-
-def check_truth(truth_folder, records_folder):
-    """InputError where the truth would lie among the records that `discover` is given, or they in it."""
-    from sonicvacuum.records.guard import check_out
-
-    check_out(truth_folder)
-    truth, records = (Path(folder).resolve() for folder in (truth_folder, records_folder))
-    if truth.is_relative_to(records) or records.is_relative_to(truth):
-        raise InputError(f"{truth_folder}: one folder holds the other; keep the truth away from --records")
+    make(specs, write, records_folder, truth_folder, path)

@@ -2,21 +2,17 @@
 them.
 """
 
-from pathlib import Path
-
 import click
 
 from sonicvacuum.cli.helped import verb
 from sonicvacuum.outputs import check_apart
-from sonicvacuum_blind import TRUTH
-from sonicvacuum_blind.cli.hide import check_truth
+from sonicvacuum_blind.cli.made import make
 from sonicvacuum_blind.cli.options import (
     batch_of,
     counted_into,
     held_against,
     keep,
     made_into,
-    making,
     partly,
 )
 
@@ -29,19 +25,13 @@ from sonicvacuum_blind.cli.options import (
 )
 def slips(batch, records_folder, truth_folder, smooth, alone):
     """Make records with slips of the laboratory, with and without a hidden effect."""
-    from sonicvacuum.records.guard import check_collection
     from sonicvacuum_blind import slip_cases
     from sonicvacuum_blind.study import batch as part
 
     if smooth and alone:
         raise click.UsageError("--smooth and --alone are lists of their own: give one of them")
     chosen = part(slip_cases.alone() if alone else slip_cases.cases(smooth), *batch_of(batch))
-    check_truth(truth_folder, records_folder)
-    check_collection(records_folder, [c.id for c in chosen], lambda name: Path(truth_folder) / name / TRUTH)
-    for case in filter(slip_cases.possible, chosen):
-        with making():
-            slip_cases.write(case, records_folder, truth_folder)
-        click.echo(case.id)
+    make(list(filter(slip_cases.possible, chosen)), slip_cases.write, records_folder, truth_folder)
 
 
 @verb(
