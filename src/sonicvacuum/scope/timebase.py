@@ -93,7 +93,11 @@ def from_header(
 def from_column(
     times: np.ndarray, label: Unit | None, keys: Keys, place: int = 0, column: int = 0, odd: str = ""
 ) -> TimeBase:
-    """Time base of a column of times, one shot, whose label may hold an odd text in place of a unit."""
+    """Time base of a column of times, one shot, whose label may hold an odd text in place of a unit.
+
+    First the line through the times, in their unit; then what makes seconds of it, by label, header and the
+    interval that the header declares.
+    """
     gap = int(np.isfinite(times).argmin()) + 1
     times, notes = _filled(times)
     if times is None:
@@ -133,19 +137,21 @@ def from_column(
         )
     if broken:
         return TimeBase(start, interval, (*notes, *_rows(times * factor, places)), times * factor)
-    if not uneven:
-        return TimeBase(start, interval, tuple(notes))
+    if uneven:
+        return TimeBase(start, interval, (*notes, *_steps(times, factor)), times * factor)
+    return TimeBase(start, interval, tuple(notes))
+
+
+def _steps(times, factor):
+    """Remarks on uneven times, of which `factor` makes seconds."""
     steps = np.diff(times) * factor
     if not steps[::2].any():
-        notes.append(PAIRS)
-    notes.append(
-        f"Times are uneven: steps of {steps.min():.4g} to {steps.max():.4g} s; the interval is the mean."
-    )
+        yield PAIRS
+    yield f"Times are uneven: steps of {steps.min():.4g} to {steps.max():.4g} s; the interval is the mean."
     missing = round(float(steps.max() / np.median(steps))) - 1 if np.median(steps) > 0.0 else 0
     if missing > MISSING:
         at = float(times[steps.argmax()]) * factor
-        notes.append(f"Behind {at:.6g} s {missing} samples are missing: a straight line stands there.")
-    return TimeBase(start, interval, tuple(notes), times * factor)
+        yield f"Behind {at:.6g} s {missing} samples are missing: a straight line stands there."
 
 
 def _places(times):
