@@ -43,6 +43,26 @@ def read(path) -> Record:
     Raises:
         InputError: naming the file, the key or line, the value and the cure.
     """
+    folder = _folder(path)
+    file = folder / FILE
+    states = {file: _state(file)}
+    block = parse(read_yaml(file), file)
+    _check_beside(block, folder)
+    ids, traces = [s.id for s in block.sensors], {}
+    for run in block.runs:
+        if run.signals:
+            states.setdefault(folder / run.signals, _state(folder / run.signals))
+            traces[run.id] = signals.read(folder / run.signals, ids)
+    record = Record(block, traces, folder.resolve().name, _digest(states))
+    for run in block.runs:
+        if run.signals:
+            check_scales(record, run.id, folder / run.signals)
+    _check_readings(record, folder)
+    return record
+
+
+def _folder(path):
+    """The folder of a record; InputError where there is none, or none that could be told in one line."""
     if not os.fspath(path):  # of a shell's unset variable; to Python it is the folder at work
         raise InputError(f"the path of a record is empty; give the folder that holds {FILE}")
     folder = Path(path)
@@ -52,24 +72,10 @@ def read(path) -> Record:
         raise InputError(f"{path}: no such folder; give the folder that holds {FILE}")
     if in_one_line(name := folder.resolve().name) != name:
         raise InputError(f"{path}: the folder's name holds control characters; rename it")
-    file = folder / FILE
-    if not file.is_file():
+    if not (folder / FILE).is_file():
         cure = cut_off(folder) or f"sonicvacuum record new {folder} writes one to fill in"
         raise InputError(f"{folder}: has no {FILE}; {cure}")
-    states = {file: _state(file)}
-    block = parse(read_yaml(file), file)
-    _check_beside(block, folder)
-    ids, traces = [s.id for s in block.sensors], {}
-    for run in block.runs:
-        if run.signals:
-            states.setdefault(folder / run.signals, _state(folder / run.signals))
-            traces[run.id] = signals.read(folder / run.signals, ids)
-    record = Record(block, traces, name, _digest(states))
-    for run in block.runs:
-        if run.signals:
-            check_scales(record, run.id, folder / run.signals)
-    _check_readings(record, folder)
-    return record
+    return folder
 
 
 def _check_beside(block, folder):
