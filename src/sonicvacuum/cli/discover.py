@@ -48,6 +48,31 @@ def discover(records, out, together, figures, threads, own, quiet, no_limits):
     search fails is told of, and the others go on. A verdict whose pictures fail is written without them, and
     that is told. On a terminal, a line shows how far the search is.
     """
+    known = catalogue(own)
+    groups = {Path(out): records} if together else {f: (p,) for p, f in _folders(records, Path(out)).items()}
+    kept = _sound(records, groups, known, not no_limits)
+    # Long to load: what is wrong with a record is said before.
+    from sonicvacuum.physics.run import available_threads
+
+    threads = threads or available_threads()
+    if len(groups) == 1:
+        (folder,) = groups
+        with stages_shown(", ".join(records), quiet):
+            found = _search(kept, folder, known, figures, threads, not no_limits)
+        _tell(records, found, quiet)
+        if found.undrawn:
+            sys.exit(1)
+        return
+    processes = min(threads, len(groups))
+    how = (own, figures, threads // processes, not no_limits)
+    _tell_all(groups, _outcomes(groups, processes, how, quiet), quiet)
+
+
+def _sound(records, groups, known, limits):
+    """All records, read before hours are spent on the first; InputError for the first that is not sound.
+
+    Of several groups none is kept: all at once may be more than the memory holds.
+    """
     from sonicvacuum.discover.model import window
     from sonicvacuum.discover.model.present import check_priors
     from sonicvacuum.records import read
@@ -55,35 +80,25 @@ def discover(records, out, together, figures, threads, own, quiet, no_limits):
     from sonicvacuum.records.guard import check_out
     from sonicvacuum.records.record import check_distinct
 
-    known = catalogue(own)
-    groups = {Path(out): records} if together else {f: (p,) for p, f in _folders(records, Path(out)).items()}
     for folder in groups:
         check_out(folder, records)
-    kept = {}
-    for path in records:  # all of them are sound before hours are spent on the first
+    kept = []
+    for path in records:
         record = read(path)
         check_priors(record, known, path)
-        if len(groups) == 1:  # of many records, all at once may be more than the memory holds
-            kept[path] = record
-        elif not no_limits:
+        if len(groups) == 1:
+            kept.append(record)
+        elif limits:
             check_extent(window.fitted(record, known)[0])
-    # Long to load: what is wrong with a record is said before.
-    from sonicvacuum.physics.run import available_threads
+    if kept:
+        check_distinct(kept, records)
+    return kept
 
-    threads = threads or available_threads()
-    if len(groups) == 1:
-        check_distinct([kept[p] for p in records], records)
-        (folder, paths), *_ = groups.items()
-        with stages_shown(", ".join(paths), quiet):
-            found = _search([kept[p] for p in paths], folder, known, figures, threads, not no_limits)
-        _tell(paths, found, quiet)
-        if found.undrawn:
-            sys.exit(1)
-        return
-    processes = min(threads, len(groups))
-    how = (own, figures, threads // processes, not no_limits)
+
+def _tell_all(groups, outcomes, quiet):
+    """Tell each of several searches as it ends; exit code 1 or 2 where one failed."""
     failed, undrawn = [], 0
-    for paths, outcome in zip(groups.values(), _outcomes(groups, processes, how, quiet), strict=True):
+    for paths, outcome in zip(groups.values(), outcomes, strict=True):
         if isinstance(outcome, Failure):
             click.echo(outcome.told(", ".join(paths)), err=True)
             failed.append(outcome)
