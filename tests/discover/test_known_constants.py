@@ -23,12 +23,12 @@ def test_what_counts_as_exact_is_said(empty):
 
 def test_what_is_taken_of_moduli_is_said(empty):
     chains = [batch.chain for batch in experiment(empty).batches]
-    taken = "errors of moduli taken so, none being stated"
-    assert assumed(empty, chains) == f"alumina 5 %, stainless-steel 1 %: {taken}"
+    taken = "errors of moduli taken, none being stated"
+    assert assumed(empty, chains) == f"{taken}: alumina 5 %, stainless-steel 1 %"
     given = {name: {"modulus_rel_sigma": 0.02} for name in ("alumina", "stainless-steel")}
     assert (
         assumed(with_keys(empty, materials={"alumina": given["alumina"]}), chains)
-        == f"stainless-steel 1 %: {taken}"
+        == f"{taken}: stainless-steel 1 %"
     )
     assert assumed(with_keys(empty, materials=given), chains) == ""
     steel = wall_of(empty, "stainless-steel", {"modulus_rel_sigma": 0.0}, "bearing-steel")

@@ -173,7 +173,7 @@ def _odds(found, decision: Decision, alike, prior, present) -> tuple[dict[str, f
     if len(alike) > 1 and alike[0] in decision.named:
         reasons.append(
             f"{', '.join(alike)} act alike on these data: one explanation with {len(alike)} names, of which "
-            f"{alike[0]} has the largest evidence by a little"
+            f"{alike[0]} has the most evidence, by a little"
         )
     return odds, reasons
 

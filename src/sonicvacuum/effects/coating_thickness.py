@@ -118,7 +118,7 @@ EFFECT = Effect(
     "u = 1/(1 + 1.25 chi), c = E1'/E0': exact axisymmetric frictionless contact of a bonded layer on its "
     "core, solved for the constants of both; wall or striker in series, 1/g -> (1/g + e)/(1 + e), e = E1'/E'",
     energy="stores the integral of F over delta per contact",
-    reference="integral equation: Lebedev & Ufliand, J. Appl. Math. Mech. 22, 442 (1958); Perriot & Barthel, "
+    reference="Integral equation: Lebedev & Ufliand, J. Appl. Math. Mech. 22, 442 (1958); Perriot & Barthel, "
     "J. Mater. Res. 19, 600 (2004); limits: Johnson, Contact Mechanics (1985), Sec. 5.8; Dimitriadis et al., "
     "Biophys. J. 82, 2798 (2002). Chosen here: the rational form, least squares to contact radii of 12 t",
     parameters=(

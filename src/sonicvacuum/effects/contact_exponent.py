@@ -34,8 +34,8 @@ EFFECT = Effect(
     id="contact-exponent",
     title="Contact exponent",
     missing="the contact law is a power other than 3/2 (roughness, flats, cones, layers)",
-    equation="F = K d0^{3/2} (delta/d0)^n, d0 = 1 um, in every contact",
-    energy="stores K d0^{3/2-n} delta^{n+1}/(n+1) per contact",
+    equation="F = K delta_0^{3/2} (delta/delta_0)^n, delta_0 = 1 um, in every contact",
+    energy="stores K delta_0^{3/2-n} delta^{n+1}/(n+1) per contact",
     reference="Sen, Hong, Bang, Avalos & Doney, Phys. Rep. 462, 21 (2008), Sec. 2; chosen here: the "
     "force at 1 um is held, so that the exponent does not act as a modulus",
     parameters=(

@@ -90,7 +90,7 @@ EFFECT = Effect(
     "|w|^{1/2} sgn w}_j) + force w (a9 + a10 r), r = (delta/depth)^{1/2}, w = v/speed, cut at zero, "
     "|w| rounded off below 0.05; beyond deepest and fastest the braces stay what they are there",
     energy="stores and takes what its coefficients say",
-    reference="chosen here: a polynomial in the roots of compression and rate, up to the first power of the "
+    reference="Chosen here: a polynomial in the roots of compression and rate, up to the first power of the "
     "latter",
     parameters=(
         _scale("depth_um", "um", 1.0, "compression at which r is 1"),

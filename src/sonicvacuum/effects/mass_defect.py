@@ -11,7 +11,7 @@ def change(setup: Setup, mass_ratio, bead) -> Setup:
 EFFECT = Effect(
     id="mass-defect",
     title="Mass defect",
-    missing="one bead (a sensor's) is heavier or lighter",
+    missing="one bead, often that of a gauge, is heavier or lighter than the others",
     equation="m_j -> r m_j",
     energy="(r - 1) m u'^2/2 of kinetic energy",
     reference="Sen, Hong, Bang, Avalos & Doney, Phys. Rep. 462, 21 (2008), Sec. 4",

@@ -32,7 +32,7 @@ def change(setup: Setup, residual_fraction) -> Setup:
 EFFECT = Effect(
     id="plastic-contact",
     title="Plastic contact",
-    missing="unloading follows a different path than loading",
+    missing="unloading follows another path than loading",
     equation="delta_res = e delta_max; unloading and reloading F = F_max ((delta - "
     "delta_res)/(delta_max - delta_res))^{3/2} up to delta_max, the loading curve (Hertz unless another "
     "effect changes it) beyond",

@@ -25,7 +25,7 @@ EFFECT = Effect(
     missing="piezo discharge: readings sag and undershoot",
     equation="dy/dt + y/tau = dx/dt, all sensors",
     energy="none: the chain is not touched",
-    reference="first-order RC circuit; Daraio & Nesterenko, Phys. Rev. E 73, 026612 (2006), Experiments: "
+    reference="First-order RC circuit; Daraio & Nesterenko, Phys. Rev. E 73, 026612 (2006), Experiments: "
     "RC about 10^3 us",
     parameters=(
         Parameter(

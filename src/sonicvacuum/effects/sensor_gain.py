@@ -27,7 +27,7 @@ EFFECT = Effect(
     missing="one sensor is miscalibrated beyond its stated error",
     equation="y -> r y, one sensor",
     energy="none: the chain is not touched",
-    reference="calibration; no particular source",
+    reference="Calibration; no particular source",
     parameters=(
         Parameter(
             "gain_ratio",

@@ -23,7 +23,7 @@ EFFECT = Effect(
     missing="finite bandwidth of gauges or electronics",
     equation="tau dy/dt + y = x, all sensors",
     energy="none: the chain is not touched",
-    reference="first-order RC circuit; no particular source",
+    reference="First-order RC circuit; no particular source",
     parameters=(
         Parameter(
             "tau_us",

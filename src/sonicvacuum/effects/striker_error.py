@@ -19,7 +19,7 @@ EFFECT = Effect(
     "stated error",
     equation="v -> r_v v, m_striker -> r_m m_striker (and its weight)",
     energy="the impact energy goes as r_m r_v^2",
-    reference="conservation of momentum; no particular source",
+    reference="Conservation of momentum; no particular source",
     parameters=(
         Parameter(
             "speed_ratio",

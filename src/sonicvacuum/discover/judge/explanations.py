@@ -157,7 +157,7 @@ def no_surer(
     most = one if len(known) == 1 else policy.SMOOTH_SET_BESIDE
     if found.get(key(named), 0.0) <= most:
         return dict(found), []
-    reason = f"{' + '.join(known)} may be part of what is unknown: held no surer than such names came true"
+    reason = f"{' + '.join(known)} may be part of what is unknown: no surer than such names proved right"
     return doubted(found, named, most), [reason]
 
 

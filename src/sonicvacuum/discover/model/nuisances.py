@@ -288,12 +288,10 @@ def assumed(record: Record, chains: Sequence[Chain]) -> str:
     names = dict.fromkeys(s.surface.name for chain in chains for s in chain.solids)
     unstated = [name for name in names if record.modulus_rel_sigma(name) is None]
     taken = [f"{name} {100.0 * record.taken_modulus_rel_sigma(name):g} %" for name in unstated]
-    said = [f"{', '.join(taken)}: errors of moduli taken so, none being stated"] if taken else []
+    said = [f"errors of moduli taken, none being stated: {', '.join(taken)}"] if taken else []
     force = any(np.any(one.static_force > 0.0) for one in chains)
     if force and record.tolerances.static_force_rel is None:
-        said.append(
-            f"static force {100.0 * DEFAULTS.static_force_rel:g} %: its error taken so, none being stated"
-        )
+        said.append(f"error taken, none being stated: static force {100.0 * DEFAULTS.static_force_rel:g} %")
     return "; ".join(said)
 
 

@@ -162,7 +162,7 @@ def _notes(record, runs):
                 for what, at in zip(counts, found, strict=True):
                     counts[what] += int(np.count_nonzero(at))
         if gauge.id in record.steps:
-            what = "readings that rest on a step of the recorder, beside one of them that counts,"
+            what = "repeated readings on a step of the recorder"
             counts[what] = _missing(record, runs, gauge) - sum(counts.values())
         notes += [f"{gauge.id}: {n} {what} left out" for what, n in counts.items() if n]
     return tuple(notes)

@@ -106,7 +106,7 @@ def _plain(values, trace):
 def _cut_note(run, begin, end):
     time = run.signals.time_us
     return (
-        f"run {run.id} cut to what the passage needs, {time[begin]:.4g} to {time[end - 1]:.4g} of "
+        f"run {run.id} cut to what the passage needs, {time[begin]:.4g} to {time[end - 1]:.4g} us of "
         f"{time[0]:.4g} to {time[-1]:.4g} us"
     )
 
