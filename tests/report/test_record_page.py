@@ -30,7 +30,7 @@ SENTENCES = {
         "Nothing is named: the nominal model explains these data",
         "That none of the effects that these data could show is missing is probable (0.91)",
         "Nowhere: of 8 comparisons",
-        "The nearest single effects: damping with constant restitution (0.08)",
+        "The nearest single effect: damping with constant restitution (0.08)",
         "No proposal: no rivals are left",
     ),
     "single": (
@@ -39,8 +39,8 @@ SENTENCES = {
         "In 1 of 8 comparisons (run, gauge and feature of the trace)",
         "run fast, gauge g1: the data show a lower peak than predicted, by 12 standard errors",
         "1.980 ± 0.060 µs",
-        "1.8813 to 2.0787",
-        "falls from 80.7 to 1.05 (99.9 % of the gap closed)",
+        "1.881 to 2.079",
+        "falls from 80.70 to 1.050 (99.9 % of the gap closed)",
         "No rival comes near",
         "with the striker at 1.25 m/s would most likely leave one explanation alone: viscoelastic Hertz "
         "contact and damping with constant restitution, its nearest rival there, would differ by about 5 "
@@ -53,7 +53,7 @@ SENTENCES = {
         "These data cannot tell viscoelastic Hertz contact from damping with constant restitution.",
     ),
     "pair": (
-        "Two effects are missing: Mass defect (mass-defect)",
+        "Two effects are missing: Mass defect at bead 6 (mass-defect)",
         "sits at bead",
         "These data cannot tell viscoelastic Hertz contact from damping with constant restitution.",
         "mass-defect + kuwabara-kono",
@@ -117,7 +117,8 @@ def test_sets_that_come_near_are_told_where_no_single_effect_does():
     told = words.alternatives(verdict(named=["unknown"], probabilities=odds, parameters={}))
     assert told == (
         "No single effect comes near. "
-        "The nearest sets: mass defect and damping with constant restitution (0.20)."
+        "The nearest sets: mass defect and damping with constant restitution (0.20); gravity along the chain "
+        "and something unknown (0.10)."
     )
 
 

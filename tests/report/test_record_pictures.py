@@ -101,7 +101,7 @@ def test_intervals_are_of_the_draws_and_not_of_the_gaussian(how, tmp_path):
     found = [float(row["from_90"]), float(row["to_90"])]
     assert found == pytest.approx([-np.log(0.95), -np.log(0.05)], abs=0.006)  # a step of the draws
     text = write_page(folder).read_text(encoding="utf-8")
-    assert f"{found[0]:.4f} to {found[1]:.4f}" in text  # a digit more than 1.980 ± 0.060
+    assert f"{found[0]:.3f} to {found[1]:.3f}" in text  # to the digits of 1.980 ± 0.060
     assert ("Pareto k" in text) == (how == draws.SAMPLED)
     assert ("the valley that they leave" in text) == (how == draws.VALLEY)
 

@@ -41,18 +41,25 @@ def test_what_all_runs_share_is_called_by_its_name_and_unit():
         "shared gauge-places": Known(value=2.6, sigma=0.5, prior=1.0),
     }
     told = " ".join(
-        bench.strained(verdict(nuisances=off), replace(model(verdict()), speed_ratio={}), record())
+        bench.strained(verdict(named=[], nuisances=off), replace(model(verdict()), speed_ratio={}), record())
     )
     for part in (
         # Brass has no error in the record.
-        "the modulus of brass: the data ask for 0.868 ± 0.017 times what is stated, 2.8 times the standard "
+        "the modulus of brass: the data ask for 0.868 ± 0.017 times the value used, 2.8 times the standard "
         "error of 5 % that is taken, none being stated.",
         "the delay of gauge g1: the data ask for 4 µs, 4 of",
-        "the mass of the beads: the data ask for 1.1 ± 0.011 times",
+        "the mass of the beads: the data ask for 1.100 ± 0.011 times",
         "the recorder's clock: the data ask for one that is off by -2 %, 4 of",
         "common to several quantities, gauge-places: the data ask for a shift, 2.6 of",
     ):
         assert part in told
+
+
+def test_an_error_wider_than_the_stated_one_is_no_measurement():
+    """Of a misfit that is left errors are widened: `1.21 ± 0.32` would not be far from 1."""
+    off = {"modulus brass": Known(value=1.21, sigma=0.26, prior=0.05)}
+    told = bench.strained(verdict(named=["unknown"], nuisances=off), model(verdict()), record())
+    assert any("of brass: the data ask for 1.21 times the value used" in line for line in told)
 
 
 def test_what_the_data_measure_is_told_with_its_error():
@@ -64,7 +71,7 @@ def test_what_the_data_measure_is_told_with_its_error():
     }
     assert bench.measured(verdict(nuisances=known)) == (
         "The data measure what the record leaves open, as factors of what it says: calibration of g1 "
-        "0.0943 ± 0.0079 and modulus of foam 1.47 ± 0.026 (stated to 50 %)."
+        "0.0943 ± 0.0079 and modulus of foam 1.470 ± 0.026 (stated to 50 %)."
     )
     # The record says nothing of foam: whatever error it has is taken.
     assert "(taken as known to 50 %)" in bench.measured(verdict(nuisances=known), [record()])
@@ -98,7 +105,7 @@ def test_a_place_is_told_with_the_others_that_it_may_be():
     odds = Draws("contact-gap", "contact", PLACES, np.array([4.0, 2.0, 3.0, 5.0]), share)
     (one,) = rows.effects(found, CATALOGUE, {("contact-gap", "contact"): odds})
     place = one["parameters"][1]
-    assert (place["name"], place["value"]) == ("sits at contact", "4")
+    assert (place["name"], place["value"]) == ("sits at contact (between that bead and the next)", "4")
     # What is told first, then by what they have, as many as have 90 % together.
     assert place["interval"].split(", ") == [
         f"{k}\N{NO-BREAK SPACE}({p})" for k, p in ((4, "0.40"), (3, "0.45"), (5, "0.09"))
@@ -136,7 +143,7 @@ def test_formulas_are_set():
     assert inline.formula("F = K delta^1.5 v^-0.5.") == "F = K δ<sup>1.5</sup> v<sup>−0.5</sup>."
     assert inline.formula("m_j -> r m_j, 1 - c, 5 us") == "m<sub>j</sub> → r m<sub>j</sub>, 1 − c, 5 µs"
     assert inline.typeset("10^-3: 3 ± 1 us (-4.1 σ), fig3a-width, 1e-6") == (
-        "10⁻³: 3 ± 1 µs (−4.1 σ), fig3a-width, 1e-6"
+        "10⁻³: 3 ± 1 µs (−4.1 σ), fig3a-width, 10⁻⁶"
     )
     assert inline.typeset("+-1 mm, 0.07 uN at 7.8 g/cm3, 10^3 us") == "±1 mm, 0.07 µN at 7.8 g/cm³, 10³ µs"
     assert inline.formula("m u'^2/tau") == "m u&#39;<sup>2</sup>/τ"

@@ -41,7 +41,7 @@ def test_the_page_says_what_to_check_first_and_escapes_it(tmp_path):
     assert text.index("Check your set-up first") < text.index("Where they disagree")
     assert "Gauges g9 and g5 look swapped, or one of them taken for both: check the cables" in text
     assert "<b>v1</b>" not in text
-    assert "All else is of the record put right: gauges swapped." in text
+    assert "All that follows is of the record with this put right: gauges swapped." in text
 
 
 def test_verdicts_without_slips_and_of_older_days_are_read():

@@ -31,7 +31,7 @@ def test_probabilities_in_words(probability, text):
         ([0.1], "there with probability 0.1."),
         ([0.1, 0.9], "there with probability 0.1, in some trace of 2 with 0.19."),
         ([1e-30, 0.9, 0.8], "there with probability 1e-30, in some trace of 3 with 3e-30."),
-        ([1.0, 1.0], "there with probability above 0.99, in some trace of 2 with above 0.99."),
+        ([1.0, 1.0], "there, as in some trace of 2, with probability above 0.99."),
     ],
 )
 def test_the_worst_of_many_traces_is_told_as_that(ps, told):
@@ -202,3 +202,35 @@ def test_an_error_in_common_is_told_to_count_where_a_quantity_fails_that_has_it(
     assert "in common (gauge-places) is counted" in misfit.where(verdict(where=where), cells, [shared, own])
     assert "in common" not in misfit.where(verdict(where=where), cells, [own, shared])
     assert "in common" not in misfit.where(verdict(where=where), cells)
+
+
+def test_what_may_stand_beside_or_instead_of_a_name_is_told():
+    odds = {"tsuji": 0.6, "gravity + tsuji": 0.12, "none": 0.02, "unknown": 0.26}
+    told = words.alternatives(verdict(named=["tsuji"], probabilities=odds, parameters={}))
+    assert told.endswith(
+        "Beside that there may be gravity along the chain (0.12). "
+        "That it is something unknown instead has the probability 0.26."
+    )
+    sure = words.alternatives(verdict(named=["tsuji"], probabilities={"tsuji": 0.995, "unknown": 0.005}))
+    assert "instead" not in sure and "Beside" not in sure
+
+
+def test_one_effect_that_comes_near_is_told_as_one():
+    odds = {"none": 0.9, "tsuji": 0.08, "gravity + unknown": 0.02}
+    told = words.alternatives(verdict(named=[], probabilities=odds, parameters={}))
+    assert told == "The nearest single effect: damping with constant restitution (0.08)."
+
+
+def test_an_unknown_misfit_says_nothing_of_what_would_lower_it():
+    """Models that were tried and not named may lower it: their bars stand below."""
+    told = misfit.gap(verdict(named=["unknown"], parameters={}, gap=gaps(6.026, 6.026)))
+    assert told == (
+        "The nominal model leaves a mean squared misfit of 6.026 times that of the noise; 1 is expected. "
+        "As no effect is named, none was added."
+    )
+
+
+def test_large_scores_are_told_without_powers_of_ten():
+    where = [Where(run="a", sensor="g1", feature="amplitude", z=2137.0, p=0.0)]
+    cells = [{"sensor": "g1", "feature": "amplitude", "q_before": "0"}]
+    assert "by 2137 standard errors" in misfit.where(verdict(where=where), cells)

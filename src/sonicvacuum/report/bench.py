@@ -12,8 +12,8 @@ from sonicvacuum.discover.faults.table import header
 from sonicvacuum.discover.model.nuisances import WORDS, stated
 from sonicvacuum.discover.verdict import PUT_RIGHT, Fault, Model, Verdict
 from sonicvacuum.records import Record
-from sonicvacuum.report.tables import number
-from sonicvacuum.report.words import in_words, joined
+from sonicvacuum.report.tables import number, with_error
+from sonicvacuum.report.words import effects_of, in_words, joined
 
 # A modulus that moved by more than this, in its logarithm, is told first.
 FAR = 0.2
@@ -25,6 +25,10 @@ STRAINED = 2.5
 MOVED = 0.1
 # Data that leave less than this of a stated error have measured it.
 TOLD = 0.5
+# What a factor is of, unless the record states nothing.
+_STATED = "what is stated"
+# What the data ask for of the extended model.
+_STILL = "with what was named the data still ask for"
 
 
 def slips(verdict: Verdict) -> list[str]:
@@ -44,9 +48,10 @@ def _slip(one) -> str:
 
 def corrected(verdict: Verdict) -> str:
     """That what follows is of the record put right, "" where nothing was."""
-    said = next((r for r in verdict.reasons if r.startswith(PUT_RIGHT)), "")
+    said = next((r for r in verdict.reasons if r.startswith(PUT_RIGHT)), "").removeprefix(PUT_RIGHT)
     # Ids of slips in plain words; minus signs stay.
-    return re.sub(r"(?<=[a-z])-(?=[a-z])", " ", f"{said[0].upper()}{said[1:]}.") if said else ""
+    right = re.sub(r"(?<=[a-z])-(?=[a-z])", " ", said)
+    return f"All that follows is of the record with this put right{right}." if said else ""
 
 
 def _header(one):
@@ -134,7 +139,7 @@ def measured(verdict: Verdict, records: Sequence[Record] = ()) -> str:
         what = WORDS.get(kind, "calibration" if kind == "gain" else kind)
         how = "stated" if all(stated(one, kind, of) for one in records) else "taken as known"
         before = "" if known.prior is None else f" ({how} to {_short(100.0 * known.prior)} %)"
-        value = f"{known.value:.3g} ± {_short(known.value * known.sigma)}"
+        value = with_error(known.value, known.value * known.sigma)
         parts.append(f"{what}{f' of {of}' if of else ''} {value}{before}")
     said = "The data measure what the record leaves open, as factors of what it says"
     return f"{said}: {joined(parts)}." if parts else ""
@@ -152,7 +157,10 @@ def moved_modulus(verdict: Verdict, model: Model) -> str:
 
 def strained(verdict: Verdict, model: Model, record: Record) -> list[str]:
     """What has to leave its error for the model to follow the data, one line each; largest first."""
-    return [said for _, said in sorted(_moves(verdict, model, record), reverse=True)]
+    told = [said for _, said in sorted(_moves(verdict, model, record), reverse=True)]
+    if effects_of(verdict):  # the nominal model asked for something else, see `misfit.where`
+        told = [said.replace(": the data ask for", f": {_STILL}") for said in told]
+    return told
 
 
 def _moves(verdict, model, record) -> Iterator[tuple[float, str]]:
@@ -193,7 +201,9 @@ def _told_of(kind, of, known):
         return f"Check the delay of gauge {of}: the data ask for {known.value:.3g} µs"
     if kind == "clock":
         return f"Check the recorder's clock: the data ask for one that is off by {100.0 * known.value:.2g} %"
-    return _asked(f"the {_named(kind, of)}", known.value, known.sigma)
+    # A wider error than the stated one is that of a misfit which is left: no measurement.
+    error = known.sigma if known.sigma < known.prior else 0.0
+    return _asked(f"the {_named(kind, of)}", known.value, error)
 
 
 def _short(value: float) -> str:
@@ -203,8 +213,8 @@ def _short(value: float) -> str:
 
 def _asked(what, ratio, error=0.0):
     """What to check; `error` is the standard error of the ratio, relative."""
-    known = f" ± {_short(ratio * error)}" if 0.0 < error < math.inf else ""
-    return f"Check {what}: the data ask for {ratio:.3g}{known} times what is stated"
+    asked = with_error(ratio, ratio * error) if 0.0 < error < math.inf else f"{ratio:.3g}"
+    return f"Check {what}: the data ask for {asked} times {_STATED}"
 
 
 def _far(away, error, said, own=True):
@@ -214,4 +224,5 @@ def _far(away, error, said, own=True):
         whose = "of the stated standard errors away"
         if not own:
             whose = f"times the standard error of {_short(100.0 * error)} % that is taken, none being stated"
+            said = said.replace(_STATED, "the value used")
         yield score, f"{said}, {score:.2g} {whose}."

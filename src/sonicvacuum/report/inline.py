@@ -28,6 +28,7 @@ def environment(*packages: str) -> jinja2.Environment:
         bytecode_cache=_Kept(),
     )
     found.filters["number"] = lambda text, digits=4: typeset(tables.number(text, digits))
+    found.filters["digits"] = lambda text, digits=4: typeset(tables.digits(text, digits))
     found.filters["unit"] = tables.unit_of
     found.filters["formula"] = formula
     found.filters["typeset"] = typeset
@@ -89,21 +90,34 @@ def is_narrow(path) -> bool:
 
 
 # What effects write in plain letters in their equations.
-_GREEK = {"delta": "δ", "tau": "τ", "alpha": "α", "gamma": "γ", "epsilon": "ε"}
+_GREEK = {"chi": "χ", "delta": "δ", "tau": "τ", "alpha": "α", "gamma": "γ", "epsilon": "ε"}
 
 # Typed → set; `>` is escaped by then.
 _SIGNS = {"-&gt;": "→", "sqrt(": "√(", " - ": " − ", "...": "…"}
 
 _MINUS = re.compile(r"(?<![\w.^-])-(?=\d)")
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+# 7.4e-4 as computers write it; digests and names that hold the like are longer words.
+_POWER = re.compile(r"(?<![\w.])(\d+(?:\.\d+)?)e([+-]?)0*(\d{1,3})(?!\w|\.\d|…)")
 
 
 def typeset(text) -> str:
     """A sentence of a table, typed in plain letters, with the signs of print: micro, minus, plus or minus,
-    powers of ten and of units, chi square."""
-    told = _micro(str(text)).replace("+-", "±").replace("chi2", "χ²").replace("g/cm3", "g/cm³")
+    powers of ten and of units, chi square; no line ends before a per cent sign."""
+    told = powers(_micro(str(text)).replace("+-", "±").replace("chi2", "χ²").replace("g/cm3", "g/cm³"))
     told = re.sub(r"\b10\^(-?\d+)", lambda m: f"10{m[1].translate(_RAISED)}", told)
-    return _MINUS.sub("−", told)
+    return _MINUS.sub("−", re.sub(r"(?<=\d) (?=%)", "\N{NO-BREAK SPACE}", told))
+
+
+def powers(text: str) -> str:
+    """`7.4e-4` as 7.4 × 10⁻⁴, and `1e6` as 10⁶."""
+
+    def printed(found):
+        raised = f"{found[2].strip('+')}{found[3]}".translate(_RAISED)
+        times = "" if found[1] == "1" else f"{found[1]}\N{NO-BREAK SPACE}×\N{NO-BREAK SPACE}"
+        return f"{times}10{raised}"
+
+    return _POWER.sub(printed, text)
 
 
 def _micro(text):
@@ -118,7 +132,7 @@ def formula(text: str) -> Markup:
     plain = re.sub(
         "|".join(rf"(?<![A-Za-z]){name}(?![a-z])" for name in _GREEK), lambda m: _GREEK[m[0]], plain
     )
-    plain = re.sub(r"(?<![\w.])-(?=\d)", "−", _micro(plain))
+    plain = re.sub(r"(?<![\w.])-(?=\d)", "−", powers(_micro(plain)))
     plain = re.sub(r"\^\{([^}]*)\}|\^([-−]?\w+(?:\.\d+)?)", lambda m: f"<sup>{m[1] or m[2]}</sup>", plain)
     return Markup(re.sub(r"_\{([^}]*)\}|(?<=\b\w)_(\w+)", lambda m: f"<sub>{m[1] or m[2]}</sub>", plain))
 

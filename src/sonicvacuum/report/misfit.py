@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from sonicvacuum.discover.judge.locate import DISCOVERY_RATE
 from sonicvacuum.discover.judge.strained import ONLY_WITH
 from sonicvacuum.discover.verdict import Gap, Verdict
+from sonicvacuum.report.tables import digits, number
 from sonicvacuum.report.words import chance, effects_of, joined, plural
 
 # A gap is told as closed by a share where it is so many times the scatter that noise gives the mean.
@@ -49,10 +50,11 @@ def where(verdict: Verdict, cells: list[dict], quantities: Sequence[dict] = ()) 
     first = verdict.where[0]
     groups = joined([f"{name.replace('_', ' ')} ({count})" for name, count in Counter(failing).most_common()])
     place = f"run {first.run}" + (f", gauge {first.sensor}" if first.sensor else "")
+    size = number(str(abs(first.z)), 3)
     return (
         f"In {len(failing)} of {plural(len(cells), 'comparison')} ({kind}) the nominal model fails: "
         f"{groups}. The largest is in {place}: {_side(first)} than predicted, by "
-        f"{abs(first.z):.3g} standard errors.{_common(cells, quantities)}{strained and f'{strained}.'}"
+        f"{size} standard errors.{_common(cells, quantities)}{strained and f'{strained}.'}"
     )
 
 
@@ -103,19 +105,19 @@ def gap(verdict: Verdict, runs: int = 0, data: int = 0) -> str:
     fitted, held_out = verdict.gap.fitted, verdict.gap.held_out
     if not effects_of(verdict) and not verdict.law:
         text = (
-            f"The nominal model leaves a mean squared misfit of {fitted.before:.3g} times that of the "
+            f"The nominal model leaves a mean squared misfit of {digits(fitted.before)} times that of the "
             "noise; 1 is expected."
         )
         if not verdict.named:
             return f"{text} As nothing was added, nothing changes."
         if fitted.after == fitted.before:
-            return f"{text} Nothing was added that would lower it."
-        return f"{text} The nearest model that was found, which is not named, leaves {fitted.after:.3g}."
+            return f"{text} As no effect is named, none was added."
+        return f"{text} The nearest model that was found, which is not named, leaves {digits(fitted.after)}."
     scatter = math.sqrt(2.0 / data) if data else 0.0
     shows = fitted.before - fitted.floor > SHOWS * scatter
     text = (
-        f"The nominal model leaves a mean squared misfit of {fitted.before:.4g} times that of the noise, "
-        f"the extended model {fitted.after:.4g}{_closed(fitted) if shows else ''}; 1 is expected."
+        f"The nominal model leaves a mean squared misfit of {digits(fitted.before)} times that of the noise, "
+        f"the extended model {digits(fitted.after)}{_closed(fitted) if shows else ''}; 1 is expected."
     )
     if not shows:
         text += _unseen(verdict, scatter)
@@ -138,7 +140,7 @@ def _left_out(held_out, runs, shows):
         one = "run does not show the effect by itself"
         others = one if runs == 2 else "runs do not show the effect by themselves"
         return f"Runs left out of the fit are not predicted better, because the remaining {others}."
-    before, after = f"{held_out.before:.4g}", f"{held_out.after:.4g}"
+    before, after = digits(held_out.before), digits(held_out.after)
     if before == after:
         return f"On runs left out of the fit it stays at {after}."
     falls = "falls" if held_out.after < held_out.before else "rises"
@@ -153,12 +155,14 @@ def _closed(one: Gap):
     return f" ({closed:.3g} % of the gap closed)" if closed > 0.0 else " (the gap is not closed)"
 
 
-def _somewhere(p: float, traces: int) -> str:
-    """The same probability of some trace of many: the worst of them is told."""
+def _there(p: float, traces: int) -> str:
+    """The probability in a trace, and in some trace of many: the worst of them is told."""
     if traces < 2:
-        return ""
-    some = 1.0 if p >= 1.0 else -math.expm1(traces * math.log1p(-p))
-    return f", in some trace of {traces} with {chance(some)}"
+        return f"there with probability {chance(p)}"
+    some = chance(1.0 if p >= 1.0 else -math.expm1(traces * math.log1p(-p)))
+    if some == chance(p):
+        return f"there, as in some trace of {traces}, with probability {some}"
+    return f"there with probability {chance(p)}, in some trace of {traces} with {some}"
 
 
 def goodness(verdict: Verdict) -> str:
@@ -168,9 +172,9 @@ def goodness(verdict: Verdict) -> str:
         return ""
     worst = max(fit.extended, key=lambda c: c.chi2)
     text = (
-        f"The largest mean squared misfit of a trace is {worst.chi2:.3g} times that of the noise (run "
-        f"{worst.run}, gauge {worst.sensor}), which noise alone would give there with probability "
-        f"{chance(worst.p)}{_somewhere(worst.p, len(fit.extended))}."
+        f"The largest mean squared misfit of a trace is {digits(worst.chi2, 3)} times that of the noise (run "
+        f"{worst.run}, gauge {worst.sensor}), which noise alone would give "
+        f"{_there(worst.p, len(fit.extended))}."
     )
     if fit.smooth_rel:
         text += (

@@ -91,7 +91,7 @@ def _origin(inputs, records, verdict, model):
         "sketch": sketch(records[0]),
         "origin": origin.rows(inputs, records),
         "strained": bench.strained(verdict, model, records[0]),
-        "notes": inputs.notes,
+        "notes": [f"Run {n[4:]}" if n.startswith("run ") else n for n in inputs.notes],
     }
 
 
@@ -100,10 +100,7 @@ def _told(folder, verdict, model, tables, catalogue, records):
     gauges = [g.id for g in records[0].gauges] if records else []
     materials = materials_of(records[0].specimen) if records else ()
     drawn = draws.read(folder)
-    candidates = [
-        r | {"parameters": rows.placed(r["parameters"], gauges, catalogue, materials)}
-        for r in tables["candidates"]
-    ]
+    candidates = [rows.candidate(r, gauges, catalogue, materials) for r in tables["candidates"]]
     data = sum(int(r["data"]) for r in tables["gap"] if r["run"] == "all")
     shrinking = (misfit.gap(verdict, len(model.speed_ratio), data), misfit.goodness(verdict))
     return {

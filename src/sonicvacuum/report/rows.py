@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from sonicvacuum.discover import policy
 from sonicvacuum.records import Record
 from sonicvacuum.report.misfit import SIDES
-from sonicvacuum.report.tables import number, unit_of
-from sonicvacuum.report.words import LEAST_TOLD, plain, share
+from sonicvacuum.report.tables import decimals, digits, fixed, number, unit_of, with_error
+from sonicvacuum.report.words import LEAST_TOLD, chance, plain, share
 
 # Scores from this on are written into their cell; those beyond the second have the full colour.
 TOLD, FULL = 3.0, 10.0
@@ -24,7 +24,11 @@ def grid(cells: list[dict]) -> dict | None:
     cells = [c for c in cells if c["sensor"]]
     if not cells:
         return None
-    features = list(dict.fromkeys(c["feature"] for c in cells))
+    known = list(SIDES)
+    features = sorted(
+        dict.fromkeys(c["feature"] for c in cells),
+        key=lambda name: known.index(name) if name in known else len(known),
+    )
     places: dict[tuple[str, str], dict[str, dict]] = {}
     for c in cells:
         places.setdefault((c["run"], c["sensor"]), {})[c["feature"]] = _cell(c)
@@ -66,14 +70,24 @@ def quantities(table: list[dict], records: Sequence[Record] = ()) -> list[dict]:
 
 
 def _quantity(row, common):
-    """One row of `quantities`; `common` is what its value has in common with others → relative error."""
+    """One row of `quantities`; `common` is what its value has in common with others → relative error. Models
+    are told to as many decimals as the measured value.
+    """
+    places = _decimals(row["measured"], row["sigma"])
     return {
         "run": row["run"],
         "quantity": in_full(row["quantity"]),
         "measured": _measured(row, common),
         "common": sorted(common),
-        **{name: number(row[name], 4) for name in ("nominal", "extended", "held_out")},
+        **{name: _of_model(row[name], places) for name in ("nominal", "extended", "held_out")},
     }
+
+
+def _of_model(text, places):
+    """A model's number beside a measured one that has so many decimals; "" for none."""
+    if not text or places is None or not math.isfinite(float(text)):
+        return number(text, 4)
+    return fixed(float(text), places)
 
 
 def _measured(row, common):
@@ -87,7 +101,15 @@ def _as_stated(value, sigma):
     error = number(sigma, 2)
     if float(error) != float(sigma) or "e" in error:
         return with_error(float(value), float(sigma))
-    return f"{float(value):.{len(error.partition('.')[2])}f} ± {error}"
+    return f"{fixed(float(value), _decimals(value, sigma))} ± {error}"
+
+
+def _decimals(value, sigma):
+    """Decimals of a measured value; None where powers of ten say it better, or without an error."""
+    error = number(sigma, 2)
+    if float(error) == float(sigma) and "e" not in error:
+        return len(error.partition(".")[2])
+    return decimals(float(value), float(sigma)) if float(sigma) > 0.0 else None
 
 
 def in_full(label: str) -> str:
@@ -144,6 +166,18 @@ def placed(parameters: str, gauges, catalogue, materials=()) -> str:
     return "; ".join(told)
 
 
+def candidate(row: dict, gauges, catalogue, materials=()) -> dict:
+    """A row of candidates.csv as it is shown: places by name, numbers in four digits, keys of a single effect
+    without its id, no probability of nothing or of certainty.
+    """
+    told = placed(row["parameters"], gauges, catalogue, materials)
+    if "+" not in row["effects"]:
+        told = re.sub(rf"(^|; ){re.escape(row['effects'])} ", r"\1", told)
+    told = re.sub(r"(?<= )-?\d[\d.]*(e[+-]?\d+)?(?=;|$)", lambda found: number(found[0]), told)
+    sure = row["probability"]
+    return row | {"parameters": told, "probability": chance(float(sure)) if sure else ""}
+
+
 def present(verdict, model, catalogue) -> str:
     """Effects of the nominal model, which the record says act, with what is found of them; "" without any."""
     there = [name for name in model.effects if name in catalogue.ids and name not in verdict.named]
@@ -162,7 +196,7 @@ def rounds(table: list[dict], catalogue) -> list[dict]:
     return [
         {
             "name": _round(r["run"].split(": ", 1)[1], catalogue),
-            "value": number(r["after"]),  # as many digits as the sentence above it
+            "value": digits(r["after"]),  # as many digits as the sentence above it
             "percent": f"{100.0 * min(max(math.log(max(v, 1.0)) / most, 0.0), 1.0):.1f}",
         }
         for r, v in zip(steps, values, strict=True)
@@ -216,6 +250,8 @@ def _place(key, found, draws, names):
     told = [f"{name(place)}\N{NO-BREAK SPACE}({share(p)})" for place, p in _likely(found.value, draws)]
     where = "gauge" if key == "sensor" and names else key
     said = key if key == "material" else f"sits at {where}"
+    if key == "contact":
+        said += " (between that bead and the next)"
     row = {"name": said, "value": name(found.value), "searched": "", "off": ""}
     return row | {"interval": ", ".join(told), "odds": True}
 
@@ -244,30 +280,9 @@ def _parameter(p, found, draws):
     }
 
 
-def with_error(value, sigma):
-    """Value ± standard error with two digits of the error."""
-    if not sigma > 0.0:
-        return f"{value:.4g} (error not determined)"
-    places = _places(value, sigma)
-    if places is None:
-        return f"{number(value)} ± {number(sigma, 2)}"
-    return f"{_to(value, places)} ± {_to(sigma, places)}"
-
-
-def _places(value, sigma):
-    """Decimals down to the second digit of an error; None where powers of ten say it better."""
-    # Rounding may carry: 0.0996 is 0.10.
-    places = 1 - math.floor(math.log10(float(f"{sigma:.1e}")))
-    return None if places >= 7 or abs(value) >= 1e6 else places
-
-
-def _to(value, places):
-    return f"{round(value, places):.{max(0, places)}f}"
-
-
 def _interval(value, sigma, draws):
-    """The 90 % interval of the draws, where there are any, or else of the Gaussian: one digit more than the
-    value, since it may lean far to one side.
+    """The 90 % interval of the draws, where there are any, or else of the Gaussian: as many digits as the
+    value, one more where an end that leans far to one side would keep fewer than two.
     """
     room = policy.NINETY * sigma
     ends = (value - room, value + room)
@@ -275,8 +290,12 @@ def _interval(value, sigma, draws):
         ends = (draws.quantile(0.05), draws.quantile(0.95))
     elif not sigma > 0.0:
         return ""
-    places = _places(max(map(abs, ends)), sigma) if sigma > 0.0 else None
-    return " to ".join(_rounded(x, 4) if places is None else _to(x, places + 1) for x in ends)
+    places = decimals(max(map(abs, ends)), sigma) if sigma > 0.0 else None
+    if places is None:
+        return " to ".join(_rounded(x, 4) for x in ends)
+    least = min((abs(x) for x in ends if x), default=math.inf)
+    places += least < 10.0 ** (1 - places)
+    return " to ".join(fixed(x, places) for x in ends)
 
 
 def off(parameter) -> str:
@@ -325,5 +344,5 @@ def _bounded(p, row):
     other = 2.0 * none - value
     if not callable(p.off) and p.low < none < p.high and p.low <= other <= p.high:
         ends = (_apart(str(end), off(p)) for end in sorted((value, other)))
-        return " to ".join(ends).replace("-", "−")
+        return re.sub(r"(?<![\w.])-", "−", " to ".join(ends))
     return f"{'above' if value < none else 'below'} {_apart(row['limit_95'], off(p))}"

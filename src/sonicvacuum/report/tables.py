@@ -58,3 +58,38 @@ def number(text: str, digits: int = 4) -> str:
         return shown.rstrip("0").rstrip(".") if "." in shown else shown
     mantissa, power = f"{value:.{digits - 1}e}".split("e")
     return f"{mantissa.rstrip('0').rstrip('.')}e{int(power)}"
+
+
+def digits(text, count: int = 4) -> str:
+    """A number with so many significant digits, also where they end in zeros: 1.000 beside 1.436."""
+    try:
+        value = float(text)
+    except ValueError:
+        return text
+    if not math.isfinite(value) or value == 0.0:
+        return number(str(text), count)
+    # Rounding may carry: 0.99996 is 1.000.
+    exponent = math.floor(math.log10(abs(float(f"{value:.{count - 1}e}"))))
+    return f"{value:.{max(0, count - 1 - exponent)}f}" if -3 <= exponent < 6 else number(str(text), count)
+
+
+def with_error(value, sigma):
+    """Value ± standard error with two digits of the error."""
+    if not sigma > 0.0:
+        return f"{value:.4g} (error not determined)"
+    places = decimals(value, sigma)
+    if places is None:
+        return f"{number(value)} ± {number(sigma, 2)}"
+    return f"{fixed(value, places)} ± {fixed(sigma, places)}"
+
+
+def decimals(value, sigma):
+    """Decimals down to the second digit of an error; None where powers of ten say it better."""
+    # Rounding may carry: 0.0996 is 0.10.
+    places = 1 - math.floor(math.log10(float(f"{sigma:.1e}")))
+    return None if places >= 7 or abs(value) >= 1e6 else places
+
+
+def fixed(value, places):
+    """A number with so many decimals; a negative count rounds before the point."""
+    return f"{round(value, places):.{max(0, places)}f}"

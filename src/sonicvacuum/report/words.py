@@ -19,8 +19,8 @@ SURE = (
     (0.5, "more probable than not"),
     (0.0, "less probable than all its rivals together"),
 )
-# Explanations less probable than this are told only where few are.
-LEAST_TOLD = 0.005
+# Explanations less probable than this are told only where few are, and than the second are no rivals.
+LEAST_TOLD, LEAST_RIVAL = 0.005, 0.01
 
 
 def in_words(probability: float) -> str:
@@ -141,9 +141,11 @@ def headline(verdict: Verdict, catalogue: Catalogue = CATALOGUE) -> str:
 
 
 def _told(one, verdict):
-    """An effect with what is missing; of one material of several with its name."""
-    names = [value.name for value in verdict.parameters.get(one.id, {}).values() if value.name]
-    return f"{one.title}{''.join(f' of {name}' for name in names)} ({one.id}): {one.missing}"
+    """An effect with what is missing; of one bead, contact, gauge or material with which one."""
+    places = verdict.parameters.get(one.id, {})
+    found = [value for key, value in places.items() if key == one.sits]
+    named = [v.name or f"{v.value:g}" for v in found if v.name or one.sits in ("bead", "contact")]
+    return f"{one.title}{''.join(_at(one.sits, name) for name in named)} ({one.id}): {one.missing}"
 
 
 def _exchanged(verdict, catalogue):
@@ -255,21 +257,44 @@ def alternatives(verdict: Verdict, catalogue: Catalogue = CATALOGUE) -> str:
     if not parts and found:
         named = _names(found, catalogue, "and")
         parts = [f"No rival comes near: {named} can be told from every other effect that was fitted."]
-    if not found and verdict.sees_nothing:
+    if found:
+        parts += _beside(verdict, catalogue)
+    elif verdict.sees_nothing:
         parts = ["Every effect of the catalogue may be there: these data test none."]
-    elif not found:
-        rivals = [n for n in sorted(verdict.probabilities, key=verdict.probabilities.get, reverse=True)]
-        rivals = [
-            n for n in rivals if "unknown" not in n and n != "none" and verdict.probabilities[n] >= 0.01
-        ]
-        told = [f"{plain(n, catalogue)} ({share(verdict.probabilities[n])})" for n in rivals]
-        single = [text for name, text in zip(rivals, told, strict=True) if " + " not in name][:3]
-        sets = [text for name, text in zip(rivals, told, strict=True) if " + " in name][:2]
-        parts = [
-            f"The nearest single effects: {joined(single)}." if single else "No single effect comes near."
-        ]
-        parts += [f"The nearest sets: {'; '.join(sets)}."] if sets else []
+    else:
+        parts = _nearest(verdict, catalogue)
     return " ".join(parts)
+
+
+def _beside(verdict, catalogue):
+    """What may hide beside what was named, and that something unknown may stand in its place."""
+    own, parts = set(verdict.named), []
+    odds = sorted(verdict.probabilities.items(), key=lambda item: -item[1])
+    more = [
+        f"{plain(' + '.join(sorted(names - own)), catalogue)} ({share(p)})"
+        for names, p in ((set(name.split(" + ")), p) for name, p in odds)
+        if own < names and "unknown" not in names - own and p >= LEAST_RIVAL
+    ]
+    if more:
+        parts.append(f"Beside that there may be {joined(more[:3], 'or')}.")
+    alone = verdict.probabilities.get("unknown", 0.0)
+    if alone >= LEAST_RIVAL:
+        parts.append(f"That it is something unknown instead has the probability {share(alone)}.")
+    return parts
+
+
+def _nearest(verdict, catalogue):
+    """What comes nearest where nothing was named, or something unknown alone."""
+    odds = sorted(verdict.probabilities.items(), key=lambda item: -item[1])
+    rivals = [(n, p) for n, p in odds if n not in ("none", "unknown") and p >= LEAST_RIVAL]
+    if not verdict.named:  # what stands beside something unknown is no rival of nothing
+        rivals = [(n, p) for n, p in rivals if "unknown" not in n]
+    told = [(n, f"{plain(n, catalogue)} ({share(p)})") for n, p in rivals]
+    single = [text for name, text in told if " + " not in name][:3]
+    sets = [text for name, text in told if " + " in name][:2]
+    some = f"The nearest single effect{'s' * (len(single) > 1)}: "
+    parts = [f"{some}{joined(single)}." if single else "No single effect comes near."]
+    return parts + ([f"The nearest set{'s' * (len(sets) > 1)}: {'; '.join(sets)}."] if sets else [])
 
 
 # What a step leaves with a p-value from this on is no more than noise.
