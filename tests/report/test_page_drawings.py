@@ -23,9 +23,19 @@ def test_one_ball_falls_on_its_wall_and_is_not_made_of_it():
         {"quantity": "restitution", "value": 0.9, "sigma": 0.01, "unit": "1"}]}  # fmt: skip
     of = record(chain=ball, sensors=[], runs=[run])
     assert chain_of(of) == "one ball of bearing-steel, 10 mm, 4 g, on a wall of brass, vertical"
-    struck, wall = re.search(r'<text x="([\d.]+)" y="18.0">striker.*?<text x="([\d.]+)"', sketch(of)).groups()
-    # Letters are 6.2 wide: `wall: brass` begins behind `striker`, not at the other end of the drawing.
-    assert 7 * 6.2 <= float(wall) - 11 * 6.2 - float(struck) < 80.0
+    struck, wall = re.search(r'<text x="([\d.]+)" y="18.0">ball<.*?<text x="([\d.]+)"', sketch(of)).groups()
+    # Letters are 6.2 wide: `wall: brass` begins behind the wall, not at the other end of the drawing.
+    assert 4 * 6.2 <= float(wall) - 11 * 6.2 - float(struck) < 80.0
+    labels = [row["label"] for row in origin.rows(given.inputs((of,), ()), [of])]
+    assert labels[:2] == ["Ball", "Impacts"]
+
+
+def test_a_coated_bead_is_told_with_its_core():
+    coated = {**STEEL, "material": "ptfe", "coating_um": 60, "core": "bearing-steel"}
+    chain = {"beads": 18, "orientation": "vertical", "bead": coated, "wall": {"material": "brass"}}
+    assert chain_of(record(chain=chain)) == (
+        "18 beads of ptfe (60 µm on bearing-steel), 10 mm, 4 g, vertical"
+    )
 
 
 def test_a_sketch_has_a_disc_for_each_bead_and_a_name_for_each_gauge():
@@ -51,6 +61,22 @@ def test_a_sketch_keeps_names_apart_and_inside():
     for row in {y for y, _, _ in boxes}:
         ends = sorted((left, right) for y, left, right in boxes if y == row)
         assert all(a[1] < b[0] for a, b in pairwise(ends))
+
+
+@pytest.mark.parametrize("beads", [(19, 20, 21, 30), (8, 10), (1, 2, 3, 11, 12)])
+def test_no_line_to_a_gauge_crosses_the_name_of_another(beads):
+    sensors = [{"id": f"gauge{k}", "kind": "embedded", "bead": k} for k in beads]
+    text = sketch(record(beads=39, sensors=sensors, runs=[
+        {"id": "a", "striker": STRIKER, "observables": [
+            {"quantity": "amplitude", "sensor": sensors[0]["id"], "value": 30.0, "sigma": 1.0, "unit": "N"}]}
+    ]))  # fmt: skip
+    names = re.findall(r'class="gauge" x="([\d.]+)" y="([\d.]+)">([^<]+)<', text)
+    lines = re.findall(r'class="lead" d="M([\d.]+) [\d.]+ V([\d.]+)"', text)
+    assert len(names) == len(lines) == len(beads)
+    for x, bottom in lines:
+        for left, y, name in names:
+            beside = not float(left) < float(x) < float(left) + 6.2 * len(name)
+            assert beside or float(bottom) <= float(y) - 11.0
 
 
 def test_traces_hold_what_the_table_holds(folder):

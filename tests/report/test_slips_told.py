@@ -1,5 +1,8 @@
 """Slips of the laboratory on the page and in the sentence of the command line."""
 
+import math
+from types import SimpleNamespace
+
 import msgspec
 import pytest
 from made_verdicts import KINDS, verdict, write
@@ -59,3 +62,17 @@ def test_the_sentence_says_what_of_a_set_could_be_something_else():
     assert _sentence(verdict(confusable=alike)).endswith("(probability 0.97); could also be tsuji")
     pair = verdict(named=["gravity", "kuwabara-kono"], confusable=alike)
     assert _sentence(pair).endswith("; kuwabara-kono could also be tsuji")
+
+
+@pytest.mark.parametrize(("kind", "unit"), [("embedded", "8.77 N"), ("acceleration", "8.77 m/s²")])
+def test_what_a_gauge_reads_is_told_in_its_unit(kind, unit):
+    drift = Fault(fault="drift", run=None, sensor="g1", probability=0.9, value=8.77)
+    known = SimpleNamespace(gauges=[SimpleNamespace(id="g1", kind=kind, gain_rel_sigma=0.02)])
+    assert bench.slip(drift, (known,)) == f"g1 drifts by {unit} over the record"
+    uncalibrated = SimpleNamespace(gauges=[SimpleNamespace(id="g1", kind=kind, gain_rel_sigma=math.inf)])
+    assert bench.slip(drift, (uncalibrated,)) == bench.slip(drift) == "g1 drifts by 8.77 over the record"
+
+
+def test_no_verdict_is_certain_in_the_terminal():
+    sure = _sentence(verdict(probabilities={"kuwabara-kono": 0.9999, "none": 0.0001}))
+    assert sure == "kuwabara-kono (probability above 0.99)"

@@ -207,8 +207,9 @@ def test_an_error_in_common_is_told_to_count_where_a_quantity_fails_that_has_it(
 def test_what_may_stand_beside_or_instead_of_a_name_is_told():
     odds = {"tsuji": 0.6, "gravity + tsuji": 0.12, "none": 0.02, "unknown": 0.26}
     told = words.alternatives(verdict(named=["tsuji"], probabilities=odds, parameters={}))
-    assert told.endswith(
-        "Beside that there may be gravity along the chain (0.12). "
+    assert told == (
+        "No other effect comes near: damping with constant restitution can be told from every other effect "
+        "that was fitted. Beside that there may be gravity along the chain (0.12). "
         "That it is something unknown instead has the probability 0.26."
     )
     sure = words.alternatives(verdict(named=["tsuji"], probabilities={"tsuji": 0.995, "unknown": 0.005}))

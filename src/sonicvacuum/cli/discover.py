@@ -193,7 +193,7 @@ def _search(records, folder, known, figures, threads, limits):
     with renewed(folder, last="verdict.json", stale=sometimes()) as fresh:
         written.write(result, fresh)
         undrawn = _draw(fresh, folder, known) if figures else None
-    return Found(result.notes, _sentence(result.verdict), undrawn)
+    return Found(result.notes, _sentence(result.verdict, records), undrawn)
 
 
 def sometimes() -> tuple[str, ...]:
@@ -249,19 +249,21 @@ def _folders(records, out):
     return folders
 
 
-def _sentence(verdict):
+def _sentence(verdict, records=()):
     from sonicvacuum.cli.page import slips_of
 
-    slips = slips_of(verdict)
+    slips = slips_of(verdict, records)
     return f"check first: {slips}; missing: {_named(verdict)}" if slips else _named(verdict)
 
 
 def _named(verdict):
+    from sonicvacuum.report.words import share
+
     if not verdict.named and verdict.sees_nothing:
         return "none, but no effect of the catalogue would show in these data"
     named = verdict.named or ["none"]
     sure = verdict.probability
-    text = " + ".join(named) + (f" (probability {sure:.2f})" if sure is not None else "")
+    text = " + ".join(named) + (f" (probability {share(sure)})" if sure is not None else "")
     several = sum(name != "unknown" for name in named) > 1
     for own, *others in verdict.confusable:
         text += f"; {own if several else ''} could also be {', '.join(others)}".replace("  ", " ")

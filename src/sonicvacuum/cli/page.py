@@ -49,9 +49,9 @@ def page_files() -> tuple[str, ...]:
     return PAGE
 
 
-def slips_of(verdict) -> str:
+def slips_of(verdict, records=()) -> str:
     """What a verdict says to check at the bench first, in one line; empty where there is nothing."""
     from sonicvacuum.report.bench import slip
     from sonicvacuum.report.words import share
 
-    return "; ".join(f"{slip(f)} (probability {share(f.probability)})" for f in verdict.faults)
+    return "; ".join(f"{slip(f, records)} (probability {share(f.probability)})" for f in verdict.faults)

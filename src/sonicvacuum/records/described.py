@@ -19,4 +19,5 @@ def _beads(specimen):
 
 def _bead(bead):
     faces = ", flat faces" if bead.flat else ""
-    return f"{bead.surface.name}, {bead.diameter_m * 1e3:g} mm, {bead.mass_kg * 1e3:g} g{faces}"
+    within = f" ({bead.coating_m * 1e6:g} µm on {bead.core.name})" if bead.coating_m and bead.core else ""
+    return f"{bead.surface.name}{within}, {bead.diameter_m * 1e3:g} mm, {bead.mass_kg * 1e3:g} g{faces}"

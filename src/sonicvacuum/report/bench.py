@@ -11,8 +11,9 @@ from collections.abc import Iterator, Sequence
 from sonicvacuum.discover.faults.table import header
 from sonicvacuum.discover.model.nuisances import WORDS, stated
 from sonicvacuum.discover.verdict import PUT_RIGHT, Fault, Model, Verdict
+from sonicvacuum.gauges import KINDS
 from sonicvacuum.records import Record
-from sonicvacuum.report.tables import number, with_error
+from sonicvacuum.report.tables import number, unit_of, with_error
 from sonicvacuum.report.words import effects_of, in_words, joined
 
 # A modulus that moved by more than this, in its logarithm, is told first.
@@ -31,14 +32,14 @@ _STATED = "what is stated"
 _STILL = "with what was named the data still ask for"
 
 
-def slips(verdict: Verdict) -> list[str]:
+def slips(verdict: Verdict, records: Sequence[Record] = ()) -> list[str]:
     """What to check at the bench first, one line for each slip of the laboratory; most probable first."""
-    return [_slip(one) for one in verdict.faults]
+    return [_slip(one, records) for one in verdict.faults]
 
 
-def _slip(one) -> str:
+def _slip(one, records) -> str:
     # The name of a gauge keeps its spelling.
-    kind, said = _header(one), slip(one)
+    kind, said = _header(one), slip(one, records)
     if kind.says.startswith("{sensor}") and not _tabled(one):
         said = f"Gauge {said}"
     said = said[0].upper() + said[1:]
@@ -63,8 +64,8 @@ def _tabled(one) -> bool:
     return bool(_header(one).of_table and (one.quantity or (one.sensor is None and not one.run)))
 
 
-def slip(one: Fault) -> str:
-    """One slip in a few words."""
+def slip(one: Fault, records: Sequence[Record] = ()) -> str:
+    """One slip in a few words; the `records` know the unit of a gauge."""
     kind, quantity = _header(one), one.quantity or "all values"
     sensors = [one.sensor] if isinstance(one.sensor, str) else (one.sensor or ["a gauge"])
     says, number = kind.of_table if _tabled(one) else kind.says, one.value
@@ -75,11 +76,19 @@ def slip(one: Fault) -> str:
     if number is None and kind.valueless:
         says = kind.valueless
     value = "some" if number is None else f"{number:.4g}"
+    if kind.of_reading and number is not None:
+        value += _unit_of_gauge(sensors[0], records)
     text = says.format(
         sensor=joined(list(sensors)), run=one.run or "all runs", value=value, quantity=quantity
     )
     place = one.run and "{run}" not in says
     return f"{text} in run {one.run}" if place else text
+
+
+def _unit_of_gauge(name, records):
+    """The unit of what a gauge reads, with a space before it; "" where it is not known."""
+    kinds = (g.kind for r in records for g in r.gauges if g.id == name and math.isfinite(g.gain_rel_sigma))
+    return next((unit_of(KINDS[kind].unit) for kind in kinds), "")
 
 
 def nuisances(model: Model, verdict: Verdict) -> str:

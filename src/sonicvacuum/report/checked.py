@@ -36,6 +36,6 @@ def check(folders, as_json: bool = False, limits: bool = True) -> str:
 def looked_through(record: Record) -> Review:
     """The review of a record with what the search would do to its traces."""
     searched, treatment = window.fitted(record)
-    slips = tuple(slip(found) for found in examine(searched)[1])
+    slips = tuple(slip(found, (record,)) for found in examine(searched)[1])
     priors = tuple(f"{told} (discover refuses it)" for told in refused(record, plugins.catalogue()))
     return review(record, searched, treatment, (*slips, *priors))

@@ -12,7 +12,8 @@ def rows(inputs: Inputs, records: list[Record]) -> list[dict[str, str]]:
     """Label, text and, where the text is cut short, the whole of it; one entry a line."""
     first = records[0]
     source = first.block.source
-    found = [("Chain", chain_of(first)), ("Strikers", _strikers(records))]
+    what = ("Chain", "Strikers") if first.beads else ("Ball", "Impacts")
+    found = [(what[0], chain_of(first)), (what[1], _strikers(records))]
     found += [("Gauges", _gauges(first))] if first.gauges else []
     found.append(("Data of", source.date.isoformat() if source.date else "no date in record.yaml"))
     told = (source.citation, source.doi, source.licence, source.note)

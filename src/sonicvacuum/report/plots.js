@@ -25,13 +25,16 @@
              extended: of("--extended") };
   }
 
-  // Means of so many neighbours, times the root of their number: white noise keeps its size, one.
-  function running(values, count) {
-    const half = count >> 1, sums = [0];
+  // Means of so many neighbours, times the root of their number: white noise keeps its size, one. null where
+  // they are no neighbours, as samples between them do not count.
+  function running(values, count, time) {
+    const half = count >> 1, sums = [0], steps = time.slice(1).map((t, k) => t - time[k]).sort((a, b) => a - b);
+    const longest = 3 * count * (steps[steps.length >> 1] || Infinity);
     for (const v of values) sums.push(sums[sums.length - 1] + v);
     return values.map((_, k) => {
       const a = k - half, b = a + count;
-      return a < 0 || b > values.length ? null : (sums[b] - sums[a]) / Math.sqrt(count);
+      const lone = a < 0 || b > values.length || time[b - 1] - time[a] > longest;
+      return lone ? null : (sums[b] - sums[a]) / Math.sqrt(count);
     });
   }
 
@@ -70,14 +73,15 @@
       shown[trace.unit] || trace.unit));
     const models = kinds.slice(1), count = Math.max(1, Math.floor(time.length / 60));
     const left = models.map((name) =>
-      running(trace.measured.map((v, k) => (v - trace[name][k]) / trace.sigma), count));
+      running(trace.measured.map((v, k) => (v - trace[name][k]) / trace.sigma), count, time));
     const lines = models.map((name) => ({
       label: LINES[name], stroke: c[name], width: 1.5, value: (_, v) => digits(v),
       dash: name === "nominal" ? [7, 4] : undefined, points: { show: false },
     }));
     const least = (u, low, high) => [Math.min(-3, low), Math.max(3, high)];
     drawn.push(chart(boxes.left, narrow ? 150 : 170, [time, ...left], lines, "over the noise", least));
-    note.textContent = trace.every > 1 ? `One sample in ${trace.every} is drawn.` : "";
+    note.textContent = (trace.every > 1 ? `One sample in ${trace.every} is drawn. ` : "") +
+      (trace.times ? "Samples that do not count are left out: there the lines of the models only join their neighbours." : "");
   }
 
   function gauges() {

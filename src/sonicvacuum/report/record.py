@@ -85,9 +85,12 @@ def section(folder, catalogue: Catalogue = CATALOGUE) -> dict:
 def _origin(inputs, records, verdict, model):
     """What a verdict is on; little is known of one that was written before this was kept."""
     if not records:
-        return {"title": verdict.record, "sketch": "", "origin": [], "strained": [], "notes": []}
+        known = {"title": verdict.record, "ball": False, "gauges": True}
+        return known | {"sketch": "", "origin": [], "strained": [], "notes": []}
     return {
         "title": records[0].title,
+        "ball": records[0].beads == 0,
+        "gauges": bool(records[0].gauges),
         "sketch": sketch(records[0]),
         "origin": origin.rows(inputs, records),
         "strained": bench.strained(verdict, model, records[0]),
@@ -106,7 +109,7 @@ def _told(folder, verdict, model, tables, catalogue, records):
     return {
         "name": name,
         "headline": words.headline(verdict, catalogue) + bench.moved_modulus(verdict, model),
-        "slips": bench.slips(verdict),
+        "slips": bench.slips(verdict, records),
         "corrected": bench.corrected(verdict),
         "where": misfit.where(verdict, tables["where"], quantities_of),
         "grid": rows.grid(tables["where"]),

@@ -4,6 +4,8 @@ Lengths in units of the drawing, `WIDTH` wide; a page shows it at about this siz
 stays legible on a telephone.
 """
 
+import math
+
 from markupsafe import Markup, escape
 
 from sonicvacuum.laboratory.specimen import Bead
@@ -29,7 +31,7 @@ def sketch(record: Record) -> Markup:
     parts = [_striker(record, LEFT if not beads else centres[1] - radii[1])]
     parts += [_line(centres, radii)] if len(shown) < beads else []
     parts += [_bead(record.specimen.bodies[k], centres[k], radii[k], k in held) for k in shown]
-    parts += [_wall(end, record.specimen.wall.name)]
+    parts += [_wall(end, record.specimen.wall.name, bool(record.beads))]
     labels, rows = _labels(record, centres, end)
     height = MIDDLE + LARGEST + 12.0 + LINE * (rows + 1)
     told = _told(record)
@@ -94,37 +96,68 @@ def _striker(record, edge):
         )
     else:
         body = f'<circle class="striker" cx="{edge - 13:.1f}" cy="{MIDDLE}" r="9"/>'
-    return f'{arrow}{body}<text x="{max(edge - 34.0, 0.0):.1f}" y="{MIDDLE - 26}">striker</text>'
+    name = "striker" if record.beads else "ball"
+    return f'{arrow}{body}<text x="{max(edge - 34.0, 0.0):.1f}" y="{MIDDLE - 26}">{name}</text>'
 
 
-def _wall(x, material):
+def _wall(x, material, chain):
     marks = "".join(f"M{x + 1:.1f} {y} l7 -7 " for y in range(int(MIDDLE) - 13, int(MIDDLE) + 21, 7))
     name = f"wall: {material}"
     # Above the wall, beside the word `striker`, and within the drawing.
     wide = LETTER * len(name)
-    end = min(max(x + 8.0 + 0.5 * wide, LEFT + 20.0 + wide), WIDTH - 2.0)
+    end, y = min(max(x + 8.0 + 0.5 * wide, LEFT + 20.0 + wide), WIDTH - 2.0), MIDDLE - 26
+    if not chain:  # with nothing else on its right
+        end, y = x + 14.0 + wide, MIDDLE + 4
     return (
         f'<line class="wall" x1="{x:.1f}" x2="{x:.1f}" y1="{MIDDLE - 20}" y2="{MIDDLE + 20}"/>'
         f'<path class="hatch" d="{marks}"/>'
-        f'<text x="{end:.1f}" y="{MIDDLE - 26}" text-anchor="end">{escape(name)}</text>'
+        f'<text x="{end:.1f}" y="{y}" text-anchor="end">{escape(name)}</text>'
     )
 
 
 def _labels(record, centres, end):
     """Names of gauges below their places, in as many rows as they need; bead numbers beside them."""
-    found, free = [], []
-    for gauge in sorted(record.gauges, key=lambda g: g.bead or record.beads + 1):
-        x = centres[gauge.bead] if gauge.bead else end
-        text = _named(gauge)
-        left = min(max(x - 0.5 * LETTER * len(text), 0.0), WIDTH - LETTER * len(text))
-        row = next((k for k, edge in enumerate(free) if left > edge + 6.0), len(free))
-        free[row : row + 1] = [left + LETTER * len(text)]
+    gauges = sorted(record.gauges, key=lambda g: g.bead or record.beads + 1)
+    places = [centres[g.bead] if g.bead else end for g in gauges]
+    names = [_named(g) for g in gauges]
+    wide = [LETTER * len(name) for name in names]
+    # From the left, or from the right in the mirror, whichever crosses less.
+    mirrored = _placed([WIDTH - x for x in reversed(places)], wide[::-1])
+    other = [(WIDTH - left - w, row) for (left, row), w in zip(reversed(mirrored), wide, strict=True)]
+    ways = (_placed(places, wide), other)
+    found = []
+    chosen = min(ways, key=lambda way: _crossings(places, wide, way))
+    for x, name, (left, row) in zip(places, names, chosen, strict=True):
         y = MIDDLE + LARGEST + 14.0 + LINE * (row + 1)
         found.append(
             f'<path class="lead" d="M{x:.1f} {MIDDLE + 3:.1f} V{y - 11:.1f}"/>'
-            f'<text class="gauge" x="{left:.1f}" y="{y:.1f}">{escape(text)}</text>'
+            f'<text class="gauge" x="{left:.1f}" y="{y:.1f}">{escape(name)}</text>'
         )
-    return found, len(free)
+    return found, max((row + 1 for _, row in chosen), default=0)
+
+
+def _placed(places, wide):
+    """Left edge and row of each name. None is crossed by the line down to another: each ends before the line
+    of the next gauge where there is room, and begins behind those that go down further.
+    """
+    found, free = [], []
+    for x, width, after in zip(places, wide, [*places[1:], math.inf], strict=False):
+        room = after - 4.0 - width if after > x else math.inf  # two gauges may share a place
+        left = max(min(x - 0.5 * width, WIDTH - width, room), 0.0)
+        row = next((k for k, edge in enumerate(free) if left > edge + 4.0), len(free))
+        free[row : row + 1] = [left + width]
+        free[:row] = [max(edge, x) for edge in free[:row]]
+        found.append((left, row))
+    return found
+
+
+def _crossings(places, wide, way):
+    """How many lines cross names that stand above their own."""
+    return sum(
+        left < x < left + width and below > row
+        for x, (_, below) in zip(places, way, strict=True)
+        for width, (left, row) in zip(wide, way, strict=True)
+    )
 
 
 def _named(gauge: Gauge):

@@ -254,11 +254,11 @@ def alternatives(verdict: Verdict, catalogue: Catalogue = CATALOGUE) -> str:
         f"These data cannot tell {plain(own, catalogue)} from {_names(others, catalogue)}."
         for own, others in alike
     ]
-    if not parts and found:
-        named = _names(found, catalogue, "and")
-        parts = [f"No rival comes near: {named} can be told from every other effect that was fitted."]
     if found:
-        parts += _beside(verdict, catalogue)
+        beside, named = _beside(verdict, catalogue), _names(found, catalogue, "and")
+        none = f"No {'other effect' if beside else 'rival'} comes near"
+        parts = parts or [f"{none}: {named} can be told from every other effect that was fitted."]
+        parts += beside
     elif verdict.sees_nothing:
         parts = ["Every effect of the catalogue may be there: these data test none."]
     else:

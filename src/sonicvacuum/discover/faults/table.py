@@ -12,6 +12,7 @@ class Fault:
         says: what it is; `{sensor}`, `{run}` and `{value}` stand for those of the record.
         check: what to look at at the bench.
         unit: of the value, "" where it is a ratio or a number.
+        of_reading: whether the value is in the unit of the gauge.
         negative: what it is where the value is negative, `{value}` being its size; "" where `says` does.
         corrected: whether the rest of the verdict is of the record put right.
         alias: nuisance such that an effect which acts like it (`Parameter.acts_like`) moves the same data in
@@ -40,6 +41,7 @@ class Fault:
     look_up: str = ""
     of_gauge: str = ""
     valueless: str = ""
+    of_reading: bool = False
     told_as: str = ""
 
 
@@ -66,11 +68,13 @@ FAULTS: dict[str, Fault] = {
             "{sensor} drifts by {value} over the record",
             "check the coupling and the amplifier's time constant",
             stretches=True,
+            of_reading=True,
         ),
         Fault(
             "baseline",
             "{sensor} does not rest at 0 but at {value}",
             "check the channel's zero before each run",
+            of_reading=True,
         ),
         Fault(
             "pickup",
@@ -93,7 +97,12 @@ FAULTS: dict[str, Fault] = {
             "gauge {sensor} shows no pulse where one must have passed",
             "check its cable, amplifier and channel",
         ),
-        Fault("gauge-clipped", "gauge {sensor} is cut off at {value}", "check the channel's range"),
+        Fault(
+            "gauge-clipped",
+            "gauge {sensor} is cut off at {value}",
+            "check the channel's range",
+            of_reading=True,
+        ),
         Fault(
             "gauge-delayed",
             "gauge {sensor} is late by {value} us",
