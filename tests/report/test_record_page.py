@@ -41,7 +41,7 @@ SENTENCES = {
         "1.980 ± 0.060 µs",
         "1.881 to 2.079",
         "falls from 80.70 to 1.050 (99.9 % of the gap closed)",
-        "No rival comes near",
+        "No other effect comes near",
         "with the striker at 1.25 m/s would most likely leave one explanation alone: viscoelastic Hertz "
         "contact and damping with constant restitution, its nearest rival there, would differ by about 5 "
         "standard errors",

@@ -47,9 +47,9 @@ def test_what_all_runs_share_is_called_by_its_name_and_unit():
         # Brass has no error in the record.
         "the modulus of brass: the data ask for 0.868 ± 0.017 times the value used, 2.8 times the standard "
         "error of 5 % that is taken, none being stated.",
-        "the delay of gauge g1: the data ask for 4 µs, 4 of",
+        "the delay of gauge g1: the data ask for 4 µs, 4.0 of",
         "the mass of the beads: the data ask for 1.100 ± 0.011 times",
-        "the recorder's clock: the data ask for one that is off by -2 %, 4 of",
+        "the recorder's clock: the data ask for one that is off by -2 %, 4.0 of",
         "common to several quantities, gauge-places: the data ask for a shift, 2.6 of",
     ):
         assert part in told

@@ -8,7 +8,7 @@ from sonicvacuum.discover.judge.strained import ONLY_WITH
 from sonicvacuum.discover.parts import CellFit, GoodnessOfFit
 from sonicvacuum.discover.verdict import Where
 from sonicvacuum.effects import CATALOGUE
-from sonicvacuum.report import bench, misfit, rows, words
+from sonicvacuum.report import bench, misfit, phrases, rows, words
 
 
 @pytest.mark.parametrize(
@@ -17,12 +17,14 @@ from sonicvacuum.report import bench, misfit, rows, words
         (1.0, "practically certain (above 0.99)"),
         (0.96, "very probable (0.96)"),
         (0.85, "probable (0.85)"),
-        (0.5, "more probable than not (0.50)"),
+        (0.51, "more probable than not (0.51)"),
+        (0.499, "as probable as not (0.50)"),
+        (0.9496, "very probable (0.95)"),
         (0.2, "less probable than all its rivals together (0.20)"),
     ],
 )
 def test_probabilities_in_words(probability, text):
-    assert words.in_words(probability) == text
+    assert phrases.in_words(probability) == text
 
 
 @pytest.mark.parametrize(
@@ -112,7 +114,7 @@ def test_a_set_beside_something_unknown_is_called_the_nearest():
 @pytest.mark.parametrize(
     ("effect", "parameter", "value", "estimate", "told"),
     [
-        ("viscous-drag", "rate_per_s", "15.03", "1", "below 15 1/s"),
+        ("viscous-drag", "rate_per_s", "15.03", "1", "below 15 s⁻¹"),
         # Fades as its parameter grows.
         ("sensor-droop", "tau_us", "138.4292", "345.6", "above 138 µs"),
         # Off is what the record says: 0 for a chain that lies, 1 for one that stands.
@@ -168,6 +170,10 @@ def test_what_may_stand_in_a_place_of_a_set_stands_in_the_first_line():
     )
     alone = words.headline(verdict(named=named, probabilities=odds, parameters={}))
     assert alone.endswith("(0.69).")
+    # One that fits as well and is improbable beforehand has no number that would say anything.
+    weak = {"unknown": 0.058, both[0]: 0.94, both[1]: 0.002}
+    text = words.headline(verdict(named=named, probabilities=weak, confusable=alike, parameters={}))
+    assert text.endswith("These data cannot tell viscoelastic Hertz contact from relaxing contact.")
 
 
 def test_sets_that_were_never_fitted_are_told_as_that():

@@ -257,7 +257,7 @@ def _sentence(verdict, records=()):
 
 
 def _named(verdict):
-    from sonicvacuum.report.words import share
+    from sonicvacuum.report.phrases import share
 
     if not verdict.named and verdict.sees_nothing:
         return "none, but no effect of the catalogue would show in these data"

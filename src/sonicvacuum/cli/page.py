@@ -52,6 +52,6 @@ def page_files() -> tuple[str, ...]:
 def slips_of(verdict, records=()) -> str:
     """What a verdict says to check at the bench first, in one line; empty where there is nothing."""
     from sonicvacuum.report.bench import slip
-    from sonicvacuum.report.words import share
+    from sonicvacuum.report.phrases import share
 
     return "; ".join(f"{slip(f, records)} (probability {share(f.probability)})" for f in verdict.faults)

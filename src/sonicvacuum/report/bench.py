@@ -13,8 +13,9 @@ from sonicvacuum.discover.model.nuisances import WORDS, stated
 from sonicvacuum.discover.verdict import PUT_RIGHT, Fault, Model, Verdict
 from sonicvacuum.gauges import KINDS
 from sonicvacuum.records import Record
-from sonicvacuum.report.tables import number, unit_of, with_error
-from sonicvacuum.report.words import effects_of, in_words, joined
+from sonicvacuum.report.phrases import in_words, joined
+from sonicvacuum.report.tables import digits, number, unit_of, with_error
+from sonicvacuum.report.words import effects_of
 
 # A modulus that moved by more than this, in its logarithm, is told first.
 FAR = 0.2
@@ -184,7 +185,7 @@ def _moves(verdict, model, record) -> Iterator[tuple[float, str]]:
             yield from _far(shift / 1e6, record.trigger_sigma_s, said)
     for gauge in record.gauges:
         ratio = model.gain.get(gauge.id, 1.0)
-        said = f"Check the calibration of gauge {gauge.id}: it reads {ratio:.3f} of what the model expects"
+        said = f"Check the calibration of gauge {gauge.id}: it reads {ratio:.3f} times what the model expects"
         yield from _far(math.log(ratio), gauge.gain_rel_sigma, said)
     name = record.specimen.first.surface.name
     said = _asked(f"the modulus of {name}", model.modulus_ratio)
@@ -234,4 +235,4 @@ def _far(away, error, said, own=True):
         if not own:
             whose = f"times the standard error of {_short(100.0 * error)} % that is taken, none being stated"
             said = said.replace(_STATED, "the value used")
-        yield score, f"{said}, {score:.2g} {whose}."
+        yield score, f"{said}, {digits(score, 2)} {whose}."

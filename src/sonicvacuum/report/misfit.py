@@ -7,8 +7,9 @@ from collections.abc import Sequence
 from sonicvacuum.discover.judge.locate import DISCOVERY_RATE
 from sonicvacuum.discover.judge.strained import ONLY_WITH
 from sonicvacuum.discover.verdict import Gap, Verdict
+from sonicvacuum.report.phrases import chance, joined, plural
 from sonicvacuum.report.tables import digits, number
-from sonicvacuum.report.words import chance, effects_of, joined, plural
+from sonicvacuum.report.words import effects_of
 
 # A gap is told as closed by a share where it is so many times the scatter that noise gives the mean.
 SHOWS = 3.0

@@ -10,8 +10,9 @@ from sonicvacuum.discover.judge import explanations
 from sonicvacuum.discover.verdict import Next, Verdict
 from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.records import Record
+from sonicvacuum.report.phrases import SURE, joined
 from sonicvacuum.report.tables import number
-from sonicvacuum.report.words import LEAST_TOLD, SURE, effects_of, joined, placed, plain
+from sonicvacuum.report.words import LEAST_TOLD, effects_of, placed, plain
 
 # χ² below which a run would hardly decide: three standard errors.
 _LITTLE = 9.0

@@ -7,8 +7,9 @@ from collections.abc import Sequence
 from sonicvacuum.discover import policy
 from sonicvacuum.records import Record
 from sonicvacuum.report.misfit import SIDES
+from sonicvacuum.report.phrases import chance, share
 from sonicvacuum.report.tables import decimals, digits, fixed, number, unit_of, with_error
-from sonicvacuum.report.words import LEAST_TOLD, chance, plain, share
+from sonicvacuum.report.words import LEAST_TOLD, plain
 
 # Scores from this on are written into their cell; those beyond the second have the full colour.
 TOLD, FULL = 3.0, 10.0

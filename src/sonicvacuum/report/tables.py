@@ -4,7 +4,7 @@ import math
 
 from sonicvacuum.files import InputError, check_file, reading
 
-_UNITS = {"us": "µs", "um": "µm", "uN": "µN", "1": "", "m/s2": "m/s²", "g/cm3": "g/cm³"}
+_UNITS = {"us": "µs", "um": "µm", "uN": "µN", "1": "", "1/s": "s⁻¹", "m/s2": "m/s²", "g/cm3": "g/cm³"}
 
 
 def unit_of(unit: str) -> str:

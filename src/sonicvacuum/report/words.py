@@ -9,24 +9,10 @@ from sonicvacuum.discover.draws import AVERAGED, LINEAR, PLACES, SAMPLED, VALLEY
 from sonicvacuum.discover.judge.explanations import key
 from sonicvacuum.discover.verdict import Verdict
 from sonicvacuum.effects import CATALOGUE, Catalogue
-from sonicvacuum.report.tables import number
+from sonicvacuum.report.phrases import chance, in_words, joined, share
 
-# Probability from which on each wording is used.
-SURE = (
-    (0.99, "practically certain"),
-    (0.95, "very probable"),
-    (0.8, "probable"),
-    (0.5, "more probable than not"),
-    (0.0, "less probable than all its rivals together"),
-)
 # Explanations less probable than this are told only where few are, and than the second are no rivals.
 LEAST_TOLD, LEAST_RIVAL = 0.005, 0.01
-
-
-def in_words(probability: float) -> str:
-    """A probability in words, with its number."""
-    word = next(text for least, text in SURE if probability >= least)
-    return f"{word} ({share(probability)})"
 
 
 def drawn(draws) -> str:
@@ -34,8 +20,12 @@ def drawn(draws) -> str:
     draws = {name: d for name, d in draws.items() if d.how != PLACES}
     if any(d.how == AVERAGED for d in draws.values()):
         rest = {name: d for name, d in draws.items() if d.how != AVERAGED}
-        said = "Explanations that have a parameter in common put it at different values: where that matters, "
-        return f"{said}the interval is of all of them, each by its probability. {drawn(rest)}".strip()
+        said = (
+            "Explanations that have a parameter in common put it at different values: where that matters, "
+            "the interval is of all of them, each by its probability, and may not hold the value told, which "
+            "is that of the named one alone."
+        )
+        return f"{said} {drawn(rest)}".strip()
     one = next(iter(draws.values()), None)
     if one is None:
         return ""
@@ -56,23 +46,6 @@ def drawn(draws) -> str:
         f"{len(one.weight)} weighted draws are worth {one.effective:.0f} independent ones; their Pareto k is "
         f"{pareto_k(one.weight):.2g} (reliable below 0.7).".replace(" -", " −")
     )
-
-
-def share(value: float) -> str:
-    """A probability with two decimals, never rounded to certainty."""
-    if value > 0.995:
-        return "above 0.99"
-    return "below 0.01" if value < 0.005 else f"{value:.2f}"
-
-
-def joined(parts: list[str], last: str = "and") -> str:
-    """a, b and c."""
-    return parts[0] if len(parts) == 1 else f"{', '.join(parts[:-1])} {last} {parts[-1]}"
-
-
-def plural(count: int, word: str) -> str:
-    """Count and word."""
-    return f"{count} {word}{'' if count == 1 else 's'}"
 
 
 def plain(explanation: str, catalogue: Catalogue = CATALOGUE) -> str:
@@ -157,12 +130,18 @@ def _exchanged(verdict, catalogue):
         if own not in verdict.named:
             continue
         each = [odds.get(key([other if n == own else n for n in verdict.named]), 0.0) for other in others]
-        told = [f"{plain(n, catalogue)} ({share(p)} in its place)" for n, p in zip(others, each, strict=True)]
+        told = [
+            plain(n, catalogue) + (f" ({share(p)} in its place)" if p >= LEAST_TOLD else "")
+            for n, p in zip(others, each, strict=True)
+        ]
         parts.append(f"{plain(own, catalogue)} from {joined(told, 'or')}")
         total += sum(each)
     if not parts:
         return ""
-    return f" These data cannot tell {joined(parts, 'nor')}: one or the other is {in_words(min(1.0, total))}."
+    text = f" These data cannot tell {joined(parts, 'nor')}"
+    if total - verdict.probability < LEAST_TOLD:
+        return f"{text}."
+    return f"{text}: one or the other is {in_words(min(1.0, total))}."
 
 
 def _nearest_set(verdict, told, found):
@@ -299,13 +278,6 @@ def _nearest(verdict, catalogue):
 
 # What a step leaves with a p-value from this on is no more than noise.
 NOISE = 0.05
-
-
-def chance(p: float) -> str:
-    """A p-value with two digits, never rounded to certainty."""
-    if p > 0.995:
-        return "above 0.99"
-    return number(str(p), 2) if p > 1e-300 else "below 1e-300"
 
 
 def decided(verdict: Verdict) -> list[str]:

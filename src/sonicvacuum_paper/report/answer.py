@@ -2,8 +2,8 @@
 
 import pandas as pd
 
+from sonicvacuum.report.phrases import joined
 from sonicvacuum.report.tables import number
-from sonicvacuum.report.words import joined
 from sonicvacuum_paper.ladder import members
 
 COUNTS = {1: "one", 2: "two", 3: "three", 4: "four", 5: "five"}
