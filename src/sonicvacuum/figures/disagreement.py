@@ -96,13 +96,19 @@ def _key(page, box):
     page.add(Text(right + 14.0, middle, words, anchor="centre", turned=90.0, level="middle"))
 
 
-def scalars(cells: list[dict[str, str]]) -> Drawing | None:
-    """Score of each measured quantity before (open) and after (filled); None without any."""
+def scalars(cells: list[dict[str, str]], quantities: list[dict[str, str]] = ()) -> Drawing | None:
+    """Score of each measured quantity before (open) and after (filled); None without any.
+
+    `quantities` are the rows of quantities.csv, in the same order, which know the gauges: without them two
+    amplitudes of one run look alike.
+    """
     cells = [c for c in cells if not c["sensor"]]
     if not cells:
         return None
     labels = [f"{c['run']}, {c['feature'].replace('_', ' ')}" for c in cells]
-    left = min(50.0, 4.0 + max(width_of(label, 6.5) for label in labels))
+    if len(quantities) == len(cells):
+        labels = [f"{q['run']}, {q['quantity'].replace('-', '–')}" for q in quantities]
+    left = min(56.0, 4.0 + max(width_of(label, 6.5) for label in labels))
     page = Drawing(SINGLE, 16.0 + 4.5 * len(cells))
     rank = np.arange(len(cells))
     before, after = ([float(c[key]) for c in cells] for key in ("z_before", "z_after"))

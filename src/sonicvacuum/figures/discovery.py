@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from sonicvacuum.discover import draws
+from sonicvacuum.discover import draws, quantities
 from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.figures import disagreement, force_law, posterior
 from sonicvacuum.figures.colours import BAND, BLUE, GREEN, GREY, ORANGE
@@ -48,12 +48,16 @@ def draw(folder: Path, catalogue: Catalogue = CATALOGUE, png: bool = False) -> l
     verdict = json.loads((folder / "verdict.json").read_text(encoding="utf-8"))
     pictures = {
         "where": lambda: disagreement.where(read_csv(folder / "where.csv")),
-        "scalars": lambda: disagreement.scalars(read_csv(folder / "where.csv")),
+        "scalars": lambda: disagreement.scalars(
+            read_csv(folder / "where.csv"), _kept(folder / quantities.FILE)
+        ),
         "traces": lambda: traces(read_csv(folder / "traces.csv"), verdict["named"]),
         "candidates": lambda: candidates(verdict["probabilities"]),
-        "parameters": lambda: posterior.parameters(read_csv(folder / "parameters.csv"), draws.read(folder)),
+        "parameters": lambda: posterior.parameters(
+            read_csv(folder / "parameters.csv"), draws.read(folder), catalogue
+        ),
         "gap": lambda: gap(read_csv(folder / "gap.csv")),
-        "law": lambda: force_law.law(read_csv(folder / "law.csv") if (folder / "law.csv").exists() else []),
+        "law": lambda: force_law.law(_kept(folder / "law.csv")),
     }
     written = []
     for name, make in pictures.items():
@@ -70,6 +74,11 @@ def draw(folder: Path, catalogue: Catalogue = CATALOGUE, png: bool = False) -> l
         for path in paths[len(wanted) :]:
             path.unlink(missing_ok=True)
     return written
+
+
+def _kept(path):
+    """Rows of a table that not every verdict has."""
+    return read_csv(path) if path.exists() else []
 
 
 def traces(table: list[dict[str, str]], named: list[str]) -> Drawing | None:
@@ -149,7 +158,8 @@ def _residual(page, box, part, last):
     frame = Frame(page, box, Scale(time[0], time[-1]), scale)
     frame.band(-2.0, 2.0, BAND)
     for values, stroke in left:
-        frame.curve(middle, values, stroke)
+        for joined in neighbours(time, count):
+            frame.curve(middle[joined], values[joined], stroke)
     frame.left("resid./σ", label_size=6.5)
     frame.bottom("time (µs)" if last else "", numbers=last)
 
@@ -157,6 +167,18 @@ def _residual(page, box, part, last):
 def running(values: np.ndarray, count: int) -> np.ndarray:
     """Means of so many neighbours; times √count their white noise is that of one value."""
     return np.convolve(values, np.full(count, 1.0 / count), mode="valid")
+
+
+def neighbours(time: np.ndarray, count: int) -> list[np.ndarray]:
+    """Which running means of so many samples belong to one line: samples that do not count are left out, and
+    no line joins what they part.
+    """
+    if len(time) < 2:
+        return [np.arange(len(time))]
+    longest = 3.0 * count * float(np.median(np.diff(time)))
+    whole = np.flatnonzero(time[count - 1 :] - time[: len(time) - count + 1] <= longest)
+    apart = (np.diff(whole) > 1) | (np.diff(time[whole]) > longest)
+    return [part for part in np.split(whole, np.flatnonzero(apart) + 1) if len(part) > 1]
 
 
 def candidates(probabilities: dict[str, float]) -> Drawing:
@@ -173,7 +195,7 @@ def candidates(probabilities: dict[str, float]) -> Drawing:
         middle = 10.0 + sum(heights[k:]) - 0.5 * heights[k]
         bar = rectangle(left, middle - 1.6, box[2] * value, 3.2)
         page.add(Curve(bar, fill=GREY if name in ("none", "unknown") else BLUE))
-        told = f"{value:.2f}" if value >= 0.005 else "< 0.01"
+        told = "> 0.99" if value > 0.995 else f"{value:.2f}" if value >= 0.005 else "< 0.01"
         page.add(Text(left + box[2] * value + 0.7, middle, told, 7.0, level="middle"))
         page.add(Text(left - 1.5, middle, names[k], TICK_LABEL, anchor="right", level="middle"))
     frame.left(ticks=[])

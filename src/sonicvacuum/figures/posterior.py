@@ -22,6 +22,7 @@ COLUMNS = ("effect", "parameter", "unit", "value", "sigma", "low", "high", "off"
 # The 90 % interval, and how it was found: `sampled`, `profile` or, of a folder without draws, `gaussian`.
 INTERVAL = ("from_90", "to_90", "how", "effective", "pareto_k")
 _BINS = 24
+_UNITS = {"um": "µm", "us": "µs", "1/s": "s⁻¹", "N (s/m)^alpha": "N (s/m)^α"}
 _HIGH = 24.0
 
 
@@ -59,7 +60,9 @@ def _interval(found, draws: Draws | None):
 
 
 def parameters(
-    table: list[dict[str, str]], draws: dict[tuple[str, str], Draws] | None = None
+    table: list[dict[str, str]],
+    draws: dict[tuple[str, str], Draws] | None = None,
+    catalogue: Catalogue = CATALOGUE,
 ) -> Drawing | None:
     """For each parameter its density on the left and the range searched on the right; None without any."""
     if not table:
@@ -68,12 +71,13 @@ def parameters(
     for k, row in enumerate(table):
         bottom = _HIGH * (len(table) - 1 - k) + 11.0
         own = (draws or {}).get((row["effect"], row["parameter"]))
-        _density(page, (8.0, bottom, 70.0, 12.0), row, own)
+        what = catalogue.effect(row["effect"]).parameter(row["parameter"]).help
+        _density(page, (8.0, bottom, 70.0, 12.0), row, own, f"{row['effect']}: {what}")
         _range(page, (95.0, bottom, 74.0, 12.0), row)
     return page
 
 
-def _density(page, box, row, draws: Draws | None):
+def _density(page, box, row, draws: Draws | None, name):
     """The draws, or the profile, with the 90 % interval shaded; the Gaussian of value and error beside it."""
     value, sigma, low, high = (float(row[c]) for c in ("value", "sigma", "from_90", "to_90"))
     x, gaussian = density(row)
@@ -95,8 +99,8 @@ def _density(page, box, row, draws: Draws | None):
         look = Stroke(BLUE, 1.0) if edges is None else Stroke(ORANGE, 1.0, (3.5, 1.2))
         frame.curve(x, gaussian, look)
     frame.curve([value, value], [0.0, top], Stroke(BLUE, 0.8))
-    unit = "" if row["unit"] == "1" else f" ({row['unit'].replace('um', 'µm').replace('us', 'µs')})"
-    frame.bottom(f"{row['effect']}: {row['parameter']}{unit}")
+    unit = "" if row["unit"] == "1" else f" ({_UNITS.get(row['unit'], row['unit'])})"
+    frame.bottom(f"{name}{unit}")
 
 
 def density(row: dict[str, str]) -> tuple[np.ndarray, np.ndarray]:

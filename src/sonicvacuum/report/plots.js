@@ -33,7 +33,8 @@
     for (const v of values) sums.push(sums[sums.length - 1] + v);
     return values.map((_, k) => {
       const a = k - half, b = a + count;
-      const lone = a < 0 || b > values.length || time[b - 1] - time[a] > longest;
+      const lone = a < 0 || b > values.length || time[b - 1] - time[a] > longest ||
+        time[k] - time[k - 1] > longest;
       return lone ? null : (sums[b] - sums[a]) / Math.sqrt(count);
     });
   }
