@@ -197,3 +197,23 @@ def test_what_the_comparison_needs_is_named_where_it_is_missing(cases, tmp_path)
     without = config.Config(**{**{f: getattr(cases, f) for f in cases.__struct_fields__}, "cases": {}})
     with pytest.raises(InputError, match=r"cases\.fig3a: no variant for the ledger's column layer_loss"):
         write_rivals(without, None, dict.fromkeys(formats.HEADERS, str(tmp_path / "x")))
+
+
+def test_no_share_of_draws_is_nothing_or_certain():
+    row = {"test": "order", "measured": "0"}
+    assert uncertain._share("1.0", row) == "> 0.995" and uncertain._share("0.0", row) == "< 0.0052"
+    assert uncertain._share("0.92", row) == "0.92"
+
+
+def test_an_explanation_is_neither_certain_nor_told_where_it_cannot_be():
+    """Where the layer is known to be there, a modulus alone has no probability, and a sure one none of 1."""
+    table = pd.DataFrame(
+        {
+            "effects": ["coating-thickness", "dynamic-modulus", "coating-thickness+kuwabara-kono"],
+            "log10_bayes": ["0", "1", "9"],
+            "misfit": ["38", "10", "0.3"],
+            "parameters": ["", "", ""],
+        }
+    )
+    found = list(rivals.weighed(table).values())
+    assert found[1][-1] == "–" and found[2][-1] == "above 0.99"

@@ -146,6 +146,7 @@ def test_formulas_are_set():
         "10⁻³: 3 ± 1 µs (−4.1 σ), fig3a-width, 10⁻⁶"
     )
     assert inline.typeset("+-1 mm, 0.07 uN at 7.8 g/cm3, 10^3 us") == "±1 mm, 0.07 µN at 7.8 g/cm³, 10³ µs"
+    assert inline.typeset("(1 - nu)/(1 - 2 nu), a - b") == "(1 − ν)/(1 − 2 ν), a - b"
     assert inline.formula("m u'^2/tau") == "m u&#39;<sup>2</sup>/τ"
 
 

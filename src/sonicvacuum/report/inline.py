@@ -105,6 +105,7 @@ def typeset(text) -> str:
     """A sentence of a table, typed in plain letters, with the signs of print: micro, minus, plus or minus,
     powers of ten and of units, chi square; no line ends before a per cent sign."""
     told = powers(_micro(str(text)).replace("+-", "±").replace("chi2", "χ²").replace("g/cm3", "g/cm³"))
+    told = re.sub(r"\bnu\b", "ν", re.sub(r"(?<=\d) - (?=(?:\d )?nu\b)", " − ", told))
     told = re.sub(r"\b10\^(-?\d+)", lambda m: f"10{m[1].translate(_RAISED)}", told)
     return _MINUS.sub("−", re.sub(r"(?<=\d) (?=%)", "\N{NO-BREAK SPACE}", told))
 

@@ -11,6 +11,7 @@ import pandas as pd
 from sonicvacuum.discover.fit import evidence
 from sonicvacuum.effects import CATALOGUE, IDS
 from sonicvacuum.files import reading
+from sonicvacuum.report.phrases import chance
 from sonicvacuum.report.rows import in_full, in_words
 from sonicvacuum.report.tables import number, unit_of
 from sonicvacuum_paper.ladder import title
@@ -131,7 +132,9 @@ def weighed(table: pd.DataFrame) -> dict:
     for odds in (1.0, 10.0, 0.1, None):
         weights = _weights(worth, odds)
         for kind, own in kinds.items():
-            rows[kind].append(number(sum(weights[name] for name in own) / sum(weights.values()), 2))
+            share = sum(weights[name] for name in own) / sum(weights.values())
+            # Without the layer there is nothing where it is known to be there.
+            rows[kind].append(chance(share) if share else "–")
     return rows
 
 

@@ -9,6 +9,8 @@ from sonicvacuum_paper.uncertainty.inputs import DRAWS, INPUTS
 
 # Least probability that the draws give to a number, and to what holds in some of them: less than one draw.
 FLOOR, NONE = 2.0 / (DRAWS + 1), f"< {1.0 / DRAWS:.2g}"
+# What holds in all of them has no share of 1 either.
+ALL = f"> {1.0 - 1.0 / DRAWS:.3f}"
 # Below this a statement is shown beside the main ones.
 IMPROBABLE = 0.05
 
@@ -21,8 +23,8 @@ def shown(row: dict) -> str:
 def _share(probability, row):
     """A probability, or the floor of the draws that it lies at; `row` has what the statement's `test` is."""
     share = float(probability)
-    if share == 0.0:
-        return NONE
+    if share in (0.0, 1.0):
+        return ALL if share else NONE
     equality = row["test"] == "equals" or (row["test"] == "within" and float(row["measured"]) != 0.0)
     return f"≤ {FLOOR:.2g}" if equality and share <= FLOOR else number(probability, 2)
 
@@ -43,6 +45,7 @@ def context(ledger: pd.DataFrame) -> dict:
         "inputs": INPUTS,
         "draws": DRAWS,
         "floors": (f"{FLOOR:.2g}", NONE.removeprefix("< ")),
+        "all": ALL,
     }
 
 
