@@ -11,7 +11,7 @@ _CHAIN = (
     click.option("--beads", type=click.IntRange(1), required=True, help="Number of beads; bead 1 is struck."),
     click.option("--diameter", required=True, metavar="LENGTH", help="Outer diameter of a bead, as in 20mm."),
     click.option("--material", required=True, help="What touches; names: sonicvacuum materials."),
-    click.option("--speed", metavar="M/S", help="Of the striker; with --aim where the search begins."),
+    click.option("--speed", metavar="M/S", help="Of the striker."),
     click.option("--mass", metavar="MASS", help="Of a bead, as in 33g; from the density otherwise."),
     click.option("--coating", metavar="LENGTH", help="Thickness of a coating of --material, as in 50um."),
     click.option("--core", metavar="MATERIAL", help="What coated beads are inside."),
@@ -43,7 +43,11 @@ def chain_options(command):
     short_help="What a chain will show: speed, force, arrivals, sampling.",
 )
 @chain_options
-@click.option("--aim", metavar="[GAUGE=]FORCE", help="Find the speed for this peak at the first gauge.")
+@click.option(
+    "--aim",
+    metavar="[GAUGE=]FORCE",
+    help="Find the speed for this peak at the first gauge; the search begins at --speed.",
+)
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @click.option("--out", type=WRITTEN, help="Picture (.svg, .png, .pdf) to write as well.")
 @click.option(

@@ -151,8 +151,8 @@ def _found(trace: Trace, unit, step, start):
         yield "no pulse found: nothing stands out of the noise."
     else:
         yield (
-            f"peak {trace.peak:.4g} {unit}; arrives at {start + trace.arrival * step:.6g} s of the recorder, "
-            f"{trace.width * step:.3g} s wide at half height."
+            f"peak {trace.peak:.4g} {unit}; arrives at {1e6 * (start + trace.arrival * step):.6g} us of the "
+            f"recorder, {1e6 * trace.width * step:.3g} us wide at half height."
         )
         if trace.quiet < FEWEST_QUIET:
             yield "hardly any rest before the pulse: baseline, noise and the sign of the pulse are uncertain."
@@ -244,7 +244,7 @@ def _held_against(impact, start, step, count, seen, run):
 def _zero(impact, start, step, begin, first, seen, notes):
     """Time zero of the record on the recorder's clock, and its standard error (None: unknown)."""
     if impact is not None:
-        notes.append(f"Time counts from the impact, given as {impact:g} s of the recorder.")
+        notes.append(f"Time counts from the impact, given as {1e6 * impact:g} us of the recorder.")
         return impact, step
     if first is None:
         return start, None
