@@ -36,4 +36,5 @@ def compare(record, model, path, threads, own):
     write_json(score, Path(path))
     for told in score.warnings:
         click.echo(f"Warning: {in_one_line(record)}: {told}", err=True)
-    click.echo(f"{in_one_line(record)}: {score.gap.before:.3g} before, {score.gap.after:.3g} after, floor 1")
+    gap = f"nominal model {score.gap.before:.3g}, MODEL {score.gap.after:.3g}"
+    click.echo(f"{in_one_line(record)}: mean squared misfit over that of the noise: {gap}")

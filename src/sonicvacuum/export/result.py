@@ -1,5 +1,7 @@
 """The whole export of one model: its table and its law for each simulator, as a structure and as text."""
 
+import math
+
 from msgspec import Struct
 
 from sonicvacuum.export.base import MOTION, RESTITUTION, Simulator
@@ -115,7 +117,7 @@ def text(export: Export) -> str:
         *(f"{name} does not act on one ball: {why}" for name, why in export.moot.items()),
         "",
         *(_coefficient(c) for c in export.coefficients),
-        *(f"  {x.effect} {x.parameter} < {x.limit:.4g} {x.unit} (95 %)" for x in export.limits),
+        *(f"  {x.effect} {x.parameter} < {x.limit:.4g}{_unit(x.unit)} (95 %)" for x in export.limits),
         *(_measured(m) for m in export.measured),
     ]
     for one in export.simulators:
@@ -124,13 +126,27 @@ def text(export: Export) -> str:
 
 
 def _coefficient(c):
-    error = "" if c.sigma is None else f" +- {c.sigma:.2g}"
-    return f"  {c.effect} {c.parameter} = {c.value:.5g}{error} {c.unit}"
+    return f"  {c.effect} {c.parameter} = {_told(c.value, c.sigma)}{_unit(c.unit)}"
+
+
+def _unit(unit):
+    """A unit behind its number; none behind a pure one."""
+    return "" if unit == "1" else f" {unit}"
+
+
+def _told(value, sigma):
+    """A value with its error to two digits, and no digits beyond that; five of one without."""
+    if not sigma:
+        return f"{value:.5g}"
+    places = 1 - math.floor(math.log10(float(f"{sigma:.1e}")))
+    if not 0 <= places < 7:
+        return f"{value:.5g} +- {sigma:.2g}"
+    return f"{value:.{places}f} +- {sigma:.{places}f}"
 
 
 def _measured(m):
     model = "-" if m.model is None else f"{m.model:.4g}"
-    number = f"{m.value:.4g} +- {m.sigma:.2g} {m.unit}, model {model}"
+    number = f"{_told(m.value, m.sigma)}{_unit(m.unit)}, model {model}"
     return f"  {m.run}: {m.quantity} at {m.speed_m_s:.4g} m/s {number}"
 
 
@@ -149,6 +165,6 @@ def _simulator(one):
         rows.append(
             f"   restitution within {a.error:g} from {a.within_m_s[0]:.3g} to {a.within_m_s[1]:.3g} m/s"
         )
-    rows += [f"   {p.name} = {p.value:.9g} {p.unit}" for p in one.parameters]
+    rows += [f"   {p.name} = {p.value:.9g}{_unit(p.unit)}" for p in one.parameters]
     rows += [f"   | {line}" for line in one.lines]
     return [*rows, *(f"   note: {n}" for n in one.notes), f"   reference: {one.reference}"]

@@ -59,11 +59,12 @@ def _told(one: Layout):
 
 
 def places(gauges: Sequence[str]) -> str:
-    """What some gauges are called together: beads 8 and 10 and wall."""
+    """What some gauges are called together: beads 8 and 10, or beads 8, 10 and wall."""
     beads = [g for g in gauges if g.isdigit()]
     others = [place(g) for g in gauges if not g.isdigit()]
     if len(beads) > 1:
-        return " and ".join([f"beads {', '.join(beads[:-1])} and {beads[-1]}", *others])
+        named = [*beads, *others]
+        return f"beads {', '.join(named[:-1])} and {named[-1]}"
     return " and ".join([*map(place, beads), *others])
 
 
