@@ -5,6 +5,7 @@ import re
 import pandas as pd
 
 from sonicvacuum.files import InputError, read_text, reading, replacing
+from sonicvacuum.report.inline import typeset
 from sonicvacuum_paper import ladder
 from sonicvacuum_paper.report import tables
 
@@ -40,13 +41,18 @@ def summary(ledger: pd.DataFrame) -> str:
     lines.append("| *free parameters* | " + " | ".join(ladder.MODELS[c].free for c in models) + " |")
     lines += ["", "Where paper and layer disagree, largest difference first:", ""]
     lines += [
-        f"* `{_cell(row.claim)}`: {_cell(row.reason)}" for row in tables.disagreements(ledger).itertuples()
+        f"* `{_safe(row.claim)}`: {_cell(row.reason)}" for row in tables.disagreements(ledger).itertuples()
     ]
     return "\n".join(lines)
 
 
 def _cell(text):
-    """A text of a table as one cell or line of Markdown, in which nothing of it is a tag or a border."""
+    """A text of a table as one cell or line of Markdown, set as the report sets it."""
+    return _safe(typeset(text))
+
+
+def _safe(text):
+    """A text in which nothing is a tag or a border of Markdown."""
     return re.sub(r"<(?=[A-Za-z/!?])", "&lt;", " ".join(text.split()).replace("|", "\\|"))
 
 
