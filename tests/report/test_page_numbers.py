@@ -63,7 +63,9 @@ def test_features_stand_in_one_order_whatever_the_first_gauge_shows():
         {"run": "a", "sensor": g, "feature": f, "z_before": "1"}
         for g, f in (("g1", "baseline"), ("g2", "amplitude"), ("g2", "mine"), ("g2", "tail"))
     ]
-    assert rows.grid(cells)["features"] == ["amplitude", "tail", "baseline", "mine"]
+    found = rows.grid(cells)
+    assert found["features"] == ["amplitude", "tail", "baseline", "mine"]
+    assert found["gaps"] and not rows.grid(cells[:1])["gaps"]  # which the page explains
 
 
 def test_a_page_is_set_with_the_signs_of_print(tmp_path):

@@ -37,7 +37,7 @@ def grid(cells: list[dict]) -> dict | None:
         {"run": run, "sensor": sensor, "cells": [found.get(f) for f in features]}
         for (run, sensor), found in places.items()
     ]
-    return {"features": features, "lines": lines}
+    return {"features": features, "lines": lines, "gaps": any(None in line["cells"] for line in lines)}
 
 
 def _cell(c):
