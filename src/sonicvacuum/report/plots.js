@@ -47,7 +47,7 @@
       width: box.clientWidth, height, scales: { x: { time: false }, y: range ? { range } : {} },
       cursor: { sync: { key: sync.key }, drag: { x: true, y: false } },
       axes: [{ ...axis, label: "time (µs)", labelSize: 20, size: 34 },
-             { ...axis, label, labelSize: 20, size: 50 }],
+             { ...axis, label, labelSize: 20, size: 50, space: range ? 16 : 30 }],
       series: [{ label: "time (µs)", value: (_, v) => digits(v) }, ...series],
     };
     return new uPlot(options, data, box);
