@@ -181,6 +181,9 @@ def test_the_section_of_the_report_says_what_the_tables_say(
     page = template.render(
         **uncertain.context(ledger), **rivals.context(*paths), map_picture=None, alone=False
     )
+    assert "<h3>What can be told apart</h3>" in page  # in a report; on a page of its own below its h1:
+    own = template.render(**uncertain.context(ledger), **rivals.context(*paths), map_picture=None, alone=True)
+    assert "<h2>What can be told apart</h2>" in own and "<h3>" not in own
     assert "0.3 (fitted)" in page and "±1 mm each" in page
     assert '"n">≤ 0.01</td>' in page and '"n">&lt; 0.0052</td>' in page and '"n">0.01</td>' in page
     assert "By them the thickness of the coating separates best,\nsince a Hertz half-space" in page

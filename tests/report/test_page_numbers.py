@@ -1,6 +1,7 @@
 """Numbers of a page: digits that say something, no certainty, one order of columns."""
 
 import html
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ from sonicvacuum.discover.draws import SAMPLED, Draws
 from sonicvacuum.discover.judge.strained import ONLY_WITH
 from sonicvacuum.discover.verdict import Value, write_json
 from sonicvacuum.effects import CATALOGUE
-from sonicvacuum.report import inline, rows, tables
+from sonicvacuum.report import inline, record, rows, tables
 from sonicvacuum.report.record import write_page
 
 
@@ -78,3 +79,9 @@ def test_a_page_is_set_with_the_signs_of_print(tmp_path):
     assert "with probability 3.9\N{NO-BREAK SPACE}×\N{NO-BREAK SPACE}10⁻²⁵³" in text
     assert "99.9\N{NO-BREAK SPACE}% of the gap closed" in text
     assert inline.typeset("SHA-256 12e5…, run1e-3 and 1e6") == "SHA-256 12e5…, run1e-3 and 10⁶"
+
+
+def test_a_page_on_several_records_has_all_their_titles():
+    of = [SimpleNamespace(title=name) for name in ("Monday", "Tuesday", "Monday")]
+    assert record._title(of) == "Monday; Tuesday"
+    assert record._title([SimpleNamespace(title=str(k)) for k in range(9)]) == "0 and 8 further records"

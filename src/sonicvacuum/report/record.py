@@ -13,6 +13,7 @@ from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.effects.whereabouts import materials_of
 from sonicvacuum.files import read_json, reading, replacing
 from sonicvacuum.report import bench, inline, misfit, next_run, origin, plots, rows, words
+from sonicvacuum.report.phrases import plural
 from sonicvacuum.report.sketch import sketch
 from sonicvacuum.tables import read_csv
 
@@ -88,7 +89,7 @@ def _origin(inputs, records, verdict, model):
         known = {"title": verdict.record, "ball": False, "gauges": True}
         return known | {"sketch": "", "origin": [], "strained": [], "notes": []}
     return {
-        "title": records[0].title,
+        "title": _title(records),
         "ball": records[0].beads == 0,
         "gauges": bool(records[0].gauges),
         "sketch": sketch(records[0]),
@@ -96,6 +97,13 @@ def _origin(inputs, records, verdict, model):
         "strained": bench.strained(verdict, model, records[0]),
         "notes": [f"Run {n[4:]}" if n.startswith("run ") else n for n in inputs.notes],
     }
+
+
+def _title(records):
+    """What a page is on: titles of records that were searched together, of many the first and how many."""
+    titles = list(dict.fromkeys(one.title for one in records))
+    more = len(titles) - 1
+    return "; ".join(titles) if more < 3 else f"{titles[0]} and {plural(more, 'further record')}"
 
 
 def _told(folder, verdict, model, tables, catalogue, records):
