@@ -89,3 +89,19 @@ def test_what_is_kept_of_a_study_is_its_naming(tmp_path):
     scores.write_text("id,kind\n")
     with pytest.raises(InputError, match="no column effects"):
         publish.naming(scores)
+
+
+def test_printed_values_are_set_with_powers_of_ten(empty):
+    row = dict.fromkeys(tables.LEDGER, "") | {
+        "claim": "theory-exponent", "section": "Eq. 6", "kind": "theory", "quantity": "slope", "unit": "1",
+        "measured": "0.1666667", "sigma": "1e-6", "verdict": "agrees", "reason": "slope 0.1666667.",
+    }  # fmt: skip
+    pd.DataFrame([row]).to_csv(empty[0], index=False)
+    claim = dict.fromkeys(CLAIMS, "") | {
+        "claim": "theory-exponent",
+        "statement": "As a root.",
+        "test": "equals",
+    }
+    pd.DataFrame([claim]).to_csv(empty[3], index=False)
+    told = build(Sources(*empty)).split('id="claim-theory-exponent"')[1].split("</tr>")[0]
+    assert "1e-6" not in told and "10⁻⁶" in told
