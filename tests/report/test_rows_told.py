@@ -147,6 +147,7 @@ def test_formulas_are_set():
     )
     assert inline.typeset("+-1 mm, 0.07 uN at 7.8 g/cm3, 10^3 us") == "±1 mm, 0.07 µN at 7.8 g/cm³, 10³ µs"
     assert inline.typeset("(1 - nu)/(1 - 2 nu), a - b") == "(1 − ν)/(1 − 2 ν), a - b"
+    assert inline.formula("u^{alpha-6/5}") == "u<sup>α−6/5</sup>"
     assert inline.formula("m u'^2/tau") == "m u&#39;<sup>2</sup>/τ"
 
 

@@ -76,3 +76,9 @@ def test_what_a_gauge_reads_is_told_in_its_unit(kind, unit):
 def test_no_verdict_is_certain_in_the_terminal():
     sure = _sentence(verdict(probabilities={"kuwabara-kono": 0.9999, "none": 0.0001}))
     assert sure == "kuwabara-kono (probability above 0.99)"
+
+
+def test_spikes_are_counted_in_one_phrase():
+    one = Fault(fault="spikes", run="shot1", sensor="p1", probability=0.999, value=4.0)
+    (line,) = bench.slips(verdict(faults=[one]))
+    assert line.startswith("Gauge p1 has 4 samples far off their neighbours in run shot1: check shielding")

@@ -241,3 +241,10 @@ def test_large_scores_are_told_without_powers_of_ten():
     where = [Where(run="a", sensor="g1", feature="amplitude", z=2137.0, p=0.0)]
     cells = [{"sensor": "g1", "feature": "amplitude", "q_before": "0"}]
     assert "by 2137 standard errors" in misfit.where(verdict(where=where), cells)
+
+
+def test_every_side_of_a_feature_can_be_told_against_a_prediction():
+    """`The data show … than predicted`: each is a comparative."""
+    for sides in misfit.SIDES.values():
+        for said in sides:
+            assert any(word in ("more", "less") or word.endswith("er") for word in said.split())

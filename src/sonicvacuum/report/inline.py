@@ -134,7 +134,11 @@ def formula(text: str) -> Markup:
         "|".join(rf"(?<![A-Za-z]){name}(?![a-z])" for name in _GREEK), lambda m: _GREEK[m[0]], plain
     )
     plain = re.sub(r"(?<![\w.])-(?=\d)", "−", powers(_micro(plain)))
-    plain = re.sub(r"\^\{([^}]*)\}|\^([-−]?\w+(?:\.\d+)?)", lambda m: f"<sup>{m[1] or m[2]}</sup>", plain)
+    plain = re.sub(
+        r"\^\{([^}]*)\}|\^([-−]?\w+(?:\.\d+)?)",
+        lambda m: f"<sup>{(m[1] or m[2]).replace('-', '−')}</sup>",
+        plain,
+    )
     return Markup(re.sub(r"_\{([^}]*)\}|(?<=\b\w)_(\w+)", lambda m: f"<sub>{m[1] or m[2]}</sub>", plain))
 
 

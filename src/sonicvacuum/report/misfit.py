@@ -20,7 +20,7 @@ SIDES = {
     "amplitude": ("a higher peak", "a lower peak"),
     "delay": ("a later pulse", "an earlier pulse"),
     "width": ("a wider pulse", "a narrower pulse"),
-    "asymmetry": ("a pulse leaning backwards", "a pulse leaning forwards"),
+    "asymmetry": ("a pulse leaning more backwards", "a pulse leaning more forwards"),
     "tail": ("more force behind the pulse", "less force behind the pulse"),
     "decay": ("stronger later pulses", "weaker later pulses"),
     "reflection": ("a stronger reflection", "a weaker reflection"),

@@ -58,7 +58,7 @@ FAULTS: dict[str, Fault] = {
         ),
         Fault(
             "spikes",
-            "{sensor} has samples far off their neighbours: {value}",
+            "{sensor} has {value} samples far off their neighbours",
             "check shielding and connectors",
             of_table="{quantity} is {value} times what all others make it, a value that no other supports",
             look_up="look it up where it was written down: its digits, the power of ten, the unit, the row",
