@@ -85,3 +85,9 @@ def test_a_page_on_several_records_has_all_their_titles():
     of = [SimpleNamespace(title=name) for name in ("Monday", "Tuesday", "Monday")]
     assert record._title(of) == "Monday; Tuesday"
     assert record._title([SimpleNamespace(title=str(k)) for k in range(9)]) == "0 and 8 further records"
+
+
+@pytest.mark.parametrize(("kind", "held_out"), [("single", True), ("scalars", False)])
+def test_a_page_on_one_run_has_no_columns_of_what_was_left_out(tmp_path, kind, held_out):
+    text = write_page(write(tmp_path / "made", kind)).read_text(encoding="utf-8")
+    assert ("Left out, nominal" in text) == held_out == ("There is one run only" not in text)

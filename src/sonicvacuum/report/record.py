@@ -141,6 +141,7 @@ def _told(folder, verdict, model, tables, catalogue, records):
         "gap": " ".join(filter(None, shrinking)),
         "rounds": rows.rounds(tables["gap"], catalogue),
         "runs": [r for r in tables["gap"] if not r["run"].startswith("round ")],
+        "held_out": verdict.gap.held_out is not None,
         "added": bool(words.effects_of(verdict)),
         "limits": [rows.limit(r, catalogue) for r in tables["limits"] if r["testable"] == "1"],
         "unexplained": "unknown" in verdict.named,
