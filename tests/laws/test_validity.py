@@ -1,6 +1,7 @@
 """What leaves the range of its physics says so: each condition provoked, and none where all is well."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -107,3 +108,13 @@ def test_a_window_that_ends_too_soon_is_told():
     assert "before the pulse has passed g" in validity.unseen("g", rise, 1e-6)
     assert "ends after 49 us" in validity.unseen("g", np.zeros((50, 1)), 1e-6)
     assert validity.unseen("g", np.sin(np.pi * rise), 1e-6) == ""
+
+
+def test_a_contact_is_named_by_what_touches_there():
+    names = [
+        validity._named(k, SimpleNamespace(beads=beads)) for k, beads in ((0, 0), (0, 5), (2, 5), (5, 5))
+    ]
+    assert names == [
+        "the contact of ball and wall", "contact 0 (striker and bead 1)", "contact 2 (beads 2 and 3)",
+        "contact 5 (bead 5 and wall)",
+    ]  # fmt: skip

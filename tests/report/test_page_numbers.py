@@ -5,13 +5,14 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from made_verdicts import verdict, write
+from made_verdicts import model, verdict, write
+from msgspec.structs import replace
 
 from sonicvacuum.discover.draws import SAMPLED, Draws
 from sonicvacuum.discover.judge.strained import ONLY_WITH
 from sonicvacuum.discover.verdict import Value, write_json
 from sonicvacuum.effects import CATALOGUE
-from sonicvacuum.report import inline, record, rows, tables
+from sonicvacuum.report import bench, inline, record, rows, tables
 from sonicvacuum.report.record import write_page
 
 
@@ -91,3 +92,12 @@ def test_a_page_on_several_records_has_all_their_titles():
 def test_a_page_on_one_run_has_no_columns_of_what_was_left_out(tmp_path, kind, held_out):
     text = write_page(write(tmp_path / "made", kind)).read_text(encoding="utf-8")
     assert ("Left out, nominal" in text) == held_out == ("There is one run only" not in text)
+
+
+def test_what_stays_as_recorded_has_gauges_only_where_there_are_any():
+    still = {"modulus_ratio": 1.0, "speed_ratio": {"v0": 1.0}, "trigger_us": {"v0": 0.0}}
+    ball = replace(model(verdict()), **still, gain={})
+    assert bench.nuisances(ball, verdict()) == (
+        "What has an error in the record (speeds, modulus) stays as recorded."
+    )
+    assert "time zeros, gains" in bench.nuisances(replace(ball, gain={"g1": 1.0}), verdict())

@@ -81,7 +81,7 @@ def _named(contact: int, chain: Chain) -> str:
     """A contact in words: by its number and by what touches there."""
     one = f"contact {contact}"
     if not chain.beads:
-        return f"{one} (striker and wall)"
+        return "the contact of ball and wall"
     if contact == 0:
         return f"{one} (striker and bead 1)"
     if contact == chain.beads:

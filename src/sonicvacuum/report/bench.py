@@ -114,7 +114,8 @@ def nuisances(model: Model, verdict: Verdict) -> str:
         parts.append(f"time zeros by up to {_short(shift)} µs")
     parts += _shared(verdict)
     if not parts:
-        return "What has an error in the record (speeds, time zeros, gains, modulus) stays as recorded."
+        gauges = "time zeros, gains, " if model.gain else ""
+        return f"What has an error in the record (speeds, {gauges}modulus) stays as recorded."
     return f"What has an error in the record, stated or taken, has followed the data: {joined(parts)}."
 
 
