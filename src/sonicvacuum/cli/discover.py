@@ -257,13 +257,13 @@ def _sentence(verdict, records=()):
 
 
 def _named(verdict):
-    from sonicvacuum.report.phrases import share
+    from sonicvacuum.cli.page import likely
 
     if not verdict.named and verdict.sees_nothing:
         return "none, but no effect of the catalogue would show in these data"
     named = verdict.named or ["none"]
     sure = verdict.probability
-    text = " + ".join(named) + (f" (probability {share(sure)})" if sure is not None else "")
+    text = " + ".join(named) + (f" (probability {likely(sure)})" if sure is not None else "")
     several = sum(name != "unknown" for name in named) > 1
     for own, *others in verdict.confusable:
         text += f"; {own if several else ''} could also be {', '.join(others)}".replace("  ", " ")

@@ -55,3 +55,10 @@ def slips_of(verdict, records=()) -> str:
     from sonicvacuum.report.phrases import share
 
     return "; ".join(f"{slip(f, records)} (probability {share(f.probability)})" for f in verdict.faults)
+
+
+def likely(probability: float) -> str:
+    """A probability as a page has it; words of pages are no part of a search and stand behind this module."""
+    from sonicvacuum.report.phrases import share
+
+    return share(probability)
