@@ -32,6 +32,18 @@ def test_spikes_are_found_and_nothing_else(at):
     np.testing.assert_array_equal(np.flatnonzero(spikes(trace, SIGMA)), at)
 
 
+def test_single_samples_far_out_of_white_noise_are_spikes():
+    """Of twelve samples the noise's size is known only roughly: half of such spikes were left for it."""
+    found = 0
+    for seed in range(40):
+        trace = SIGMA * np.random.default_rng(np.random.SeedSequence(seed)).normal(size=200)
+        trace[100] += 17.0 * SIGMA
+        at = np.flatnonzero(spikes(trace, SIGMA)).tolist()
+        assert at in ([], [100])
+        found += len(at)
+    assert found >= 38
+
+
 @pytest.mark.parametrize("seed", range(10))
 def test_echoes_that_are_sampled_too_coarsely_are_no_spikes(seed):
     """Late in real traces neighbours differ by many times the noise: no spikes, as five of nine had there."""
