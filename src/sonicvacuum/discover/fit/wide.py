@@ -16,7 +16,7 @@ from sonicvacuum.discover import policy
 from sonicvacuum.discover.correlation import correlated
 from sonicvacuum.discover.fit import unequal
 from sonicvacuum.discover.fit.enough import data
-from sonicvacuum.discover.fit.refit import Fit, fit, simulated
+from sonicvacuum.discover.fit.refit import Fit, fit, polish, simulated
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Hypothesis
 from sonicvacuum.discover.model.nuisances import SCATTER
@@ -35,6 +35,8 @@ FOLLOWED, FIRST, MINIMA = 8, 8, 3
 QUICKER = (0.4, 0.8, 1.2, 1.6)
 # Steps on running integrals, where a fit of nuisances alone starts once more from these.
 COARSE = 6
+# How often a nominal fit that has run out of steps is followed on, while that gains so much in χ².
+LONGER, GAINED = 6, 1.0
 
 
 def starts(forward: Forward) -> np.ndarray:
@@ -144,13 +146,13 @@ def nominal(forward: Forward, held: Hypothesis | None = None) -> Fit:
     """
     held = held or Hypothesis()
     start = np.zeros((1, forward.layout.size))
-    direct = fit(forward, held, np.zeros((1, 0)), start)
+    direct = _at_rest(forward, fit(forward, held, np.zeros((1, 0)), start))
+    if forward.layout.scattered:
+        direct = min((direct, _of_equal_beads(forward, held)), key=lambda f: f.objective)
     direct = unequal.lower(forward, direct, noise(forward))
     if not leaves_much(forward, direct.objective):
         return direct
     tried = [direct, fit(forward, held, np.zeros((1, 0)), start, coarse=COARSE)]
-    if forward.layout.other(SCATTER):
-        tried.insert(1, _of_equal_beads(forward, held))
     if direct.objective > 2.0 * data(forward) and wide(forward):
         rows = starts(forward)
         u = np.zeros((len(rows), 0))
@@ -171,13 +173,22 @@ def _of_equal_beads(forward: Forward, held: Hypothesis) -> Fit:
     """
     e = forward.experiment
     alike = tuple(replace(one, sigma=0.0) if one.kind == SCATTER else one for one in e.shared)
-    equal = fit(
-        Forward(replace(e, shared=alike), forward.threads),
-        held,
-        np.zeros((1, 0)),
-        np.zeros((1, forward.layout.size)),
-    )
-    return fit(forward, held, np.zeros((1, 0)), equal.nu[None])
+    alone = Forward(replace(e, shared=alike), forward.threads)
+    equal = _at_rest(alone, fit(alone, held, np.zeros((1, 0)), np.zeros((1, forward.layout.size))))
+    return _at_rest(forward, fit(forward, held, np.zeros((1, 0)), equal.nu[None]))
+
+
+def _at_rest(forward: Forward, one: Fit) -> Fit:
+    """A fit followed to its minimum: where masses, sizes and moduli are all open, of which each nearly makes
+    up for the others, it goes there by small steps, and its nuisances are far off where they run out.
+    """
+    for _ in range(LONGER):
+        if one.settled:
+            break
+        before, one = one.objective, polish(forward, one)
+        if before - one.objective < GAINED:
+            break
+    return one
 
 
 def _quicker(forward: Forward, held: Hypothesis, one: Fit) -> np.ndarray:
