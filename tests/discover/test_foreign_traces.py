@@ -56,6 +56,17 @@ def test_traces_of_one_gauge_in_each_others_run_are_told(sound, gauge, runs):
     assert said == f"the traces of {gauge} in runs {pair} look exchanged, or one of them taken for both"
 
 
+def test_cables_exchanged_in_one_run_are_told(sound):
+    """A null of that kind was `striker-error` beside `unknown` with 0.65 before, after two minutes."""
+    mixed = changes.gauges_swapped_in(sound, "v1", "g4", "g7")
+    assert exchanges.exchanged_gauges(sound, predicted(experiment(sound))) == []
+    (one,) = exchanges.exchanged_gauges(mixed, predicted(experiment(mixed)))
+    assert one.change(mixed, 0.0).signals["v1"].readings["g4"] is sound.signals["v1"].readings["g4"]
+    found, named, _ = told(mixed)
+    assert found == [("gauges-swapped", "v1", ["g4", "g7"])]
+    assert named == []
+
+
 def test_traces_at_other_times_are_not_exchanged(sound):
     mixed = changes.traces_swapped(sound, "g4", "v0", "v2")
     later = Signals(mixed.signals["v2"].time_us + 5.0, mixed.signals["v2"].readings)

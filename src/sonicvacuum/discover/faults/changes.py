@@ -114,6 +114,13 @@ def _renamed(run, names):
     return msgspec.structs.replace(run, observables=[renamed(one) for one in run.observables])
 
 
+def gauges_swapped_in(record: Record, run: str, one: str, two: str) -> Record:
+    """The readings of two gauges exchanged in one run."""
+    own, other = record.signals[run], {one: two, two: one}
+    readings = {other.get(id, id): v for id, v in own.readings.items()}
+    return replace(record, signals={**record.signals, run: Signals(own.time_us, readings)})
+
+
 def runs_swapped(record: Record, one: str, two: str) -> Record:
     """The strikers of two runs exchanged."""
     return runs_struck(record, {one: two, two: one})

@@ -1,5 +1,6 @@
 """Traces that belong elsewhere: to another run, where those of one gauge are exchanged or one was taken for
-both runs, or where all runs are in another order than their strikers; or to another gauge of their run.
+both runs, or where all runs are in another order than their strikers; or to another gauge of their run, in
+all runs or in one.
 """
 
 import itertools
@@ -22,6 +23,9 @@ Readings = Mapping[str, Mapping[str, np.ndarray]]
 OFF, MENDED = math.log(1.1), 0.5
 # Models of peaks that are as near each other do not tell which of two runs a trace belongs to.
 APART = math.log(1.05)
+# In a run whose cables were exchanged one gauge is as far ahead of the other as it should be behind, within
+# this share of it.
+REVERSED = 0.5
 # Of two gauges with the same trace it is that one's where it comes so many times nearer to when it should.
 SOONER = 3.0
 
@@ -51,6 +55,39 @@ def exchanged_traces(record: Record, predicted: Readings) -> list[Slip]:
                 where = f"{a} and {b}", id, alternatives
                 found.append(Slip("runs-swapped", change, *where, value=value, shown=True))
     return found
+
+
+def exchanged_gauges(record: Record, predicted: Readings) -> list[Slip]:
+    """The slips that two gauges are in each other's place in one run, where the pulse comes first to the one
+    that it should come to last, as in no other run.
+    """
+    ahead = {}
+    for one, two in itertools.combinations([g.id for g in record.gauges], 2):
+        for run, model in predicted.items():
+            signals = record.signals[run]
+            if one in model and two in model and one in signals.readings and two in signals.readings:
+                read, due = (
+                    _begins(signals, own[two]) - _begins(signals, own[one])
+                    for own in (signals.readings, model)
+                )
+                ahead[run, one, two] = abs(read + due) < REVERSED * abs(due)
+    found = []
+    for run, one, two in (at for at, backward in ahead.items() if backward):
+        others = [backward for (r, *pair), backward in ahead.items() if r != run and pair == [one, two]]
+        if others and not any(others):
+            change, value = (
+                partial(ignoring, changes.gauges_swapped_in, run, one, two),
+                partial(constant, None),
+            )
+            where = run, (one, two), len(ahead)
+            found.append(Slip("gauges-swapped", change, *where, value=value, shown=True))
+    return found
+
+
+def _begins(signals, reading):
+    """When a reading first comes to half of its largest, in us: of echoes one may be as high as the pulse."""
+    size = np.abs(reading)
+    return float(signals.time_us[int(np.argmax(size >= 0.5 * size.max()))])
 
 
 def other_order(record: Record, predicted: Readings) -> list[Slip]:

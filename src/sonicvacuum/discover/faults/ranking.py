@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from sonicvacuum import stages
 from sonicvacuum.discover.faults import policy, tables
-from sonicvacuum.discover.faults.exchanges import exchanged_traces, other_order
+from sonicvacuum.discover.faults.exchanges import exchanged_gauges, exchanged_traces, other_order
 from sonicvacuum.discover.faults.found import Bench, Finding
 from sonicvacuum.discover.faults.gains import beside, gains_of_one, rough_gains
 from sonicvacuum.discover.faults.judged import (
@@ -123,7 +123,7 @@ class Ranking:
         slips = [*with_starts(every, record, seen, model, whole), *late_runs(record, model, seen)]
         slips += [*run_clocks(record, whole), *unknown_zeros(record, seen)]
         order = other_order(record, seen)
-        slips += [*exchanged_traces(record, seen), *order]
+        slips += [*exchanged_traces(record, seen), *exchanged_gauges(record, seen), *order]
         slips += seats(record, seen, lambda gauges: read_at(self.make(model.bench), gauges, self.threads))
         slips = [*(s for s in slips if (s.fault, s.run, s.sensor) not in done), *self.factors(every, model)]
         slips = _possible(slips, model)
