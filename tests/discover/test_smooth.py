@@ -8,7 +8,7 @@ from made_records import made
 from made_slips import altered
 
 from sonicvacuum.discover import policy, session
-from sonicvacuum.discover.fit import discrepancy, smooth
+from sonicvacuum.discover.fit import discrepancy, goodness, smooth
 from sonicvacuum.discover.fit.normal import linearise
 from sonicvacuum.discover.fit.refit import Fit, polish
 from sonicvacuum.discover.fit.wide import nominal
@@ -21,7 +21,7 @@ from sonicvacuum.discover.rounds import investigate
 from sonicvacuum.discover.search import restart
 from sonicvacuum.discover.search.starts import setup_of
 from sonicvacuum.effects import effect
-from sonicvacuum.records import Record
+from sonicvacuum.records import Record, Signals
 
 
 def test_whitening_is_the_inverse_root_of_the_covariance():
@@ -186,6 +186,20 @@ def test_a_smooth_misfit_that_the_record_states_names_nothing(empty):
     found = investigate(e)
     assert found.named == []
     assert found.smooth == 0.0  # nothing beyond what is stated
+
+
+@pytest.mark.parametrize("size", [0.01, 0.05])
+def test_a_smooth_misfit_that_is_stated_and_not_there_leaves_nothing_unknown(size):
+    """Whitened by more than there is, what is slow comes out too small: whiteness had p of 1e-5 and 3e-12."""
+    record, _ = made(speeds=(0.3, 0.6, 0.9, 1.2))
+    every = slice(None, None, 3)
+    signals = {
+        run: Signals(one.time_us[every], {id: trace[every] for id, trace in one.readings.items()})
+        for run, one in record.signals.items()
+    }
+    e = replace(experiment(replace(record, signals=signals)), model_floor_rel=size)
+    forward = Forward(smooth.with_size(e, size))
+    assert goodness.goodness(forward, nominal(forward)).tests["whiteness"] > 0.01
 
 
 def with_systematics(record: Record, size: float, seed=5) -> Record:
