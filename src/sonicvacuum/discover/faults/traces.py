@@ -81,7 +81,7 @@ def misstated(stretches: dict[str, np.ndarray], sigma: float, rounded: float = 0
     """Run → noise over the stated one where it surely is another, of a gauge's quiet stretches by run.
 
     Stretches too short to be judged are as the others where these agree, unless they say the contrary; where
-    all are too short, they are judged together.
+    all are too short, or none shows it surely by itself, they are judged together.
     """
     long = {run: s for run, s in stretches.items() if len(s) >= FEWEST}
     found = {run: noise_ratio(s, sigma, rounded) for run, s in long.items()}
@@ -90,6 +90,10 @@ def misstated(stretches: dict[str, np.ndarray], sigma: float, rounded: float = 0
             None: _ratio_together([s for s in stretches.values() if len(s) >= _LEVEL_EACH], sigma, rounded)
         }
     surely = {run: ratio for run, ratio in found.items() if ratio is not None}
+    if long and not surely:
+        ratio = _ratio_together(list(long.values()), sigma, rounded)
+        may_be = ratio is not None and all(_may_be(s, sigma, ratio) for s in stretches.values())
+        return dict.fromkeys(stretches, ratio) if may_be else {}
     if len(surely) < len(found):
         return surely
     common = float(np.median(list(surely.values())))

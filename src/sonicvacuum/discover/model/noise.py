@@ -15,7 +15,7 @@ import numpy as np
 from sonicvacuum.discover.model import coloured
 from sonicvacuum.discover.model.experiment import lag_one
 from sonicvacuum.discover.model.masks import cut, spikes
-from sonicvacuum.discover.model.ripples import ripple, share, swing
+from sonicvacuum.discover.model.ripples import AGREE, of_all, ripple, swing
 from sonicvacuum.discover.model.weak import wanders, weak
 from sonicvacuum.records.record import Record
 
@@ -35,11 +35,13 @@ _NOISIER = 1.3
 STEPPED = 0.64
 # Deviations from the stated white noise count from so many standard errors on.
 _SURE = 4.0
+# Those that few samples at rest show by so many are asked of all samples.
+_LOOKS = 2.0
 # Noise is there from the first sample to the last: its first half shows this share of it (in logarithms).
 _BEGUN = 0.5
-# What differences show and the quiet stretch agree within so many standard errors, or the likelihood of the
+# What differences show and the quiet stretch agree within `AGREE` standard errors, or the likelihood of the
 # stretch (χ² of two degrees of freedom, exceeded at 0.003).
-_AGREE, _LIKELY = 3.0, 11.8
+_LIKELY = 11.8
 # A recorder's rounding, over the noise, from which on third differences are those of its steps.
 _COARSE = 0.2
 
@@ -112,7 +114,7 @@ def noise(records: Sequence[Record]) -> tuple[np.ndarray, np.ndarray]:
         # What samples flicker by is less than they swing by, and all of them know this better than few.
         if not rests[s]:
             sigma[s] = max(sigma[s], found)
-        elif abs(found / sigma[s] - 1.0) < _AGREE * error:
+        elif abs(found / sigma[s] - 1.0) < AGREE * error:
             sigma[s] = found
     return sigma, rho
 
@@ -212,27 +214,17 @@ def _sigma(traces, gauge, quiet, steps):
         return floor
     count = sum(len(q) for q in quiet)
     seen = math.sqrt(sum(q @ q for q in quiet) / count)
-    return seen if seen > floor * (1.0 + _SURE / math.sqrt(count)) else floor
+    if seen > floor * (1.0 + _SURE / math.sqrt(count)):
+        return seen
+    if _coarse(traces, floor) or not seen > floor * (1.0 + _LOOKS / math.sqrt(count)):
+        return floor
+    level, count = of_all(traces, quiet, _correlation(quiet))
+    return level if level > floor * (1.0 + _SURE / math.sqrt(count)) else floor
 
 
 def _estimated(traces, quiet):
-    """Noise that nobody stated: of the quiet stretches, and of what makes the other samples flicker.
-
-    Where noise is white and signals are smooth, third differences of all samples show the same noise as the
-    few before the pulse, and by far more of them; both are averaged by their numbers. Where they disagree, or
-    neighbours are correlated, only the quiet stretches count.
-    """
-    if not quiet:
-        return max(map(flicker, traces), default=0.0)
-    count = sum(map(len, quiet))
-    level = math.sqrt(sum(float(q @ q) for q in quiet) / count)
-    steps = np.concatenate([np.diff(t, 3) for t in traces])
-    ripple, worth = math.sqrt(float(steps @ steps) / len(steps) / 20.0), len(steps) / share(3)
-    error = math.hypot(1.0 / math.sqrt(2.0 * count), 1.0 / math.sqrt(2.0 * worth))
-    white = abs(_correlation(quiet)) < _SURE / math.sqrt(count)
-    if white and abs(ripple - level) < _AGREE * error * level:
-        level = math.sqrt((count * level**2 + worth * ripple**2) / (count + worth))
-    return level
+    """Noise that nobody stated: of the quiet stretches, and of what makes the other samples flicker."""
+    return of_all(traces, quiet, _correlation(quiet))[0] if quiet else max(map(flicker, traces), default=0.0)
 
 
 def _with_steps(level, most, steps):
@@ -288,7 +280,7 @@ def _neighbours(traces, gauge, quiet, sigma) -> tuple[float, float]:
         return own, count
     seen, variance = ripple(traces, sigma, 0.0 if stated else 2.0 / count)
     error = max(1.0 - own**2, 0.01) / count
-    apart = abs(seen - own) > _AGREE * math.sqrt(variance + error)
+    apart = abs(seen - own) > AGREE * math.sqrt(variance + error)
     if math.isinf(variance) or (
         apart and coloured.misfit(quiet, sigma, seen, coloured.LINE if _open(gauge) else ()) > _LIKELY
     ):

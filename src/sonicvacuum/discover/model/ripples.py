@@ -19,6 +19,8 @@ _CLEAR = 6
 ORDERS = (3, 4, 5, 6, 7)
 _NEIGHBOURS = np.linspace(-0.9, 0.995, 400)
 _SAME = 0.51
+# Neighbours of n samples are correlated surely from so many standard errors, 1/√n, on.
+_SURE = 4.0
 # Mean square and median agree within so many standard errors, and two orders as well.
 AGREE = 3.0
 
@@ -86,3 +88,23 @@ def swing(traces: Sequence[np.ndarray], rho: np.ndarray) -> np.ndarray:
     """
     steps = np.concatenate([np.diff(t, _CLEAR) for t in traces])
     return np.sqrt(float(steps @ steps) / max(len(steps), 1) / _power(_CLEAR)(np.asarray(rho)))
+
+
+def of_all(
+    traces: Sequence[np.ndarray], quiet: Sequence[np.ndarray], correlation: float
+) -> tuple[float, float]:
+    """Noise of a gauge as all its samples tell it, and how many samples at rest would tell it as well.
+
+    Where noise is white and signals are smooth, third differences of all samples show the same noise as the
+    few before the pulse, and by far more of them; both are averaged by their numbers. Where they disagree, or
+    neighbours at rest show a `correlation`, only the quiet stretches count.
+    """
+    count = sum(map(len, quiet))
+    level = math.sqrt(sum(float(q @ q) for q in quiet) / count)
+    steps = np.concatenate([np.diff(t, 3) for t in traces])
+    seen, worth = math.sqrt(float(steps @ steps) / len(steps) / 20.0), len(steps) / share(3)
+    error = math.hypot(1.0 / math.sqrt(2.0 * count), 1.0 / math.sqrt(2.0 * worth))
+    white = abs(correlation) < _SURE / math.sqrt(count)
+    if white and abs(seen - level) < AGREE * error * level:
+        level, count = math.sqrt((count * level**2 + worth * seen**2) / (count + worth)), count + worth
+    return level, count
