@@ -21,7 +21,7 @@ def noise():
     [
         goodness._chi2,
         goodness._whiteness,
-        goodness._outliers,
+        goodness.outliers,
         lambda r: goodness._oscillation(r, WIDE),
     ],
     ids=["chi2", "whiteness", "outliers", "oscillation"],
@@ -61,7 +61,7 @@ def test_ringing_is_seen_where_the_whole_residual_looks_like_noise(noise):
 def test_one_wild_sample_is_seen(noise):
     r = noise[1].copy()
     r[77] = 8.0
-    assert goodness._outliers(r) < 1e-8
+    assert goodness.outliers(r) < 1e-8
 
 
 def test_correlation_beyond_neighbours_is_seen(noise):

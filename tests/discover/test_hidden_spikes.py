@@ -68,3 +68,18 @@ def test_hidden_spikes_are_told_and_nothing_unknown(effects, named):
     assert found.named == named
     told = {(f.fault, f.run, f.sensor, f.value) for f in found.faults}
     assert told == {("spikes", "v0", "g4", 1.0), ("spikes", "v0", "g7", 1.0)}
+
+
+def test_tails_of_the_noise_are_told_as_spikes_and_nothing_unknown():
+    """Single samples of six standard deviations are no shape: empty records were unknown with 0.99."""
+    record, _ = made(seed=4, speeds=(1.2,))
+    excluded = {id: 0.0 for id in CATALOGUE.ids if id not in ASKED}
+    record = replace(record, block=msgspec.structs.replace(record.block, priors=excluded))
+    one = record.signals["v0"]
+    trace = one.readings["g4"].copy()
+    trace[[30, 60, 600, 650]] += 6.0 * SIGMA * np.array([1.0, -1.0, 1.0, -1.0])
+    assert not masks.spikes(trace, SIGMA).any()
+    signals = {"v0": Signals(one.time_us, one.readings | {"g4": trace})}
+    found = session.discover(replace(record, signals=signals)).verdict
+    assert found.named == []
+    assert [(f.fault, f.sensor, f.value) for f in found.faults] == [("spikes", "g4", 4.0)]

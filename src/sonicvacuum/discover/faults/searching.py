@@ -19,7 +19,7 @@ from sonicvacuum.discover.faults.judged import Judged, Model, scatter
 from sonicvacuum.discover.faults.judging import Judge
 from sonicvacuum.discover.faults.ranking import Ranking
 from sonicvacuum.discover.faults.slips import hypotheses
-from sonicvacuum.discover.faults.strays import Strays, masked, strays, told
+from sonicvacuum.discover.faults.strays import Strays, masked, single_samples, strays, told
 from sonicvacuum.discover.faults.timing import stated_again
 from sonicvacuum.discover.faults.weights import hollow, unexplained, weight_of
 from sonicvacuum.discover.fit.enough import data
@@ -199,9 +199,12 @@ class Searching(Ranking):
         return model, min((c.fit.objective for c in found), default=math.inf)
 
     def _investigate(self) -> Investigation:
-        """The effects; where spikes that a pulse hid are all that these leave, without them."""
+        """The effects; where spikes that a pulse hid, or tails of noise, are all that they leave, without."""
         found = self._searched()
         if unexplained(found) and self._masks(strays(found.forward, found.final), found.final):
+            found = self._searched()
+        faint = unexplained(found) and single_samples(found.forward, found.final)
+        if faint and self._masks(strays(found.forward, found.final, faint=True), found.final):
             return self._searched()
         return found
 

@@ -10,37 +10,54 @@ import numpy as np
 
 from sonicvacuum.discover.faults import policy
 from sonicvacuum.discover.faults.found import Bench, Finding
+from sonicvacuum.discover.fit.goodness import goodness, outliers
 from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.masks import SPIKE_SIGMAS
+from sonicvacuum.discover.policy import MISFIT
 from sonicvacuum.discover.search.unknown import raw
 
 # What a wrong model leaves is as smooth as its pulses: of so many samples on either side none is off by such
 # a share of a spike.
 BESIDE, SMOOTH = 2, 0.4
+# Where nothing but single samples is left, those count from so many standard deviations on, alone on both
+# sides: what smooth misfits leave is never one sample, and the test that has failed counts these.
+FAINT, FAINT_BESIDE, FAINT_SMOOTH = 4.0, 1, 0.6
+# p of the outliers of a trace below which its own tails are heavy.
+HEAVY = 0.05
 # (run id, gauge id) → (T,) what a model leaves, in standard deviations of the noise, 0 but for spikes.
 Strays = dict[tuple[str, str], np.ndarray]
 
 
-def strays(forward: Forward, fit: Fit) -> Strays:
-    """Samples that stand out of what a fit leaves, by trace; traces without any are left out."""
+def strays(forward: Forward, fit: Fit, faint: bool = False) -> Strays:
+    """Samples that stand out of what a fit leaves, by trace; traces without any are left out. With `faint`
+    also those that are no larger than what heavy tails of the noise make.
+    """
     e, found = forward.experiment, {}
     for run, read in zip(e.runs, raw(forward, fit), strict=True):
         for s, gauge in enumerate(e.gauges if run.has_signals else ()):
             there = np.ones(len(run.time), dtype=bool) if run.present is None else run.present[s]
             left = np.zeros(len(run.time))
-            left[there] = standing_out((run.readings[s] - read[s])[there] / e.sigma[s])
+            own = (run.readings[s] - read[s])[there] / e.sigma[s]
+            left[there] = standing_out(own, faint and outliers(own) < HEAVY)
             if left.any():
                 found[run.id, gauge.id] = left
     return found
 
 
-def standing_out(left: np.ndarray) -> np.ndarray:
+def standing_out(left: np.ndarray, faint: bool = False) -> np.ndarray:
     """(T,) what a model leaves, (T,) in standard deviations of the noise, 0 in place of all but spikes."""
+    least, beside, smooth = (FAINT, FAINT_BESIDE, FAINT_SMOOTH) if faint else (SPIKE_SIGMAS, BESIDE, SMOOTH)
     size = np.abs(left)
-    around = np.pad(size, BESIDE)
-    near = [around[k : k + len(size)] for k in range(2 * BESIDE + 1) if k != BESIDE]
-    return np.where((size > SPIKE_SIGMAS) & (np.max(near, axis=0) < SMOOTH * size), left, 0.0)
+    around = np.pad(size, beside)
+    near = [around[k : k + len(size)] for k in range(2 * beside + 1) if k != beside]
+    return np.where((size > least) & (np.max(near, axis=0) < smooth * size), left, 0.0)
+
+
+def single_samples(forward: Forward, fit: Fit) -> bool:
+    """Whether nothing but samples far beyond the noise is left of a fit, by the tests of its goodness."""
+    p = goodness(forward, fit).tests
+    return p["outliers"] < MISFIT and all(one >= MISFIT for name, one in p.items() if name != "outliers")
 
 
 def masked(bench: Bench, found: Strays) -> Bench:

@@ -86,7 +86,7 @@ def _tested(forward, fit):
         cells.append(Cell(data.id, forward.experiment.gauges[s].id, float(own @ own) / len(own), chi2, white))
         wide = width(_size(data, s))
         ringing = 1.0 if uneven else _oscillation(r, wide)
-        for name, p in zip(found, (chi2, white, _outliers(own), ringing), strict=True):
+        for name, p in zip(found, (chi2, white, outliers(own), ringing), strict=True):
             found[name].append(p)
     total = sum(r @ r for *_, r in left) + _scalars(forward, fit)
     size = sum(forward.experiment.size(k) for k in range(len(forward.experiment.runs)))
@@ -183,7 +183,7 @@ def _whiteness(r):
     return tails.chi_squared(ratio, lags - 1)
 
 
-def _outliers(r):
+def outliers(r):
     """p of the largest sample and of the number of large ones."""
     largest = -np.expm1(len(r) * np.log1p(-2.0 * tails.normal(np.abs(r).max())))
     expected = len(r) * 2.0 * tails.normal(_FAR)
