@@ -21,8 +21,9 @@ NOISE = np.random.default_rng(np.random.SeedSequence(11)).normal(size=400)
 def test_a_single_sample_stands_out_of_noise_and_a_smooth_misfit_does_not():
     left = NOISE.copy()
     left[100], left[250], left[251] = 9.0, -30.0, -29.0
+    left[150], left[152] = 14.0, 15.0
     left[300:320] += 40.0 * np.hanning(20)
-    assert np.flatnonzero(strays.standing_out(left)).tolist() == [100]
+    assert np.flatnonzero(strays.standing_out(left)).tolist() == [100, 150, 152]
     assert not strays.standing_out(NOISE).any()
 
 

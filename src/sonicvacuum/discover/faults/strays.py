@@ -17,12 +17,12 @@ from sonicvacuum.discover.model.masks import SPIKE_SIGMAS
 from sonicvacuum.discover.policy import MISFIT
 from sonicvacuum.discover.search.unknown import raw
 
-# What a wrong model leaves is as smooth as its pulses: of so many samples on either side none is off by such
-# a share of a spike.
-BESIDE, SMOOTH = 2, 0.4
-# Where nothing but single samples is left, those count from so many standard deviations on, alone on both
-# sides: what smooth misfits leave is never one sample, and the test that has failed counts these.
-FAINT, FAINT_BESIDE, FAINT_SMOOTH = 4.0, 1, 0.6
+# What a wrong model leaves is as smooth as its pulses: neither neighbour of a spike, nor both of the samples
+# beyond them, are off by such a share of it.
+SMOOTH = 0.4
+# Where nothing but single samples is left, those count from so many standard deviations on, larger than
+# both neighbours: what smooth misfits leave is never one sample, and the test that has failed counts these.
+FAINT, FAINT_SMOOTH = 4.0, 0.6
 # p of the outliers of a trace below which its own tails are heavy.
 HEAVY = 0.05
 # (run id, gauge id) → (T,) what a model leaves, in standard deviations of the noise, 0 but for spikes.
@@ -46,12 +46,17 @@ def strays(forward: Forward, fit: Fit, faint: bool = False) -> Strays:
 
 
 def standing_out(left: np.ndarray, faint: bool = False) -> np.ndarray:
-    """(T,) what a model leaves, (T,) in standard deviations of the noise, 0 in place of all but spikes."""
-    least, beside, smooth = (FAINT, FAINT_BESIDE, FAINT_SMOOTH) if faint else (SPIKE_SIGMAS, BESIDE, SMOOTH)
+    """(T,) what a model leaves, (T,) in standard deviations of the noise, 0 in place of all but spikes.
+
+    Two spikes with a sample between them are told as well: one side of each is as small as it should be.
+    """
+    least, smooth = (FAINT, FAINT_SMOOTH) if faint else (SPIKE_SIGMAS, SMOOTH)
     size = np.abs(left)
-    around = np.pad(size, beside)
-    near = [around[k : k + len(size)] for k in range(2 * beside + 1) if k != beside]
-    return np.where((size > least) & (np.max(near, axis=0) < smooth * size), left, 0.0)
+    around = np.pad(size, 2)
+    near = np.maximum(around[1:-3], around[3:-1])
+    if not faint:
+        near = np.maximum(near, np.minimum(around[:-4], around[4:]))
+    return np.where((size > least) & (near < smooth * size), left, 0.0)
 
 
 def single_samples(forward: Forward, fit: Fit) -> bool:
