@@ -8,11 +8,12 @@ import pytest
 from made_chains import STEEL, STRIKER, record
 from made_verdicts import verdict
 
+from sonicvacuum.discover import given
 from sonicvacuum.discover.law import Law, Near
 from sonicvacuum.discover.verdict import write_json
 from sonicvacuum.figures import discovery
 from sonicvacuum.records.described import chain_of
-from sonicvacuum.report import plots, rows
+from sonicvacuum.report import origin, plots, rows
 from sonicvacuum.report.record import write_page
 from sonicvacuum.report.sketch import MOST, sketch
 
