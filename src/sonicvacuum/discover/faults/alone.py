@@ -12,10 +12,14 @@ from sonicvacuum.discover.faults import policy
 from sonicvacuum.discover.faults.judged import Judged, Model, excess, scatter
 from sonicvacuum.discover.fit.enough import data
 from sonicvacuum.discover.fit.evidence import Candidate
+from sonicvacuum.discover.fit.refit import Fit, fit
+from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.search import directions, screen, singles
 
 # Effects that explain most of the record as it is: which of them leaves noise beside a slip is asked.
 LEADING = 4
+# Steps after which it shows whether one of these comes nearer to the data beside a slip.
+STEPS = 6
 
 
 def alone(model: Model, only: Set[str] = frozenset()) -> tuple[list[Candidate], int]:
@@ -74,12 +78,23 @@ class Kept:
         # What explains the record as it is says little of what acts beside a slip that explains most of it.
         most = slips[:1] if slips and slips[0].gain > policy.MOSTLY * excess(model) else []
         fitting = self._leaving_noise(most, frozenset(), size)
-        fitting += self._leaving_noise(slips[len(most) :], leading, size)
+        fitting += self._leaving_noise(self._promising(slips[len(most) :], found), leading, size)
         if not fitting and left > policy.GROSS * size:
             buried = left > policy.BURIED * size
             rest = [j for j in wholes(behind) if buried or j.slip.shown]
-            fitting = self._leaving_noise(rest, leading, size)
+            fitting = self._leaving_noise(self._promising(rest, found), leading, size)
         return fitting[0] if len(fitting) == 1 else None
+
+    def _promising(self, slips, found):
+        """Those of some slips beside which a leading effect explains more than it does of the record as it
+        is: beside a slip that is none it explains less.
+        """
+        near = []
+        for judged in slips:
+            better, chains = nearer(judged.model.forward, [c.fit for c in found[:LEADING]])
+            self.simulations += chains
+            near += [judged] if better else []
+        return near
 
     def _leaving_noise(self, slips, leading, size):
         """Those of some slips beside which an effect leaves no more than noise: a leading one, or any."""
@@ -93,6 +108,24 @@ class Kept:
     def at_hand(self, model: Model) -> list[Candidate] | None:
         """They, None where another model was asked for last."""
         return self._found if self._model is model else None
+
+
+def nearer(forward: Forward, fits: Iterable[Fit]) -> tuple[bool, int]:
+    """Whether one of some fits to a record comes nearer to it put right, followed there from where it stands;
+    chains that were simulated for it. One that has no meaning there, of other nuisances or at a bead that is
+    none, may.
+    """
+    before, setup = forward.chains, singles.setup_of(forward)
+    for one in fits:
+        known = all(
+            c.place is None or c.place in c.effect.candidates(setup) for c in one.hypothesis.components
+        )
+        if not known or one.nu.size != forward.layout.size:
+            return True, forward.chains - before
+        other = fit(forward, one.hypothesis, one.u[None], one.nu[None], None, 1, STEPS, finish=False)
+        if other.objective < one.objective:
+            return True, forward.chains - before
+    return False, forward.chains - before
 
 
 def wholes(slips: Iterable[Judged]) -> list[Judged]:
