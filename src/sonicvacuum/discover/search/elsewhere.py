@@ -4,7 +4,7 @@ leaves much: slopes and running integrals may have led to another minimum.
 
 import numpy as np
 
-from sonicvacuum.discover.fit import wide
+from sonicvacuum.discover.fit import unequal, wide
 from sonicvacuum.discover.fit.enough import data
 from sonicvacuum.discover.fit.places import settled
 from sonicvacuum.discover.fit.refit import Fit, Starts, fit
@@ -91,6 +91,30 @@ def rugged(forward, null, scores, found, effects, setup):
 
     bent = [e for e in effects if e.places is None and bends(e)]
     return _better(found, abreast.each(forward, closely, bent, "effects that bend"))
+
+
+def past_minima(forward, null, found):
+    """The same with the leading effect followed past the nearest of many minima, where beads that differ part
+    and meet again, and it explains nearly all but leaves more than noise; all others from where its nuisances
+    are then.
+    """
+    noise, (excess, rest) = wide.noise(forward), left(forward, null, found)
+    leading = max(found, key=lambda c: c.gain, default=None)
+    if leading is None or leading.fit.objective <= noise or rest > MISSED * excess:
+        return found
+    lowest = unequal.lower(forward, leading.fit, noise)
+    if lowest is leading.fit:
+        return found
+
+    def beside(branch, c):
+        one = lowest
+        if c is not leading:
+            one = fit(branch, c.fit.hypothesis, c.fit.u, lowest.nu, iterations=ITERATIONS)
+        if not one.objective < c.fit.objective:
+            return c
+        return restart.alone(null, one, c, ("bound",) * bool(one.at_bound().any()))
+
+    return abreast.each(forward, beside, found, "past the nearest minima")
 
 
 def _better(found, more):

@@ -78,6 +78,7 @@ def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
         found = elsewhere.once_more(forward, null, found, setup)
         found = elsewhere.all_over(forward, null, scores, found, left, setup)
         found = elsewhere.rugged(forward, null, scores, found, left, setup)
+        found = elsewhere.past_minima(forward, null, found)
         return ranked(found, forward.experiment.prior_odds)
     found: list[Candidate] = []
     best_gain, err, odd = largest, ERR, bool(strayed(forward, null))
@@ -110,7 +111,9 @@ def fit_all(forward: Forward, null: Fit, scores: Screen) -> list[Candidate]:
         else:
             break
     found = elsewhere.all_over(forward, null, scores, [c for c in found if c is not None], left, setup)
-    found = elsewhere.rugged(forward, null, scores, found, effects, setup) if traced else found
+    if traced:
+        found = elsewhere.rugged(forward, null, scores, found, effects, setup)
+        found = elsewhere.past_minima(forward, null, found)
     return ranked(found, forward.experiment.prior_odds)
 
 
