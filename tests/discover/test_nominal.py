@@ -23,6 +23,7 @@ MUCH = 3.0 * np.sqrt(2.0 * SIZE)
 class Fitted:
     objective: float
     elsewhere: object = None
+    settled: bool = True
 
 
 @pytest.mark.parametrize(
