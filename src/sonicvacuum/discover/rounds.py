@@ -1,7 +1,7 @@
 """The order of the steps: nominal model, screen, singles, what is left, pairs, more effects, decision."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -9,7 +9,7 @@ from sonicvacuum import stages
 from sonicvacuum.discover import policy
 from sonicvacuum.discover.fit import bounds, discrepancy, enough, evidence, places, smooth, wide
 from sonicvacuum.discover.fit.evidence import Candidate, Combination
-from sonicvacuum.discover.fit.refit import Fit, fit, polish
+from sonicvacuum.discover.fit.refit import Fit, finely, fit, polish
 from sonicvacuum.discover.judge import explanations, gross
 from sonicvacuum.discover.judge.decided import Decision, View
 from sonicvacuum.discover.judge.decision import Case
@@ -134,7 +134,9 @@ def investigate(
     rivals = decision.rivals
     if rivals is None:
         rivals = of_odds(odds, null, found, decision.combinations)
-    given = {**vars(decision), "reasons": reasons, "rivals": rivals}
+    final = finely(forward, decision.final)
+    rivals = [replace(r, fit=final) if r.fit is decision.final else r for r in rivals]
+    given = {**vars(decision), "final": final, "reasons": reasons, "rivals": rivals}
     for own in ("beside", "left", "singles", "smooth_only"):
         del given[own]
     return Investigation(forward, null, scores, threshold, found, odds, alike=alike, **given)

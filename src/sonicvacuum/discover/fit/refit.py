@@ -9,6 +9,7 @@ import numpy as np
 from sonicvacuum.discover.fit import broad, strides
 from sonicvacuum.discover.fit.descent import SETTLED, descend, differences
 from sonicvacuum.discover.fit.normal import Normal, linearised
+from sonicvacuum.discover.model import accuracy
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Hypothesis
 
@@ -183,6 +184,18 @@ def finished(forward: Forward, one: Fit) -> Fit:
     if one.finished:
         return one
     return replace(one, normal=_finished(forward, one.hypothesis, one.normal), finished=True)
+
+
+def finely(forward: Forward, one: Fit) -> Fit:
+    """The same fit with the last steps taken by, and errors of, slopes over shorter steps, where data bend
+    within the usual ones; as it is elsewhere, and without any effect.
+    """
+    if not one.hypothesis.components or not accuracy.bent(forward.experiment):
+        return one
+    fine = forward.finely()
+    better = finished(fine, replace(one, finished=False))
+    forward.simulations += fine.chains
+    return better
 
 
 def _finished(forward, hypothesis, now):

@@ -16,6 +16,11 @@ from sonicvacuum.physics.scales import passage_of
 # Largest steps of speed and modulus for finite differences, relative; smaller where the data are precise, so
 # that all data together change by about this many standard errors, and collinear columns come out collinear.
 LARGEST_STEP, STEP_AIM = 3e-3, 10.0
+# What traces show bends within such a step where contacts part and meet for many reflections: in four
+# crossings the error of a preload came out as an eighth of what it is. Slopes that errors follow from are
+# taken over so many times shorter steps there. Fits go by the longer ones, which lead past minima that lie
+# near.
+FINER = 10.0
 # Error of a simulation at full accuracy as a share of the data's norm, and what is allowed of it, in standard
 # errors over all data together; it grows as the fourth power of the step. Below LONGEST coated chains with
 # any law, and contacts that forget ten times the elastic force in 0.3 us, err by some 1e-4 of a gauge's peak;
@@ -38,6 +43,19 @@ def difference(norm: float) -> float:
     return float(np.clip(STEP_AIM / max(norm, 1e-9), 1e-5, LARGEST_STEP))
 
 
+def bent(experiment) -> bool:
+    """Whether data may bend within the usual steps: traces that last for reflections. Numbers that are read
+    off traces would jump over shorter ones; where beads are of several kinds no step is short enough.
+    """
+    one_kind = all(len(batch.chain.bodies.kinds) == 1 for batch in experiment.batches)
+    return one_kind and not any(run.scalars for run in experiment.runs) and reflected(experiment)
+
+
+def reflected(experiment) -> bool:
+    """Whether some traces last for reflections, see `lasting`."""
+    return any(lasting(batch.chain, _recorded(experiment, batch)) for batch in experiment.batches)
+
+
 def refinement(norm: float, leading: bool = False) -> float:
     """By what the stepper's full accuracy is refined: below 1, as far as noise leaves it unseen; less still
     where predictions are only `leading` to where others begin.
@@ -51,7 +69,7 @@ def cut(forward) -> float:
     its nominal chains is tolerated.
     """
     experiment, least = forward.experiment, refinement(forward.norm)
-    if not any(lasting(batch.chain, _recorded(experiment, batch)) for batch in experiment.batches):
+    if not reflected(experiment):
         return 1.0
     refine, seen = least, _nominal(forward, least)
     while refine < SHORTEST:

@@ -52,6 +52,7 @@ class Forward:
         self._alike: dict[tuple, list[list[int]]] = {}
         self.calls, self.seconds = 0, 0.0
         self._cut = cut
+        self._finer = 1.0
 
     def of(self, experiment: Experiment) -> "Forward":
         """A predictor of other data of much the same chains, whose steps need not be held against shorter
@@ -68,6 +69,12 @@ class Forward:
         other.simulations, other.calls, other.seconds = 0, 0, 0.0
         other.strengths, other.memory = dict(self.strengths), self.memory.copy()
         other._coarse = self._coarse.branch(beside) if self._coarse else None
+        return other
+
+    def finely(self) -> "Forward":
+        """The same predictor with slopes over shorter steps, see `accuracy.FINER`."""
+        other = self.of(self.experiment)
+        other._finer = accuracy.FINER
         return other
 
     def learned(self, branch: "Forward") -> Learned:
@@ -206,7 +213,7 @@ class Forward:
         if steps is None:
             steps = np.broadcast_to([c.step for c in hypothesis.coordinates], u.shape)
         orders = (1.0, 2.0) if precise else (1.0,)
-        h = accuracy.difference(self.norm)
+        h, steps = accuracy.difference(self.norm) / self._finer, steps / self._finer
         where = () if held else self.slopes.simulated
         many_u, many_nu, sets = differences.displaced(hypothesis, u, nu, steps, orders, where, h)
         many_places = None if places is None else np.repeat(places, sets, axis=0)

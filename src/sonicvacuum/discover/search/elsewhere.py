@@ -9,6 +9,7 @@ from sonicvacuum.discover.fit.enough import data
 from sonicvacuum.discover.fit.places import settled
 from sonicvacuum.discover.fit.refit import Fit, Starts, fit
 from sonicvacuum.discover.model import abreast
+from sonicvacuum.discover.model.accuracy import bent
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, of_one_strength, variants
 from sonicvacuum.discover.search import restart, secants
 from sonicvacuum.discover.search.candidates import COARSE, ITERATIONS, NONLINEAR, Effort, bends, candidate
@@ -22,7 +23,7 @@ GAINS, LEAVES, PROMISING = 50.0, 0.5, 0.3
 MISSED, TRIALS = 0.05, 12
 # Where more than this is left, in standard deviations of what noise leaves, effects whose slopes bend are
 # followed from all over their range: four times as many for the first steps as to the end.
-RUGGED, RUGGED_STEPS, RUGGED_KEPT = 1.5, 3, 8
+RUGGED, RUGGED_STEPS, RUGGED_KEPT = 1.5, 3, 24
 
 
 def once_more(forward, null, found, setup):
@@ -73,10 +74,12 @@ def all_over(forward, null, scores, found, effects, setup):
 
 def rugged(forward, null, scores, found, effects, setup):
     """The same with effects whose slopes bend followed from all over their range, beside nuisances as stated,
-    where all that was found leaves more than noise: beads that meet once more move otherwise at a little more
-    of it, so that minima are narrow, and nuisances that do the work of an effect lead to none of them.
+    where all that was found leaves more than noise, or one of them leads: beads that meet once more move
+    otherwise at a little more of it, so that minima are narrow, and nuisances that do the work of an effect
+    lead to none of them.
     """
-    if left(forward, null, found)[1] < RUGGED * np.sqrt(2.0 * data(forward)):
+    explained = left(forward, null, found)[1] < RUGGED * np.sqrt(2.0 * data(forward))
+    if explained and not (bent(forward.experiment) and _leading_bends(found)):
         return found
     effort = Effort(True, ITERATIONS, halved=RUGGED_STEPS, keep=RUGGED_KEPT)
 
@@ -89,8 +92,13 @@ def rugged(forward, null, scores, found, effects, setup):
             near.append((free, Starts(*(np.array(x) for x in zip(*rows, strict=True)))))
         return candidate(branch, null, scores, effect, effort, near)
 
-    bent = [e for e in effects if e.places is None and bends(e)]
-    return _better(found, abreast.each(forward, closely, bent, "effects that bend"))
+    asked = [e for e in effects if e.places is None and bends(e)]
+    return _better(found, abreast.each(forward, closely, asked, "effects that bend"))
+
+
+def _leading_bends(found):
+    leading = max(found, key=lambda c: c.gain, default=None)
+    return leading is not None and bends(leading.fit.hypothesis.components[0].effect)
 
 
 def past_minima(forward, null, found):
