@@ -38,7 +38,7 @@ def slip(fault, leaves, width=0.0, of_values=False, gain=100.0):
 @pytest.fixture
 def all_near(monkeypatch):
     """Beside any slip a leading effect explains more."""
-    monkeypatch.setattr(alone, "nearer", lambda forward, fits: (True, 0))
+    monkeypatch.setattr(alone, "nearer", lambda before, forward, fits: (True, 0))
 
 
 @pytest.mark.usefixtures("all_near")
@@ -111,7 +111,7 @@ def test_slips_beside_which_leading_effects_explain_less_are_passed_over(monkeyp
         [slip("gauges-swapped", NOISE), slip("bead-count", NOISE)],
     )
     far = [j.model.forward for j in (*ranked, behind[1])]
-    monkeypatch.setattr(alone, "nearer", lambda forward, fits: (forward not in far, 3))
+    monkeypatch.setattr(alone, "nearer", lambda before, forward, fits: (forward not in far, 3))
     kept, as_is = alone.Kept(), model(9.0 * SIZE)
     assert kept.explained(ranked, as_is, behind) is behind[0]
     assert asked == [as_is, behind[0].model]
@@ -136,9 +136,9 @@ def test_an_effect_comes_nearer_beside_a_slip_that_was_made():
         put[name] = Forward(experiment(one))
         start = np.zeros((1, put[name].layout.size))
         fits[name] = fit(put[name], law, np.zeros((1, 1)), start)
-    assert alone.nearer(put["right"], [fits["crossed"]])[0]
-    assert not alone.nearer(put["crossed"], [fits["right"]])[0]
-    assert not alone.nearer(put["wall"], [fits["right"]])[0]
+    assert alone.nearer(put["crossed"], put["right"], [fits["crossed"]])[0]
+    assert not alone.nearer(put["right"], put["crossed"], [fits["right"]])[0]
+    assert not alone.nearer(put["right"], put["wall"], [fits["right"]])[0]
 
 
 @pytest.mark.usefixtures("all_near")

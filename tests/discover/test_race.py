@@ -95,7 +95,7 @@ def test_what_slopes_did_not_foresee_asks_the_others_too(monkeypatch, gained, pl
     def candidate(branch, null, scores, effect, effort):
         asked.append(effect.id)
         component = SimpleNamespace(effect=SimpleNamespace(places=place))
-        fit = SimpleNamespace(hypothesis=SimpleNamespace(components=[component]))
+        fit = SimpleNamespace(hypothesis=SimpleNamespace(components=[component]), objective=1000.0 - gained)
         return SimpleNamespace(effect=effect.id, gain=gained, fit=fit)
 
     catalogue = SimpleNamespace(candidates=lambda setup, excluded: [CATALOGUE.effect(n) for n in names])
@@ -110,6 +110,8 @@ def test_what_slopes_did_not_foresee_asks_the_others_too(monkeypatch, gained, pl
     monkeypatch.setattr(singles, "candidate", candidate)
     monkeypatch.setattr(singles, "ranked", lambda found, odds: found)
     monkeypatch.setattr(elsewhere, "data", lambda forward: 900)
+    monkeypatch.setattr(elsewhere, "bent", lambda experiment: False)
+    monkeypatch.setattr(elsewhere.wide, "noise", lambda forward: 1000.0)
     scores = SimpleNamespace(
         best=lambda: {name: k for k, name in enumerate(names)},
         z=np.sqrt(list(promised.values())),

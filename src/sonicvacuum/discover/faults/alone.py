@@ -8,6 +8,8 @@ import math
 from collections.abc import Iterable, Sequence, Set
 from dataclasses import replace
 
+import numpy as np
+
 from sonicvacuum.discover.faults import policy
 from sonicvacuum.discover.faults.judged import Judged, Model, excess, scatter
 from sonicvacuum.discover.fit.enough import data
@@ -78,20 +80,22 @@ class Kept:
         # What explains the record as it is says little of what acts beside a slip that explains most of it.
         most = slips[:1] if slips and slips[0].gain > policy.MOSTLY * excess(model) else []
         fitting = self._leaving_noise(most, frozenset(), size)
-        fitting += self._leaving_noise(self._promising(slips[len(most) :], found), leading, size)
+        fitting += self._leaving_noise(
+            self._promising(slips[len(most) :], found, model.forward), leading, size
+        )
         if not fitting and left > policy.GROSS * size:
             buried = left > policy.BURIED * size
             rest = [j for j in wholes(behind) if buried or j.slip.shown]
-            fitting = self._leaving_noise(self._promising(rest, found), leading, size)
+            fitting = self._leaving_noise(self._promising(rest, found, model.forward), leading, size)
         return fitting[0] if len(fitting) == 1 else None
 
-    def _promising(self, slips, found):
+    def _promising(self, slips, found, before):
         """Those of some slips beside which a leading effect explains more than it does of the record as it
         is: beside a slip that is none it explains less.
         """
         near = []
         for judged in slips:
-            better, chains = nearer(judged.model.forward, [c.fit for c in found[:LEADING]])
+            better, chains = nearer(before, judged.model.forward, [c.fit for c in found[:LEADING]])
             self.simulations += chains
             near += [judged] if better else []
         return near
@@ -110,22 +114,27 @@ class Kept:
         return self._found if self._model is model else None
 
 
-def nearer(forward: Forward, fits: Iterable[Fit]) -> tuple[bool, int]:
-    """Whether one of some fits to a record comes nearer to it put right, followed there from where it stands;
-    chains that were simulated for it. One that has no meaning there, of other nuisances or at a bead that is
-    none, may.
+def nearer(before: Forward, forward: Forward, fits: Iterable[Fit]) -> tuple[bool, int]:
+    """Whether one of some fits to a record comes nearer to it put right, followed there from where it stands,
+    and from nuisances as stated; chains that were simulated for it. One that has no meaning there, of other
+    nuisances or at a bead that is none, may.
     """
-    before, setup = forward.chains, singles.setup_of(forward)
+    chains, setup = forward.chains, singles.setup_of(forward)
     for one in fits:
         known = all(
             c.place is None or c.place in c.effect.candidates(setup) for c in one.hypothesis.components
         )
         if not known or one.nu.size != forward.layout.size:
-            return True, forward.chains - before
-        other = fit(forward, one.hypothesis, one.u[None], one.nu[None], None, 1, STEPS, finish=False)
+            return True, forward.chains - chains
+        # A slip may be that something is known far less: nuisances stand in units of their errors.
+        errors, own = before.nuisance_sigma, forward.nuisance_sigma
+        nu = np.divide(one.nu * errors, own, out=np.zeros_like(own), where=own > 0.0)
+        starts = np.stack([nu, 0.0 * nu])
+        u = np.repeat(one.u[None], 2, axis=0)
+        other = fit(forward, one.hypothesis, u, starts, None, 2, STEPS, finish=False)
         if other.objective < one.objective:
-            return True, forward.chains - before
-    return False, forward.chains - before
+            return True, forward.chains - chains
+    return False, forward.chains - chains
 
 
 def wholes(slips: Iterable[Judged]) -> list[Judged]:
