@@ -75,11 +75,8 @@ def exchanged_gauges(record: Record, predicted: Readings) -> list[Slip]:
     for run, one, two in (at for at, backward in ahead.items() if backward):
         others = [backward for (r, *pair), backward in ahead.items() if r != run and pair == [one, two]]
         if others and not any(others):
-            change, value = (
-                partial(ignoring, changes.gauges_swapped_in, run, one, two),
-                partial(constant, None),
-            )
-            where = run, (one, two), len(ahead)
+            change = partial(ignoring, changes.gauges_swapped_in, run, one, two)
+            where, value = (run, (one, two), len(ahead)), partial(constant, None)
             found.append(Slip("gauges-swapped", change, *where, value=value, shown=True))
     return found
 

@@ -96,8 +96,13 @@ def rugged(forward, null, scores, found, effects, setup):
     return _better(found, abreast.each(forward, closely, asked, "effects that bend"))
 
 
+def _leading(found):
+    """The effect that gains most, None where nothing was found."""
+    return max(found, key=lambda c: c.gain, default=None)
+
+
 def _leading_bends(found):
-    leading = max(found, key=lambda c: c.gain, default=None)
+    leading = _leading(found)
     return leading is not None and bends(leading.fit.hypothesis.components[0].effect)
 
 
@@ -107,7 +112,7 @@ def past_minima(forward, null, found):
     are then.
     """
     noise, (excess, rest) = wide.noise(forward), left(forward, null, found)
-    leading = max(found, key=lambda c: c.gain, default=None)
+    leading = _leading(found)
     if leading is None or leading.fit.objective <= noise or rest > MISSED * excess:
         return found
     lowest = unequal.lower(forward, leading.fit, noise)
