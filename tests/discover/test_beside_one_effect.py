@@ -169,7 +169,7 @@ def test_a_slip_is_asked_for_beside_the_effect_that_explains_nearly_all(leaves, 
     as_is = Model(None, model(0.0).forward, SimpleNamespace(objective=101.0 * SIZE))
     search = object.__new__(competition.Search)
     search.behind, search._alone = ["kept"], SimpleNamespace(beside=lambda m: best(leaves))
-    search.ranked = lambda m, afar: beside if m.fit.objective == leaves and afar else []
+    search.ranked = lambda m, afar, least: beside if m.fit.objective == leaves and afar else []
     found = search._beside_the_leading(as_is)
     assert (found and found.slip.fault) == chosen
     assert search.behind == ["kept"]

@@ -14,7 +14,7 @@ from sonicvacuum.discover.faults import policy
 from sonicvacuum.discover.faults.judged import Judged, Model, excess, scatter
 from sonicvacuum.discover.fit.enough import data
 from sonicvacuum.discover.fit.evidence import Candidate
-from sonicvacuum.discover.fit.refit import Fit, fit
+from sonicvacuum.discover.fit.refit import Fit, finished, fit
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.search import directions, screen, singles
 
@@ -36,7 +36,8 @@ def alone(model: Model, only: Set[str] = frozenset()) -> tuple[list[Candidate], 
         forward = forward.of(asked)
     before = forward.chains
     known = directions.catalogue(singles.setup_of(forward), forward.experiment.excluded)
-    found = singles.fit_all(forward, model.fit, screen.screen(forward, model.fit, known))
+    one = finished(forward, model.fit)
+    found = singles.fit_all(forward, one, screen.screen(forward, one, known))
     return found, forward.chains - before
 
 

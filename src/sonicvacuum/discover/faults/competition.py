@@ -40,6 +40,7 @@ from sonicvacuum.discover.faults.weights import (
     alias,
     as_likely,
     hollow,
+    least_gain,
     odds_of,
     part_without,
     parts,
@@ -163,7 +164,7 @@ class Search(Searching):
         if not ranked and set(found.named) - {explanations.UNKNOWN}:
             ranked = self.as_small(model, found) if traced else []
         elif ranked and traced and any(self._like_slips(found, name) for name in found.named):
-            ranked = self.ranked(model, afar=True)
+            ranked = self.ranked(model, afar=True, least=least_gain(found, found.null))
         for _ in range(policy.MOST):
             better = self._instead(found, ranked)
             if better is None:
@@ -216,8 +217,8 @@ class Search(Searching):
         left = min((one.objective for one in best), default=math.inf) - size
         if not max(policy.GROSS * size, policy.SURE_GAIN) < left < policy.NEARLY * excess(model):
             return None
-        behind = self.behind
-        beside, self.behind = self.ranked(replace(model, fit=best[0]), afar=True), behind
+        behind, most = self.behind, policy.SHARE * (left - scatter(size))
+        beside, self.behind = self.ranked(replace(model, fit=best[0]), afar=True, least=most), behind
         fitting = [j for j in beside if left - j.gain < scatter(size)]
         return fitting[0] if len(fitting) == 1 else None
 
@@ -287,10 +288,9 @@ class Search(Searching):
     def _included(self, found: Investigation, fit: Fit, weight: float) -> list[Judged]:
         """Slips beside a fit, what the fit itself gains and weighs against the nominal model included."""
         own = found.null.objective - fit.objective
-        return [
-            replace(j, gain=j.gain + own, log_bayes=j.log_bayes + weight)
-            for j in self.ranked(Model(self.bench, found.forward, fit), afar=True)
-        ]
+        beside, least = Model(self.bench, found.forward, fit), least_gain(found, fit)
+        ranked = self.ranked(beside, afar=True, least=least)
+        return [replace(j, gain=j.gain + own, log_bayes=j.log_bayes + weight) for j in ranked]
 
     def weighed(self, found, rivals, left):
         """The investigation of the record with the best rival put right, None where that is no better."""

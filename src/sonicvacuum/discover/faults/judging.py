@@ -7,12 +7,14 @@ from functools import cached_property
 
 import numpy as np
 
+from sonicvacuum.discover.faults import policy
 from sonicvacuum.discover.faults.found import Bench
-from sonicvacuum.discover.faults.judged import Judged, Model, noise_volume, occam
+from sonicvacuum.discover.faults.judged import Judged, Model, excess, noise_volume, occam
 from sonicvacuum.discover.faults.slips import Slip
 from sonicvacuum.discover.faults.table import FAULTS
 from sonicvacuum.discover.fit.enough import data
-from sonicvacuum.discover.fit.refit import Fit, fit
+from sonicvacuum.discover.fit.refit import Fit, finished, fit
+from sonicvacuum.discover.fit.worth import PATIENCE
 from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.experiment import Experiment
 from sonicvacuum.discover.model.forward import Forward
@@ -27,8 +29,6 @@ STEPS, LAST = 6, 0.3
 ROUGH = 1e-3
 # A step by slopes is made longer by no more than this.
 FARTHER = 8.0
-# Tries of a search for a size without slopes, and how near it comes, in prior widths.
-TRIES, ROUGHLY = 8, 0.02
 # Calls of the predictor that a look takes, about.
 LOOK = 5
 # Farthest size from where the search starts, in prior widths; of masses, which slopes lead to from none, in
@@ -42,10 +42,18 @@ class Judge:
     Attributes:
         model: of the record as it is.
         make: record → data set; masks included.
+        least: gain that counts, where one is known: slips that do not come to it are not followed to the end.
     """
 
-    def __init__(self, model: Model, make: Callable[[Bench], Experiment], threads: int | None = None):
+    def __init__(
+        self,
+        model: Model,
+        make: Callable[[Bench], Experiment],
+        threads: int | None = None,
+        least: float | None = None,
+    ):
         self.model, self.make, self.threads = model, make, threads or model.forward.threads
+        self.least = least
         self.simulations = 0
         self._columns = None
         self._own = self._residuals(model.bench.record)
@@ -223,7 +231,9 @@ class Judge:
             gained, before = self._value(slip, model) - self._value(slip, new), (size, step)
             if gained > 0.0:
                 size, model = new_size, new
-            if gained < max(LAST, ROUGH * (model.fit.objective - data(model.forward))):
+            # A step of hardly anything is the last, and one that so many like it do not lead where it counts.
+            behind = model.fit.objective - self._reach(slip, model.forward)
+            if gained < max(LAST, ROUGH * (model.fit.objective - data(model.forward)), behind / PATIENCE):
                 break
         return self._judged(slip, size, model)
 
@@ -232,41 +242,9 @@ class Judge:
         gain = self._value(slip, self.model) - self._value(slip, model)
         return Judged(slip, size, gain, 0.5 * gain + occam(slip, size, gain), model)
 
-    def from_afar(self, judged: Judged) -> Judged:
-        """The slip where it fits best one or two prior widths to either side, if that gains more than it does
-        as looked at.
-
-        Where a striker comes off, or meets the beads once more, is no smooth matter of masses, so that no
-        slope leads across.
-        """
-        slip, best = judged.slip, judged
-        for side in (-1.0, 1.0):
-            last = None
-            for widths in (1.0, 2.0):
-                found = self._at(slip, slip.start + side * widths * slip.width, last)
-                last = found.model.fit
-                if found.gain <= best.gain:
-                    break
-                best = found
-        return best if best is judged else self._around(best)
-
-    def _at(self, slip: Slip, size: float, last: Fit | None) -> Judged:
+    def at(self, slip: Slip, size: float, last: Fit | None) -> Judged:
         """The slip at one size, fitted from the last fit as well."""
         return self._judged(slip, *self._fitted(slip, size, last, True))
-
-    def _around(self, best: Judged) -> Judged:
-        """The same where it fits best within a prior width, by a search that needs no slopes."""
-        from scipy.optimize import minimize_scalar  # takes long to load, and few records need it
-
-        slip, tried = best.slip, [best]
-
-        def loss(size):
-            tried.append(self._at(slip, float(size), max(tried, key=lambda j: j.gain).model.fit))
-            return -tried[-1].gain
-
-        near, rough = (best.size - slip.width, best.size + slip.width), ROUGHLY * slip.width
-        minimize_scalar(loss, bounds=near, method="bounded", options={"maxiter": TRIES, "xatol": rough})
-        return max(tried, key=lambda j: j.gain)
 
     def _step(self, slip):
         """Step of a slip's size from a record that is changed already; sizes add up."""
@@ -305,14 +283,27 @@ class Judge:
         one = self.model.fit
         anew = [self._nuisances(slip), 0.0 * one.nu] if afresh or not start else []
         nu = ([start.nu] if start else []) + anew
-        one = start or one
-        # What has no size is right or wrong: where it is no better than the record as it is, by how much does
-        # not matter.
-        worse = np.inf if slip.continuous else self.model.objective - noise_volume(forward.experiment)
+        one, reach = start or one, self._reach(slip, forward)
         many_u = np.repeat(one.u[None], len(nu), axis=0)
-        found = fit(forward, one.hypothesis, many_u, np.stack(nu), reach=worse)
+        found = fit(forward, one.hypothesis, many_u, np.stack(nu), finish=False, reach=reach)
+        # Last steps may gain much, but not as much as that share.
+        if found.objective < reach + policy.PART * max(excess(self.model), policy.SURE_GAIN):
+            found = finished(forward, found)
         self.simulations += forward.chains
         return size, Model(bench, forward, found)
+
+    def _reach(self, slip: Slip, forward: Forward) -> float:
+        """Objective of the record put right above which a slip is of no use, so that its fit need not end.
+
+        What has no size is right or wrong: where it is no better than the record as it is, by how much does
+        not matter. Of a size that takes away a small part of a large misfit nothing is made.
+        """
+        far, one = excess(self.model), self.model
+        if not slip.continuous:
+            return one.objective - noise_volume(forward.experiment) - (self.least or 0.0)
+        if self.least is not None:
+            return one.fit.objective - self.least
+        return one.fit.objective - policy.PART * far if far > policy.SURE_GAIN else np.inf
 
 
 def _numbers(run: RunBlock) -> tuple[np.ndarray, np.ndarray]:

@@ -81,6 +81,12 @@ SUSPICIOUS = 3.0
 LIKELIER = 0.5
 # Share of what another slip has to explain that suffices for a run that is far off.
 ALONE = 0.4
+# A slip with a size that takes away less than this share of a misfit of `SURE_GAIN` or more is not followed
+# to its end: less than (1 - LEFT) ALONE of it decides nothing.
+PART = 0.25
+# Slopes foresee this share of what a small slip gains, or more: of beads a tenth too heavy, which gained 31
+# beside strained nuisances, they had foreseen 15.
+FORESEEN = 0.5
 
 
 # χ² per datum that a look at a size far off leaves where the size may be right.

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 from sonicvacuum import stages
 from sonicvacuum.discover.faults import policy, tables
+from sonicvacuum.discover.faults.afar import from_afar
 from sonicvacuum.discover.faults.exchanges import exchanged_gauges, exchanged_traces, other_order
 from sonicvacuum.discover.faults.found import Bench, Finding
 from sonicvacuum.discover.faults.gains import beside, gains_of_one, rough_gains
@@ -38,10 +39,6 @@ from sonicvacuum.discover.model.nominal import predicted, read_at, read_to_the_e
 from sonicvacuum.discover.model.problem import together
 from sonicvacuum.discover.rounds import Investigation
 from sonicvacuum.effects import Catalogue
-
-# Slopes foresee this share of what a small slip gains, or more: of beads a tenth too heavy, which gained 31
-# beside strained nuisances, they had foreseen 15.
-FORESEEN = 0.5
 
 
 def _as_well(judged: Judged, plain: Judged) -> bool:
@@ -111,9 +108,11 @@ class Ranking:
         again += rough_gains(self.findings, model)
         return [replace(s, known=True) for s in again]
 
-    def ranked(self, model: Model, afar: bool = False) -> list[Judged]:
-        """Slips that gain enough beside a model, fitted, the likeliest first; masses also `afar`."""
-        judge, record = Judge(model, self.judged), model.bench.record
+    def ranked(self, model: Model, afar: bool = False, least: float | None = None) -> list[Judged]:
+        """Slips that gain enough beside a model, fitted, the likeliest first; masses also `afar`. Those that
+        do not come to the `least` gain that counts, where it is known, are not followed to their end.
+        """
+        judge, record = Judge(model, self.judged, least=least), model.bench.record
         if not record.signals:
             return self._of_table(judge, _possible(tables.hypotheses(record, model), model))
         seen = predicted(self.make(model.bench), self.threads)
@@ -134,7 +133,7 @@ class Ranking:
         far = excess(model) > policy.SURE_GAIN
         looked = judge.look_at(slips)
         if far and afar:
-            looked = [judge.from_afar(j) if FAULTS[j.slip.fault].curved else j for j in looked]
+            looked = [from_afar(judge, j) if FAULTS[j.slip.fault].curved else j for j in looked]
         looked.sort(key=lambda j: -j.log_odds)
         worth = [j for j in looked if j.gain > policy.LEAST_GAIN][: policy.FOLLOWED]
         # Where a run is far off, or all of them, its size is known roughly at first: too roughly for a look.
@@ -187,7 +186,7 @@ class Ranking:
         """
         judge, own = Judge(model, self.judged), found.null.objective - found.final.objective
         looked = judge.look_at([s for s in hypotheses(model.bench.record) if s.continuous])
-        near = [j for j in looked if j.gain > FORESEEN * own - ALIKE]
+        near = [j for j in looked if j.gain > policy.FORESEEN * own - ALIKE]
         followed = judge.follow_all(sorted(near, key=lambda j: -j.log_odds)[: policy.FOLLOWED])
         self.simulations += judge.simulations
         kept = [j for j in followed if j.gain > own - ALIKE and j.log_odds > 0.0]

@@ -107,3 +107,13 @@ def parts(rivals: Sequence[Judged], like: Judged | None) -> np.ndarray:
     odds = np.array([j.log_odds for j in rivals] + ([like.log_odds] if like else []))
     weights = np.exp(odds - odds.max())
     return weights / weights.sum()
+
+
+def least_gain(found: Investigation, fit: Fit) -> float | None:
+    """What a slip has to gain beside a fit to be weighed against the effects that were found; None where
+    these leave more than noise, or there are none.
+    """
+    if unexplained(found) or found.final is found.null:
+        return None
+    own, here = (found.null.objective - one.objective for one in (found.final, fit))
+    return max(policy.SHARE * own - here - 2.0 * ALIKE, 0.0)
