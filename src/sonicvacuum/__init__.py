@@ -11,6 +11,7 @@ SI units throughout, except where a key carries its unit in its name. What a mod
     import sonicvacuum as sv
     found = sv.discover(sv.read("my-record"))
     print(found.verdict.named, found.verdict.probabilities)
+    sv.write_verdict(found, "found")  # verdict.json, model.json, tables, pictures and page
 
 The signals of Fig. 3(a) of that paper, gauge by gauge in N, over `seen.time` in s:
 
@@ -46,7 +47,7 @@ from typing import TYPE_CHECKING, Any
 __version__ = "0.1.0"
 
 if TYPE_CHECKING:
-    from sonicvacuum.api import catalogue, compare, read, read_case, simulate
+    from sonicvacuum.api import catalogue, compare, read, read_case, simulate, write_verdict
     from sonicvacuum.builders import bead, case, chain, gauge, striker
     from sonicvacuum.card import Card
     from sonicvacuum.discover.session import discover
@@ -80,6 +81,7 @@ _PUBLIC = {
     "solitary": "sonicvacuum.physics.solitary",
     "striker": "sonicvacuum.builders:striker",
     "theory": "sonicvacuum.physics.theory",
+    "write_verdict": "sonicvacuum.api:write_verdict",
 }
 
 __all__ = [
@@ -103,6 +105,7 @@ __all__ = [
     "solitary",
     "striker",
     "theory",
+    "write_verdict",
 ]
 
 

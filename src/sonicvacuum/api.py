@@ -7,10 +7,12 @@ Each is a few lines over the module that does the work. SI units throughout, exc
 unit in its name, as in `config.yaml` and `record.yaml`.
 """
 
+import pathlib
 from os import PathLike
 from typing import TYPE_CHECKING
 
 from sonicvacuum import config, plugins, simulation
+from sonicvacuum import folder as verdict_folder
 from sonicvacuum.card import Card
 from sonicvacuum.discover import compare as comparison
 from sonicvacuum.discover.compare import Comparison
@@ -18,9 +20,10 @@ from sonicvacuum.discover.extended import extended
 from sonicvacuum.discover.model.abreast import processors
 from sonicvacuum.discover.verdict import Model
 from sonicvacuum.effects import Catalogue
-from sonicvacuum.files import InputError
+from sonicvacuum.files import InputError, writing
 from sonicvacuum.records import Record, check_records
 from sonicvacuum.records import read as read_record
+from sonicvacuum.records.guard import check_out
 from sonicvacuum.simulation import Simulation
 
 if TYPE_CHECKING:
@@ -159,6 +162,40 @@ def compare(
     threads = processors(threads, "compare")
     effects = plugins.catalogue() if catalogue is None else catalogue
     return comparison.compare(_model("compare", model, effects), record, threads, effects)
+
+
+def write_verdict(result: "Result", folder: Path, figures: bool = True) -> pathlib.Path:
+    """Write what `sonicvacuum discover --out` writes: verdict.json, model.json, tables, pictures and page.
+
+    By the same code, so that `sonicvacuum page`, `compare` and `simulate --model` take the folder too. All of
+    it is written to a temporary place first and renamed, verdict.json last; files of an earlier verdict make
+    room, other files are left.
+
+    Args:
+        result: what `sv.discover` returned.
+        folder: its path; made if need be.
+        figures: pictures and `index.html` too.
+
+    Returns:
+        Path of the folder; `model.json` in it is what `sv.compare` and `sv.simulate` take.
+
+    Raises:
+        InputError: for what is no result or no path; for a folder that is that of a record, lies in one or
+            cannot be written, of which nothing is touched.
+        Exception: what pictures or page failed with; a note says that the verdict stands without them.
+    """
+    from sonicvacuum.discover.session import Result  # a Result has loaded it
+
+    if not isinstance(result, Result):
+        raise InputError(f"write_verdict: is given {result!r:.100} as a result; give what discover returned")
+    _check_path("write_verdict", folder, "the path of a folder to write")
+    check_out(folder)
+    with writing(folder):
+        error = verdict_folder.write(result, folder, figures)
+    if error is not None:
+        error.add_note(f"{folder} holds the verdict without pictures and page, which failed")
+        raise error
+    return pathlib.Path(folder)
 
 
 def _model(verb: str, given: object, effects: Catalogue) -> Model:

@@ -7,9 +7,8 @@ from types import SimpleNamespace
 import pytest
 from click.testing import CliRunner
 
-from sonicvacuum import records
+from sonicvacuum import drawn, folder, records
 from sonicvacuum.cli import discover as verb
-from sonicvacuum.cli import page
 from sonicvacuum.discover import session
 from sonicvacuum.discover import written as files
 
@@ -37,7 +36,7 @@ def found(empty, nothing, tmp_path, monkeypatch):
     return call
 
 
-def written(monkeypatch, folder, scalars, posterior, law):
+def written(monkeypatch, place, scalars, posterior, law):
     """Names of all that a verdict with these has; nothing is worked out for them."""
     names = []
     run = SimpleNamespace(scalars=scalars)
@@ -59,7 +58,7 @@ def written(monkeypatch, folder, scalars, posterior, law):
         patch.setattr(files, "surface", lambda _: None)
         for name in ("candidates", "gap_rows", "trace_rows"):
             patch.setattr(files, name, lambda _: ([], []))
-        files.write(result, folder)
+        files.write(result, place)
     return names
 
 
@@ -73,13 +72,13 @@ def test_every_file_that_only_some_verdicts_have_is_one_that_an_earlier_one_may_
         assert set(ALWAYS) <= set(names)
         some |= set(names) - set(ALWAYS)
     assert some == {"law.csv", "posterior.csv", "quantities.csv"}
-    assert some <= set(verb.sometimes())
-    assert not set(ALWAYS) & set(verb.sometimes())
+    assert some <= set(folder.sometimes())
+    assert not set(ALWAYS) & set(folder.sometimes())
 
 
 def test_nothing_of_an_earlier_verdict_stays_beside_this_one(found, tmp_path):
     (tmp_path / "found").mkdir()
-    for name in (*ALWAYS, *verb.sometimes(), "mine.txt"):
+    for name in (*ALWAYS, *folder.sometimes(), "mine.txt"):
         (tmp_path / "found" / name).write_text("of an earlier record\n")
     assert found("empty", options=["--no-figures"]).exit_code == 0
     left = {p.name for p in (tmp_path / "found").iterdir() if p.read_text() == "of an earlier record\n"}
@@ -87,8 +86,8 @@ def test_nothing_of_an_earlier_verdict_stays_beside_this_one(found, tmp_path):
 
 
 def fails(error):
-    def draw(folder, known, png=False):
-        (folder / "where.svg").write_text("<svg>")
+    def draw(place, known, png=False):
+        (place / "where.svg").write_text("<svg>")
         raise error
 
     return draw
@@ -105,7 +104,7 @@ def fails(error):
 def test_a_verdict_outlives_the_failure_of_its_pictures_and_the_exit_code_tells(
     found, tmp_path, monkeypatch, error, told
 ):
-    monkeypatch.setattr(page, "illustrate", fails(error))
+    monkeypatch.setattr(drawn, "illustrate", fails(error))
     result = found("empty")
     assert result.exit_code == 1
     assert result.stdout.startswith(f"{tmp_path / 'empty'}: none")
@@ -114,16 +113,16 @@ def test_a_verdict_outlives_the_failure_of_its_pictures_and_the_exit_code_tells(
     assert ("Traceback" in result.stderr) == isinstance(error, IndexError)  # a fault of the program is shown
     names = {path.name for path in (tmp_path / "found").iterdir()}
     assert set(ALWAYS) <= names
-    assert not names & set(page.page_files())
+    assert not names & set(drawn.page_files())
 
 
 def test_of_several_verdicts_those_without_pictures_are_counted(found, tmp_path, monkeypatch):
-    whole, errors = page.illustrate, [KeyError("run")]
+    whole, errors = drawn.illustrate, [KeyError("run")]
 
     def but_for_the_first(*given):
         return fails(errors.pop())(*given) if errors else whole(*given)
 
-    monkeypatch.setattr(page, "illustrate", but_for_the_first)
+    monkeypatch.setattr(drawn, "illustrate", but_for_the_first)
     result = found("one", "two")
     assert result.exit_code == 1
     assert result.stderr.splitlines()[-1] == "Error: 1 of 2 verdicts have no pictures, as told above"

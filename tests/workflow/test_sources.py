@@ -9,7 +9,7 @@ import pytest
 
 from sonicvacuum.cli.sources import digest, files, imported, module_of
 
-PAGES = ("sonicvacuum.cli.page",)
+PAGES = ("sonicvacuum.cli.page", "sonicvacuum.drawn")
 MODEL = ("sonicvacuum.cli.model",)
 CATALOGUE = ("sonicvacuum.effects",)
 # Verb as the rules call it → what the call never loads.

@@ -44,17 +44,24 @@ def timed(owner, name, part):
     setattr(owner, name, call)
 
 from sonicvacuum.cli import main
-from sonicvacuum.cli import page
 from sonicvacuum.discover import session
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.physics import compiled, run
+try:
+    from sonicvacuum import drawn
+except ImportError:  # of an earlier commit
+    from sonicvacuum.cli import page as drawn
+try:
+    from sonicvacuum.discover import written
+except ImportError:
+    written = session
 
 timed(run, "prepare", "prepare")
 timed(run._Batch, "run", "stepper")
 timed(Forward, "_sampled" if hasattr(Forward, "_sampled") else "sampled", "sampled")
 timed(session, "discover", "discover")
-timed(session, "write", "tables")
-timed(page, "illustrate", "pictures")
+timed(written, "write", "tables")
+timed(drawn, "illustrate", "pictures")
 sys.argv = ["sonicvacuum", "discover", record, "--out", out, "--threads", "1", "--quiet"]
 try:
     main()

@@ -52,8 +52,8 @@ wildcard_constraints:
 
 
 LOCKS = [home("requirements.lock"), home("requirements-build.lock")]
-# The verb `discover` loads this for pictures and page, which the workflow makes by the verb `page`.
-PAGES = ("sonicvacuum.cli.page",)
+# The verb `discover` loads these for pictures and page, which the workflow makes by the verb `page`.
+PAGES = ("sonicvacuum.cli.page", "sonicvacuum.drawn")
 # Verbs that take a card load this where a model is put into it.
 MODEL = ("sonicvacuum.cli.model",)
 

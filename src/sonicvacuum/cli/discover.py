@@ -186,42 +186,23 @@ def _attempt(paths, folder, own, figures, threads, limits):
 
 def _search(records, folder, known, figures, threads, limits):
     """Search records, write what is found; what is told of it."""
-    from sonicvacuum.discover import session, written
-    from sonicvacuum.outputs import renewed
+    from sonicvacuum import folder as verdicts
+    from sonicvacuum.discover import session
 
     result = session.discover(*records, threads=threads, catalogue=known, limits=limits)
-    with renewed(folder, last="verdict.json", stale=sometimes()) as fresh:
-        written.write(result, fresh)
-        undrawn = _draw(fresh, folder, known) if figures else None
-    return Found(result.notes, _sentence(result.verdict, records), undrawn)
+    error = verdicts.write(result, folder, figures)
+    return Found(result.notes, _sentence(result.verdict, records), _undrawn(folder, error))
 
 
-def sometimes() -> tuple[str, ...]:
-    """Names of the files that not every verdict has; those of an earlier one would stand beside this one."""
-    from sonicvacuum.cli.page import page_files
-    from sonicvacuum.discover import draws, quantities
-
-    return (*page_files(), draws.FILE, quantities.FILE, "law.csv")
-
-
-def _draw(fresh, folder, known):
-    """Draw the pictures and write the page of what is to stand in `folder`; the Failure where that fails.
-
-    The verdict took minutes and holds without them: then none of them is left, and all else is.
-    """
-    from sonicvacuum.cli.page import illustrate, page_files
-
-    try:
-        illustrate(fresh, known)
-    except Exception as error:
-        for name in page_files():
-            (fresh / name).unlink(missing_ok=True)
-        machine = isinstance(error, OSError | MemoryError)
-        why = f"{type(error).__name__}: {getattr(error, 'strerror', None) or error}"
-        cure = f"make them with sonicvacuum page {folder}" if machine else "please report it with the record"
-        told = f"{folder} holds the verdict without pictures and page, which failed ({why}); {cure}"
-        return Failure(told, "" if machine else traceback.format_exc())
-    return None
+def _undrawn(folder, error):
+    """The Failure of a verdict whose pictures failed with an error, to be told from where that was caught."""
+    if error is None:
+        return None
+    machine = isinstance(error, OSError | MemoryError)
+    why = f"{type(error).__name__}: {getattr(error, 'strerror', None) or error}"
+    cure = f"make them with sonicvacuum page {folder}" if machine else "please report it with the record"
+    told = f"{folder} holds the verdict without pictures and page, which failed ({why}); {cure}"
+    return Failure(told, "" if machine else "".join(traceback.format_exception(error)))
 
 
 def _tell(paths, found, quiet):

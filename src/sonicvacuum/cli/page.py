@@ -18,6 +18,7 @@ from sonicvacuum.cli.own_effects import catalogue, own_effects
 @own_effects
 def page(folders, png, own):
     """Draw the pictures of what discover wrote into FOLDERS, and write its page, index.html."""
+    from sonicvacuum import drawn
     from sonicvacuum.files import InputError, reading
     from sonicvacuum.records.guard import check_out
     from sonicvacuum.report.record import section
@@ -30,23 +31,7 @@ def page(folders, png, own):
         # What is not a discovery's folder is refused before anything is drawn.
         section(folder, known)
         with reading(folder, "run sonicvacuum discover again"):
-            illustrate(folder, known, png)
-
-
-def illustrate(folder, known, png: bool = False) -> None:
-    """Draw the pictures and write the page of one folder; the catalogue `known` holds its effects."""
-    from sonicvacuum.figures.discovery import draw
-    from sonicvacuum.report.record import write_page
-
-    draw(folder, known, png)
-    write_page(folder, known)
-
-
-def page_files() -> tuple[str, ...]:
-    """Names of the files that a page adds to the folder of discover."""
-    from sonicvacuum.report.record import PAGE
-
-    return PAGE
+            drawn.illustrate(folder, known, png)
 
 
 def slips_of(verdict, records=()) -> str:
