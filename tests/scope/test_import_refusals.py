@@ -235,6 +235,31 @@ def test_times_without_a_unit_that_cannot_be_seconds_are_refused(tmp_path):
     assert asked(tmp_path, file, "--impact-at", "5us", "--interval", "1us") == ("", True)
 
 
+@pytest.mark.parametrize("day", [45_231.4242, 43_769.4242, 738_000.4242], ids=["1900", "1904", "MATLAB"])
+def test_numbers_of_days_are_no_seconds(tmp_path, day):
+    """What a spreadsheet made of a clock was read as seconds: a pulse of 0.6 ns beyond the speed of light."""
+    file = tmp_path / "fast.csv"
+    days = [f"{day + 1000.0 * t / 86_400.0:.11f}" for t in TIMES]
+    body = "".join(f"{a},{b:.6f}\n" for a, b in zip(days, PULSE, strict=True))
+    file.write_text("Time,CH1 (V)\n" + body)
+    refusal, written = asked(tmp_path, file)
+    assert re.search(r"fast\.csv: channel CH1: No time: .*numbers of days.*0\.001 s.*--interval", refusal)
+    assert not written
+    # What tells the interval, a header or the user, is taken.
+    file.write_text("Sample Interval,1e-03 s\nTime,CH1 (V)\n" + body)
+    assert asked(tmp_path, file) == ("", True)
+    # A unit is believed, and seconds since midnight are some.
+    file.write_text("Time (s),CH1 (V)\n" + body)
+    assert asked(tmp_path, file, "--force")[0] == ""
+
+
+def test_seconds_since_midnight_are_seconds(tmp_path):
+    file = tmp_path / "fast.csv"
+    times = [f"{45_231.4242 + t:.6f}" for t in TIMES]
+    file.write_text("Time,CH1 (V)\n" + "".join(f"{a},{b:.6f}\n" for a, b in zip(times, PULSE, strict=True)))
+    assert asked(tmp_path, file) == ("", True)
+
+
 def test_times_in_ms_taken_as_seconds_are_not_told_to_be_converted(tmp_path):
     (tmp_path / "given.yaml").write_text(yaml.safe_dump(CONTENT))
     (tmp_path / "fast.csv").write_text("time,CH1 (V),CH2 (V)\n" + rows(TIMES * 1e3, PULSE, SECOND))

@@ -33,6 +33,10 @@ SECONDS = "The unit of time is not given; s assumed."
 PAIRS = "Each time stands twice, as where the least and the most are kept (envelope): export the samples."
 # Steps of missing samples that are told.
 MISSING = 5
+# Numbers of a day, as spreadsheets (from 1900 or 1904: the years 1954 to 2119) and MATLAB (1970 to 2100) have
+# them; steps of what is fast enough to show a pulse, and those that may be seconds where they are round.
+DAYS = ((20_000.0, 80_000.0), (719_529.0, 767_011.0))
+FAST, SLOW = 1e-7, 1e-5
 _FACTORS = {1.0: "s", 1e-3: "ms", 1e-6: "us", 1e-9: "ns", 1e-12: "ps"}
 
 
@@ -123,6 +127,8 @@ def from_column(
     factor, said = _factor(slope, label, declared, keys)
     if factor is None and odd:
         return _headers(keys, place, column, f"the unit of time, {odd!r}, is not known")
+    if factor is None and _are_days(begin, slope):
+        return _headers(keys, place, column, _days(begin, slope))
     factor = factor or 1.0
     interval, start, notes = tidy(slope * factor), tidy(begin * factor), [*notes, *said]
     if declared and rounded and not uneven and abs(declared / interval - 1.0) < max(FINER, 3.0 * rough):
@@ -140,6 +146,21 @@ def from_column(
     if uneven:
         return TimeBase(start, interval, (*notes, *_steps(times, factor)), times * factor)
     return TimeBase(start, interval, tuple(notes))
+
+
+def _are_days(begin, step):
+    """Whether times without a unit are numbers of days: no recorder counts 0.1 us over half a day."""
+    if not any(low < begin < high for low, high in DAYS):
+        return False
+    few = (float(f"{number:.1e}") / number for number in (step, 1.0 / step))
+    return step < FAST or (step < SLOW and all(abs(ratio - 1.0) > 1e-3 for ratio in few))
+
+
+def _days(begin, step):
+    return (
+        f"the times, without a unit, from {begin:.10g} on by {step:.4g}, look like numbers of days, as "
+        f"spreadsheets keep them (steps of {86400.0 * step:.4g} s); write seconds, as in =(A2-A$2)*86400"
+    )
 
 
 def _steps(times, factor):
