@@ -29,6 +29,15 @@ def test_units_of_a_row_belong_to_their_channels(tmp_path, lead, units):
         assert any("No unit given" in n for n in channel.notes) == (unit == "")
 
 
+@pytest.mark.parametrize("mark", ["#", "# ", "%", "% "])
+def test_units_below_names_in_a_comment(tmp_path, mark):
+    """`#s,mV` was no row of units: readings in mV stood as they are, their times in s by assumption."""
+    text = f"{mark}time,CH1\n{mark}us,mV\n" + rows(1e6 * TIMES, 1e3 * PULSE)
+    (channel,) = recording(tmp_path, text).channels
+    assert (channel.name, channel.unit, channel.interval_s, channel.notes) == ("CH1", "V", 1e-6, ())
+    assert channel.values == pytest.approx(PULSE, abs=1e-6)
+
+
 def test_units_above_columns_without_times(tmp_path):
     head = "Sample Interval,1e-06\nSource,CH1,CH2,CH3\nVertical Units,mV,V,V\nWaveform Data\n"
     found = recording(tmp_path, head + rows(1e3 * PULSE, SECOND, THIRD)).channels

@@ -33,6 +33,12 @@ def test_too_many_columns_are_refused(tmp_path):
         recording(tmp_path, row * 8)
 
 
+def test_traces_in_rows_are_refused(tmp_path):
+    lines = ["Time," + ",".join(f"{t:.7g}" for t in TIMES), "CH1," + ",".join(f"{v:.5f}" for v in PULSE)]
+    with pytest.raises(InputError, match=r"t.csv: holds \d+ columns of 2 numbers, as where each"):
+        recording(tmp_path, "\n".join(lines) + "\n")
+
+
 def test_a_loop_of_links_is_no_folder(tmp_path):
     (tmp_path / "shot.csv").write_text("Time (s),CH1 (V)\n" + rows(TIMES, PULSE))
     (tmp_path / "a").symlink_to(tmp_path / "b")

@@ -281,7 +281,9 @@ def _wide(cells, table):
 
 def _cuts(table, k):
     """The row as the samples are cut, or where it is cut by other marks than these, by those."""
-    cells, raw = table.header[k], table.raw[k].strip().lstrip("#%").strip()
+    first, *rest = table.header[k]
+    # The mark of a comment, before a word: alone it may be a name or a unit.
+    cells, raw = [re.sub(r"^[#%]+\s*(?=\w)", "", first), *rest], table.raw[k].strip().lstrip("#%").strip()
     width = table.places[-1] + 1
     blanks = table.dialect.delimiter is None
     yield cells if (len(cells) == width if blanks else len(cells) >= width) else []

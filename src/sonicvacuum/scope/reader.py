@@ -23,6 +23,8 @@ _HEAD = 20_000
 _MARK = re.compile(r"(?:^|[-_. ])((?:CH|C|F|M|R|REF|MATH)\d)(?=$|[-_. ]|Trace)", re.IGNORECASE)
 # Recorders write numbers of this size for a sample beyond the range (Agilent and others: 9.91e37).
 OVERFLOW = 9.0e36
+# More columns of fewer samples than this are rows of a table that lies on its side.
+MOST_BESIDE = 16
 
 
 def read(path) -> Recording:
@@ -51,6 +53,11 @@ def read(path) -> Recording:
         if odd:
             raise InputError(f"{path}: has times but no channel beside them: {odd}; export plain numbers")
         raise InputError(f"{path}: has times but no channel beside them; export the traces too")
+    if len(channels) > MOST_BESIDE > max(c.samples for c in channels):
+        raise InputError(
+            f"{path}: holds {len(channels)} columns of {max(c.samples for c in channels)} numbers, as where "
+            "each trace is a row; export each trace as a column"
+        )
     return Recording(path, layout.name, tuple(channels), (*said, *cut, *table.notes))
 
 
