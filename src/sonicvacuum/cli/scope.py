@@ -47,7 +47,8 @@ from sonicvacuum.files import in_one_line
 @click.option("--title", help="Title of the record.")
 @click.option("--force", is_flag=True, help="Overwrite a record that is there already.")
 def import_(files, listed, as_json, out, like, template, title, force, **given):
-    """Make a record of FILES as the recorder wrote them: text of any layout, .wfm, .trc, .isf, .tdms, .lvm.
+    """Make a record of FILES as the recorder wrote them: text of any layout, .wfm, .trc, .isf, .tdms, .lvm,
+    .mat.
 
     The pulse is found, the baseline removed, what lies far off cut away, what is sampled too finely thinned,
     the noise estimated; record.yaml says what was done and what is still to be filled in.

@@ -12,6 +12,7 @@ from sonicvacuum.scope.binary import is_binary, read_binary
 from sonicvacuum.scope.dialect import is_like_number
 from sonicvacuum.scope.labels import TIME, split_unit
 from sonicvacuum.scope.layouts import Layout, recognise
+from sonicvacuum.scope.matlab import is_matlab, read_matlab
 from sonicvacuum.scope.recording import Channel, Recording
 from sonicvacuum.scope.shots import Shot, shots
 from sonicvacuum.scope.table import split, whole
@@ -38,6 +39,8 @@ def read(path) -> Recording:
         raise InputError(f"{path}: is a folder; give the files in it, as in {path}/*.csv")
     if not path.is_file():
         raise InputError(f"{path}: no such file; give files as the recorder wrote them")
+    if is_matlab(path):
+        return read_matlab(path)
     if is_binary(path):
         return read_binary(path)
     content, encoding = text.read(path)
