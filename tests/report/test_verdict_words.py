@@ -6,9 +6,9 @@ from msgspec.structs import replace
 
 from sonicvacuum.discover.judge.strained import ONLY_WITH
 from sonicvacuum.discover.parts import CellFit, GoodnessOfFit
-from sonicvacuum.discover.verdict import Where
+from sonicvacuum.discover.verdict import Fault, Where
 from sonicvacuum.effects import CATALOGUE
-from sonicvacuum.report import bench, misfit, phrases, rows, words
+from sonicvacuum.report import bench, misfit, next_run, phrases, rows, words
 
 
 @pytest.mark.parametrize(
@@ -216,10 +216,30 @@ def test_what_may_stand_beside_or_instead_of_a_name_is_told():
     assert told == (
         "No other effect comes near: damping with constant restitution can be told from every other effect "
         "that was fitted. Beside that there may be gravity along the chain (0.12). "
-        "That it is something unknown instead has the probability 0.26."
+        "That it is something unknown instead has the probability 0.26. "
+        "That nothing is missing has the probability 0.02."
     )
     sure = words.alternatives(verdict(named=["tsuji"], probabilities={"tsuji": 0.995, "unknown": 0.005}))
     assert "instead" not in sure and "Beside" not in sure
+
+
+def test_nothing_missing_that_is_as_probable_is_told_as_a_rival():
+    """A page said that no rival comes near and that all are ruled out, beside "nothing missing" with 0.50."""
+    odds = {"none": 0.5, "striker-error": 0.5, "unknown": 0.0}
+    alone = verdict(named=["striker-error"], parameters={}, probabilities=odds, next_experiment=None)
+    told = words.alternatives(alone)
+    assert told.startswith("No other effect comes near: ")
+    assert told.endswith("That nothing is missing has the probability 0.50.")
+    assert next_run.told(alone, [{"sensor": "g1"}]) == (
+        "No proposal: these data rule out every other effect that was fitted. "
+        "Whether it is there at all, more runs of the same kind would tell."
+    )
+    slip = Fault(fault="speed-common", run=None, sensor=None, probability=0.5, value=1.1)
+    slipped = replace(alone, faults=[slip])
+    assert words.alternatives(slipped).endswith(
+        "That nothing is missing, but a slip told above was made, has the probability 0.50."
+    )
+    assert next_run.told(slipped, [{"sensor": "g1"}]).endswith("check it there, and measure again.")
 
 
 def test_one_effect_that_comes_near_is_told_as_one():

@@ -12,7 +12,7 @@ from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.records import Record
 from sonicvacuum.report.phrases import SURE, joined
 from sonicvacuum.report.tables import number
-from sonicvacuum.report.words import LEAST_TOLD, effects_of, placed, plain
+from sonicvacuum.report.words import LEAST_RIVAL, LEAST_TOLD, effects_of, placed, plain
 
 # χ² below which a run would hardly decide: three standard errors.
 _LITTLE = 9.0
@@ -55,6 +55,13 @@ def _none(verdict, traces, catalogue):
     own = set(found)
     odds = ((set(explanations.effects(name)), p) for name, p in verdict.probabilities.items())
     more = any(own < names and p >= LEAST_TOLD for names, p in odds)
+    if verdict.probabilities.get("none", 0.0) >= LEAST_RIVAL:
+        text = "No proposal: these data rule out every other effect that was fitted."
+        return text + (
+            " Whether it is that or a slip told above, the set-up tells: check it there, and measure again."
+            if verdict.faults
+            else " Whether it is there at all, more runs of the same kind would tell."
+        )
     text = "No proposal: these data rule out every other explanation that was fitted."
     named = joined([plain(name, catalogue) for name in found])
     return text + (

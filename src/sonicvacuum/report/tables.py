@@ -79,8 +79,16 @@ def with_error(value, sigma):
         return f"{value:.4g} (error not determined)"
     places = decimals(value, sigma)
     if places is None:
-        return f"{number(value)} ± {number(sigma, 2)}"
+        return _in_one_power(value, sigma)
     return f"{fixed(value, places)} ± {fixed(sigma, places)}"
+
+
+def _in_one_power(value, sigma):
+    """Both with the power of ten of the larger: 8.04e-5 ± 0.25e-5."""
+    power = math.floor(math.log10(max(abs(value), sigma)))
+    scale = 10.0**power
+    places = max(0, 1 - math.floor(math.log10(float(f"{sigma / scale:.1e}"))))
+    return f"{value / scale:.{places}f}e{power} ± {sigma / scale:.{places}f}e{power}"
 
 
 def decimals(value, sigma):

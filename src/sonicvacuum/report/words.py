@@ -246,7 +246,7 @@ def alternatives(verdict: Verdict, catalogue: Catalogue = CATALOGUE) -> str:
 
 
 def _beside(verdict, catalogue):
-    """What may hide beside what was named, and that something unknown may stand in its place."""
+    """What may hide beside what was named, and that something unknown, or nothing, may stand in its place."""
     own, parts = set(verdict.named), []
     odds = sorted(verdict.probabilities.items(), key=lambda item: -item[1])
     more = [
@@ -259,6 +259,10 @@ def _beside(verdict, catalogue):
     alone = verdict.probabilities.get("unknown", 0.0)
     if alone >= LEAST_RIVAL:
         parts.append(f"That it is something unknown instead has the probability {share(alone)}.")
+    nothing = verdict.probabilities.get("none", 0.0)
+    if nothing >= LEAST_RIVAL:
+        slip = ", but a slip told above was made," if verdict.faults else ""
+        parts.append(f"That nothing is missing{slip} has the probability {share(nothing)}.")
     return parts
 
 
