@@ -86,6 +86,23 @@ def test_nothing_is_wider_than_the_window(opened, width, scheme):
     assert dark == (scheme == "dark")
 
 
+def test_long_numbers_do_not_run_into_the_name_of_the_axis(browser, tmp_path):
+    """Volts of a gauge, −0.0005 and the like, stood on "reading (as recorded)"."""
+    places = []
+    for scale in (1.0, 1e-3):
+        folder = write(tmp_path / f"{scale}", "single")
+        lines = (folder / "traces.csv").read_text().splitlines()
+        rows = [line.split(",") for line in lines[1:]]
+        scaled = [[*r[:3], *(repr(scale * (float(v) - 0.5)) for v in r[3:6]), r[6]] for r in rows]
+        (folder / "traces.csv").write_text("\n".join([lines[0], *map(",".join, scaled)]) + "\n")
+        page = browser.new_page(viewport={"width": 1300, "height": 900})
+        page.goto(write_page(folder).as_uri())
+        page.wait_for_selector(".uplot canvas")
+        places.append(page.evaluate("parseFloat(document.querySelector('.signal .u-over').style.left)"))
+        page.close()
+    assert places[1] >= places[0] + 10.0  # "−0.0005" for "−0.5"; 12 px of type are some 7 px wide
+
+
 def told(page, name):
     """Number under the cursor, of the upper picture."""
     row = page.locator(".signal .u-series", has_text=name).locator(".u-value")

@@ -152,3 +152,11 @@ def test_a_page_of_kept_templates_is_the_same(tmp_path, monkeypatch):
     pages.append(write_page(folder).read_bytes())
     assert kept
     assert pages == 3 * [plain]
+
+
+def test_sets_of_more_than_two_are_no_pairs(tmp_path):
+    folder = write(tmp_path / "made", "pair")
+    assert ">Pair tried<" in write_page(folder).read_text(encoding="utf-8")
+    rows = (folder / "candidates.csv").read_text() + "gravity+mass-defect+tsuji,5700,1210,,gravity 1,\n"
+    (folder / "candidates.csv").write_text(rows)
+    assert ">Set tried<" in write_page(folder).read_text(encoding="utf-8")

@@ -42,12 +42,14 @@
   function chart(box, height, data, series, label, range) {
     const c = colours();
     const values = (_, ticks) => ticks.map((v) => String(v).replace("-", "−"));
+    // As wide as its longest number, so that these do not run into the name of the axis.
+    const wide = (_, ticks) => Math.max(50, 18 + 7 * Math.max(0, ...(ticks || []).map((t) => String(t).length)));
     const axis = { stroke: c.ink, values, grid: { stroke: c.line, width: 1 }, ticks: { stroke: c.line, width: 1 } };
     const options = {
       width: box.clientWidth, height, scales: { x: { time: false }, y: range ? { range } : {} },
       cursor: { sync: { key: sync.key }, drag: { x: true, y: false } },
       axes: [{ ...axis, label: "time (µs)", labelSize: 20, size: 34 },
-             { ...axis, label, labelSize: 20, size: 50, space: range ? 16 : 30 }],
+             { ...axis, label, labelSize: 20, size: wide, space: range ? 16 : 30 }],
       series: [{ label: "time (µs)", value: (_, v) => digits(v) }, ...series],
     };
     return new uPlot(options, data, box);

@@ -135,6 +135,7 @@ def _told(folder, verdict, model, tables, catalogue, records):
         "law": words.law(verdict, catalogue),
         "alternatives": words.alternatives(verdict, catalogue),
         "pairs": [r for r in candidates if "+" in r["effects"]][:_PAIRS],
+        "tried": "Set tried" if any(r["effects"].count("+") > 1 for r in candidates) else "Pair tried",
         "unfitted": words.unfitted(verdict, {key(r["effects"].split("+")) for r in candidates}, catalogue)
         or ("" if any("+" in r["effects"] for r in candidates) else "No pair of effects was tried."),
         "singles": [r for r in candidates if "+" not in r["effects"]],
