@@ -131,7 +131,7 @@ def simulate(
     """
     if not isinstance(card, Card):
         raise InputError(f"simulate: is given {card!r:.100}; give a card, as of sv.case or sv.read_case")
-    effects = plugins.catalogue() if catalogue is None else catalogue
+    effects = plugins.given(catalogue, "simulate")
     if model is not None:
         card = extended(card, _model("simulate", model, effects), None, effects)
     return simulation.simulate(card, effects, limits)
@@ -160,7 +160,7 @@ def compare(
     """
     check_records((record,), "compare")
     threads = processors(threads, "compare")
-    effects = plugins.catalogue() if catalogue is None else catalogue
+    effects = plugins.given(catalogue, "compare")
     return comparison.compare(_model("compare", model, effects), record, threads, effects)
 
 

@@ -165,6 +165,8 @@ def striker(
         [0.1, 0.2]
     """
     if ball is not None:
+        if not isinstance(ball, BeadBlock):
+            raise InputError(f"striker: ball: is {ball!r:.100}; give what sv.bead returns, or material=…")
         material = material or ball.material
         mass_g = ball.mass_g if mass_g is None else mass_g
         diameter_mm = ball.diameter_mm if diameter_mm is None and shape == "sphere" else diameter_mm

@@ -50,6 +50,15 @@ def catalogue(files: Iterable = ()) -> Catalogue:
     return result
 
 
+def given(known: Catalogue | None, place: str) -> Catalogue:
+    """The catalogue that a function was given, for None that of no file; InputError for anything else."""
+    if known is None:
+        return catalogue()
+    if not isinstance(known, Catalogue):
+        raise InputError(f"{place}: catalogue: is {known!r:.100}; give one, as of sv.catalogue('my_law.py')")
+    return known
+
+
 def read(path) -> tuple[Effect, ...]:
     """The effects of a Python file, checked and tried; their source is the file's name and digest.
 

@@ -200,6 +200,27 @@ def test_what_is_no_path_is_refused_with_the_cure(verb, given):
         verb(given)
 
 
+@pytest.mark.parametrize("given", ["my_law.py", ["tsuji"], 5])
+def test_what_is_no_catalogue_is_refused_with_the_cure(ball, tmp_path, given):
+    """It ended in an AttributeError, or was taken without a word where the card has no effects."""
+    record, steel = sv.read(ball), sv.bead(diameter_mm=5.0, material="bearing-steel")
+    parts = sv.chain(bead=steel, beads=3), sv.striker(steel, speed_m_s=0.5), [sv.gauge("wall")]
+    card = sv.case(*parts, duration_us=100)
+    model = tmp_path / "model.json"
+    for verb in (
+        lambda: sv.discover(record, threads=1, catalogue=given),
+        lambda: sv.simulate(card, given),
+        lambda: sv.compare(model, record, catalogue=given),
+    ):
+        with pytest.raises(sv.InputError, match=r"^(discover|simulate|compare): catalogue: is .*; give one"):
+            verb()
+
+
+def test_a_striker_of_something_else_than_a_bead_is_refused():
+    with pytest.raises(sv.InputError, match=r"^striker: ball: is 'steel'; give what sv\.bead returns"):
+        sv.striker("steel", speed_m_s=0.5)
+
+
 def test_what_is_made_shows_itself_in_a_line(ball):
     """A notebook shows what stands last in a cell: a record of four runs was 128 kB of numbers."""
     steel = sv.bead(diameter_mm=5.0, material="bearing-steel")

@@ -99,10 +99,10 @@ def discover(
 
     Raises:
         InputError: for no record or processor, or records that cannot be simulated, do not belong together,
-            or (`limits`) ask too much.
+            or (`limits`) ask too much, or what is no catalogue.
     """
     check_records(records, "discover")
-    catalogue = plugins.catalogue() if catalogue is None else catalogue
+    catalogue = plugins.given(catalogue, "discover")
     clock = Clock()
     ready, notes = zip(*(window.fitted(one, catalogue) for one in records), strict=True)
     for one in ready if limits else ():
