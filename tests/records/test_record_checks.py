@@ -69,6 +69,14 @@ def test_a_trace_below_zero_of_a_gauge_without_a_stated_noise_is_upside_down():
     assert any("run fast, near" in line and "is the sign right" in line for line in found), found
 
 
+def test_readings_of_a_gauge_without_a_calibration_are_told_without_newtons():
+    record = altered(one(lambda f: -f))
+    sensors = [msgspec.structs.replace(s, gain_rel_sigma="unknown") for s in record.block.sensors]
+    found = warnings(replace(record, block=msgspec.structs.replace(record.block, sensors=sensors)))
+    (told,) = [line for line in found if "run fast, near: swings" in line]
+    assert " as recorded) than up" in told and " N" not in told
+
+
 SUSPICIOUS_KEYS = [
     ({"materials__ptfe": {}}, "materials.ptfe: nothing in the record is made of it"),
     ({"materials": {}}, "no modulus_rel_sigma"),

@@ -253,6 +253,12 @@ def test_numbers_of_days_are_no_seconds(tmp_path, day):
     assert asked(tmp_path, file, "--force")[0] == ""
 
 
+def test_readings_without_a_unit_are_told_as_written(tmp_path):
+    (tmp_path / "fast.csv").write_text("Time (s),CH1\n" + rows(TIMES, PULSE))
+    said = import_files([tmp_path / "fast.csv"], tmp_path / "r", options())
+    assert any(re.search(r"baseline \S+ as written removed", line) for line in said)
+
+
 def test_seconds_since_midnight_are_seconds(tmp_path):
     file = tmp_path / "fast.csv"
     times = [f"{45_231.4242 + t:.6f}" for t in TIMES]

@@ -143,18 +143,18 @@ def _traces(record, run, contact):
 
 
 def _trace(run, gauge, name):
-    force = run.signals.readings[gauge.id]
+    force, unit = run.signals.readings[gauge.id], _unit(gauge)
     top, bottom = float(force.max()), float(force.min())
     if gauge.sigma > 0.0 and top < WEAK * gauge.sigma:  # without a noise, what is below 0 is no weak peak
-        yield f"{name}: the peak, {top:.3g} {gauge.unit}, is only {top / gauge.sigma:.2g} times the noise"
+        yield f"{name}: the peak, {top:.3g} {unit}, is only {top / gauge.sigma:.2g} times the noise"
     if gauge.unit == "N" and -bottom > max(top, ONSET * gauge.sigma):
         yield (
-            f"{name}: swings further down ({bottom:.3g} N) than up; positive force means compression: is the "
-            "sign right?"
+            f"{name}: swings further down ({bottom:.3g} {unit}) than up; positive force means compression: "
+            "is the sign right?"
         )
     flat = _row(force == top)
     if top > WEAK * gauge.sigma and flat >= CLIPPED:
-        yield f"{name}: {flat} equal samples at the top, {top:.3g} {gauge.unit}: the recorder seems to clip"
+        yield f"{name}: {flat} equal samples at the top, {top:.3g} {unit}: the recorder seems to clip"
     steps = np.unique(np.abs(np.diff(np.unique(force))))
     if (
         len(steps)
@@ -162,8 +162,13 @@ def _trace(run, gauge, name):
         and len(np.unique(force)) < len(force) / 2
     ):
         key = gauge.what.noise_key
-        yield f"{name}: values lie {steps[0]:.3g} {gauge.unit} apart; {key} must be at least that over √12"
+        yield f"{name}: values lie {steps[0]:.3g} {unit} apart; {key} must be at least that over √12"
     yield from _rest(run, gauge, name)
+
+
+def _unit(gauge):
+    """Unit of a gauge's numbers; without a calibration those of a force are as the recorder has them."""
+    return "as recorded" if gauge.unit == "N" and not gauge.calibrated else gauge.unit
 
 
 def _rest(run, gauge, name):
@@ -172,9 +177,9 @@ def _rest(run, gauge, name):
         return
     if gauge.sigma and not NOISE[0] * gauge.sigma <= spread <= NOISE[1] * gauge.sigma:
         stated = f"{gauge.what.noise_key} says {gauge.sigma:g}"
-        yield f"{name}: noise before the pulse is {spread:.2g} {gauge.unit}, {stated}"
+        yield f"{name}: noise before the pulse is {spread:.2g} {_unit(gauge)}, {stated}"
     if abs(mean) > max(gauge.sigma or spread, 5.0 * spread / np.sqrt(samples)):
-        yield f"{name}: the trace rests at {mean:.2g} {gauge.unit} before the pulse, not at 0"
+        yield f"{name}: the trace rests at {mean:.2g} {_unit(gauge)} before the pulse, not at 0"
 
 
 def _order(record, peaks, name):

@@ -143,6 +143,7 @@ def _scaled(channel, gauge, options, notes):
 
 
 def _found(trace: Trace, unit, step, start):
+    unit = unit or "as written"
     yield f"baseline {trace.rest:.4g} {unit} removed ({trace.quiet} samples at rest before the pulse)."
     yield f"noise {trace.sigma:.3g} {unit} a sample as recorded."
     if trace.slow > 1.6 * trace.sigma:
