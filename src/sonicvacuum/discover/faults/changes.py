@@ -209,6 +209,16 @@ def delayed(record: Record, id: str, late_us: float) -> Record:
     return replace(record, signals={k: shifted(s) for k, s in record.signals.items()})
 
 
+def delay_known_to(record: Record, id: str, sigma_us: float) -> Record:
+    """The record that knows the delay of one gauge only so well, in us."""
+
+    def looser_one(sensor):
+        wider = max(sensor.delay_sigma_us, sigma_us)
+        return msgspec.structs.replace(sensor, delay_sigma_us=wider) if sensor.id == id else sensor
+
+    return _block(record, sensors=[looser_one(s) for s in record.block.sensors])
+
+
 def looser(record: Record, errors: Mapping[str, Mapping[str, float]]) -> Record:
     """The record whose gauges may rest elsewhere, or drift, by at least so much.
 

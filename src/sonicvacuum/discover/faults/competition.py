@@ -142,9 +142,9 @@ class Search(Searching):
                 model = self._nominal = lower
                 ranked = self.ranked(model)
             if ranked and self._sure(ranked[0], model):
-                alone = self._alone.at_hand(model) or []
-                self._led = Led(model, ranked[0], alone, tuple(self.findings))
+                told, alone = tuple(self.findings), self._alone.at_hand(model) or []
                 self._accept(ranked, ranked[0])
+                self._led = Led(model, ranked[0], alone, told, self.bench)
             elif (one := self._beside_one_effect(ranked, model)) is not None:
                 self._accept([one], one)
             else:

@@ -20,7 +20,7 @@ from sonicvacuum.discover.faults.judging import Judge
 from sonicvacuum.discover.faults.ranking import Ranking
 from sonicvacuum.discover.faults.slips import hypotheses
 from sonicvacuum.discover.faults.strays import Strays, masked, single_samples, strays, told
-from sonicvacuum.discover.faults.timing import stated_again
+from sonicvacuum.discover.faults.timing import delay_left_open, stated_again
 from sonicvacuum.discover.faults.weights import hollow, unexplained, weight_of
 from sonicvacuum.discover.fit.enough import data
 from sonicvacuum.discover.fit.evidence import Candidate
@@ -28,6 +28,7 @@ from sonicvacuum.discover.fit.refit import Fit, fit
 from sonicvacuum.discover.judge import explanations
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Hypothesis
+from sonicvacuum.discover.model.nominal import predicted
 from sonicvacuum.discover.rounds import Investigation, investigate
 from sonicvacuum.discover.search import pairs, singles
 from sonicvacuum.effects import Catalogue
@@ -42,12 +43,14 @@ class Led:
         slip: as it was judged.
         alone: single effects beside that model, best first, where they were asked for.
         findings: slips told of before.
+        bench: the record with the slip put right.
     """
 
     model: Model
     slip: Judged
     alone: Sequence[Candidate]
     findings: Sequence[Finding]
+    bench: Bench
 
 
 def _sized_anew(said: Finding, judged: Judged) -> Finding:
@@ -81,6 +84,10 @@ class Searching(Ranking):
                 told = judged.findings(p)
                 self.findings += [replace(finding, corrected=judged is chosen) for finding in told]
         self.bench = chosen.model.bench
+        if chosen.slip.fault == "gauge-delayed":
+            seen = predicted(self.make(self.bench), self.threads)
+            record = delay_left_open(self.bench.record, chosen.slip.sensor, seen)
+            self.bench = replace(self.bench, record=record)
         sensor, mixed = chosen.slip.sensor, chosen.slip.fault in ("gauges-swapped", "gauge-gain")
         if mixed and self.bench.record.signals:
             gauges = (sensor,) if isinstance(sensor, str) else sensor
@@ -91,7 +98,7 @@ class Searching(Ranking):
         most of what this does explains more in its place, beside those that were found.
         """
         led = self._led
-        if led is None or self.bench is not led.slip.model.bench or not led.slip.slip.continuous:
+        if led is None or self.bench is not led.bench or not led.slip.slip.continuous:
             return found
         most = policy.MOSTLY * led.slip.gain
         near = [c for c in led.alone if c.gain > most and c.effect not in found.final.hypothesis.ids]

@@ -105,19 +105,32 @@ def stated_again(record: Record, given: Record) -> tuple[Record, float] | None:
     return changes.triggered(record, before), cost
 
 
-def counted_on(findings: Sequence[Finding], found: Investigation) -> tuple[Finding, ...]:
-    """Slips, the time zero of all runs with what the effects found ask for besides: how late pulses are was
-    told by the nominal model's.
+def delay_left_open(record: Record, id: str, predicted) -> Record:
+    """A record in which a gauge was put earlier, its delay known to a pulse's width from there on: it was
+    told by the nominal model's pulses, which an effect that is not known yet makes earlier or later.
     """
-    layout, sigma = found.forward.layout, found.forward.nuisance_sigma
-    places = [layout.trigger(k) for k, run in enumerate(found.forward.experiment.runs) if run.has_signals]
-    more = 1e6 * float(np.mean(found.final.nu[places] * sigma[places])) if places else 0.0
-    return tuple(
-        replace(f, value=f.value - more)
-        if f.fault == "time-zero" and f.corrected and f.run is None and f.value is not None
-        else f
-        for f in findings
-    )
+    shown = [k for k, s in record.signals.items() if id in s.readings and predicted.get(k)]
+    width = max((_width(record.signals[k], predicted[k]) for k in shown), default=0.0)
+    return changes.delay_known_to(record, id, float(width))
+
+
+def counted_on(findings: Sequence[Finding], found: Investigation) -> tuple[Finding, ...]:
+    """Slips, the time zero of all runs and the delays of gauges with what the effects found ask for besides:
+    how late pulses are was told by the nominal model's.
+    """
+    layout, runs = found.forward.layout, found.forward.experiment.runs
+    late = 1e6 * found.final.nu * found.forward.nuisance_sigma
+    places = [layout.trigger(k) for k, run in enumerate(runs) if run.has_signals]
+    zero = float(np.mean(late[places])) if places else 0.0
+    delays = {layout.named(k): float(late[k]) for k in layout.other("delay")}
+
+    def counted(finding):
+        if not finding.corrected or finding.run is not None or finding.value is None:
+            return finding
+        more = {"time-zero": -zero, "gauge-delayed": delays.get(finding.sensor, 0.0)}
+        return replace(finding, value=finding.value + more.get(finding.fault, 0.0))
+
+    return tuple(counted(f) for f in findings)
 
 
 def late_runs(record: Record, model: Model, predicted) -> list[Slip]:
