@@ -22,6 +22,7 @@ def test_a_clock_off_by_a_step_is_told_beside_stiffer_beads():
     assert v.probabilities["dynamic-modulus"] > 0.9
 
 
+@pytest.mark.long
 def test_beside_a_clock_off_by_any_factor_no_effect_that_moves_times_is_sure():
     record = changes.clock(made(STIFFER, seed=5)[0], -math.log(0.3))
     v = session.discover(record).verdict

@@ -77,6 +77,7 @@ def test_the_step_of_a_range_is_told(sound, run, gauge, ratio):
     assert said == f"gauge {gauge} reads {value:.4g} times the force in run {run}"
 
 
+@pytest.mark.long
 def test_any_factor_is_told_beside_the_effect():
     damped = made([("kuwabara-kono", {"time_us": DAMPING})], seed=12, speeds=SPEEDS)[0]
     found, named, _ = told(changes.trace_scaled(damped, "v1", "g7", 3.3))

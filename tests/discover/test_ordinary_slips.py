@@ -73,7 +73,7 @@ def test_cables_that_went_round_are_told(empty, names):
     assert named == []
 
 
-@pytest.mark.parametrize("factor", [2.0, 0.5])
+@pytest.mark.parametrize("factor", [pytest.param(2.0, marks=pytest.mark.long), 0.5])
 def test_a_run_at_another_sampling_rate_is_told(factor):
     record, _ = made(seed=8, speeds=(0.3, 0.5, 0.9))
     found, named = told(changes.clock(record, -math.log(factor), ("v1",)))
@@ -125,7 +125,7 @@ def test_sizes_start_where_balls_weigh_what_their_material_does(empty):
     assert starts._weighed(halved, "striker-mass") == 0.0  # a flat striker has no size
 
 
-@pytest.mark.parametrize("factor", [2.0, 0.5])
+@pytest.mark.parametrize("factor", [2.0, pytest.param(0.5, marks=pytest.mark.long)])
 def test_radii_stated_for_diameters_are_told(factor):
     """Half the size makes contacts of 0.7 times the stiffness, which a modulus or a wall does nearly as well;
     that it is what the beads weigh tells them apart.

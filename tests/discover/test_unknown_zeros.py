@@ -44,7 +44,7 @@ def test_time_zeros_count_as_known_to_a_pulse(empty):
 
 
 @pytest.mark.parametrize(("effects", "named"), [((), []), ([("kuwabara-kono", {"time_us": DAMPING})], None)])
-@pytest.mark.parametrize("stated", [0.0, 0.01])
+@pytest.mark.parametrize("stated", [pytest.param(0.0, marks=pytest.mark.long), 0.01])
 def test_time_zeros_of_runs_that_are_stated_as_exact_are_told(effects, named, stated):
     record = off(made(effects, seed=12, speeds=(0.3, 0.5, 0.9))[0], (5.0, -4.0, 3.0), stated)
     v = session.discover(record).verdict
