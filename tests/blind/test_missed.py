@@ -48,6 +48,9 @@ def test_a_fit_ends_in_the_valley_that_the_truth_lies_in():
     again = fit(result.found.forward, one.hypothesis, [at, at], np.stack([one.nu, 0.0 * one.nu]))
     # One standard error makes 1 in χ²: less than that is the same minimum.
     assert one.objective < again.objective + 1.0
+    told, drawn = result.verdict.parameters[hidden["id"]], {d.parameter: d.error for d in result.posterior}
+    for name, value in hidden["parameters"].items():
+        assert abs(told[name].value - value) < 4.0 * drawn[name]
 
 
 def test_an_effect_behind_one_at_a_bead_is_fitted():
