@@ -2,8 +2,10 @@
 
 import numpy as np
 import pytest
+from test_gross import made
 
-from sonicvacuum.discover.model import start
+from sonicvacuum.discover.model import accuracy, start
+from sonicvacuum.discover.model.problem import experiment
 
 TIME = np.arange(400.0)
 
@@ -47,3 +49,14 @@ def test_runs_of_unequal_length_are_held_against_each_other(lengths):
         for k, length in enumerate(lengths)
     }
     assert start._lags(pairs) == {0: 7, 1: 7}
+
+
+def test_starts_are_not_held_against_shorter_steps(monkeypatch):
+    """With the gains of another unit no step is short enough."""
+    record = made((), 0.0)
+    monkeypatch.setattr(accuracy, "LASTING", 0.0)
+    monkeypatch.setattr(accuracy, "cut", lambda forward: pytest.fail("the steps were held against others"))
+    data = experiment(record)
+    assert data.gauges[0].gain == pytest.approx(
+        0.1, rel=0.5
+    )  # of the record; the nominal wall is another one

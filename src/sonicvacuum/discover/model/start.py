@@ -46,7 +46,8 @@ def _pairs(data):
     """
     from sonicvacuum.discover.model.forward import Forward
 
-    forward = Forward(data)
+    # What is not known is looked for: no step need be cut for gains that are none.
+    forward = Forward(data, cut=1.0)
     result = {}
     for batch in data.batches:
         seen = forward.simulate(batch, forward.nominal(batch, np.zeros((1, forward.layout.size))))
