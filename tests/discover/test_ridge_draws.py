@@ -114,6 +114,20 @@ def test_jumps_are_not_taken_for_slopes(two):
     assert better.objective[0] <= fit.objective
 
 
+def test_beside_a_gross_misfit_the_floor_of_a_valley_is_not_looked_for(two, monkeypatch):
+    """Errors are those of slopes over themselves all the same."""
+    middle = np.array([-2.0, 0.5])
+    forward = Valley(middle, jumps=40)
+    fit = forward.fit(two, middle + 0.05 * np.array([1.0, 1.0 + 0.2 * BEND]))
+    columns = forward.columns(two, fit.u[None], fit.nu[None])
+    wide = broad.sloped(forward, two, fit.normal, columns)
+    monkeypatch.setattr(ridge, "valley", lambda *given: pytest.fail("the valley was followed"))
+    found = broad.broadened(forward, two, fit.normal, wide, columns, gross=True)
+    np.testing.assert_array_equal(found.u, fit.normal.u)
+    before, after = (np.sqrt(np.diag(broad.covariance(one))).max() for one in (fit.normal, found))
+    assert after > broad.ALIKE * before
+
+
 def test_slopes_that_hold_over_the_errors_are_kept_to_the_byte(two):
     forward = Valley([-2.0, 0.5])
     fit = forward.fit(two, [-2.0, 0.5])

@@ -38,6 +38,7 @@ def broadened(
     now: Normal,
     wide: Normal | None,
     columns: list[np.ndarray],
+    gross: bool = False,
 ) -> Normal:
     """A fit, one lane, with slopes over its own standard errors, at the lowest point of its valley; as it is
     where its errors stay what they were, and are no longer than errors can be.
@@ -48,12 +49,13 @@ def broadened(
         now: the fit.
         wide: the same with slopes over its errors (`sloped`).
         columns: of a point nearby (`Forward.columns`), whose slopes to the nuisances are held.
+        gross: whether so much is left that what the valley's floor gains is nothing beside that.
     """
     if wide is None or not wide.has_slopes[0]:
         return now
     if _alike(now, wide) and not _flat(wide) and not _counted(forward, len(columns)):
         return now
-    here = _lowest(forward, hypothesis, wide, columns)
+    here = wide if gross else _lowest(forward, hypothesis, wide, columns)
     for _ in range(ROUNDS):
         before, better = wide, sloped(forward, hypothesis, here, columns)
         if better is None or not better.has_slopes[0]:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from sonicvacuum.discover import policy
 from sonicvacuum.discover.fit import broad, strides
 from sonicvacuum.discover.fit.descent import SETTLED, descend, differences
 from sonicvacuum.discover.fit.normal import Normal, linearised
@@ -213,7 +214,8 @@ def _finished(forward, hypothesis, now):
     if lower is not now:
         now, columns = _rested(forward, hypothesis, lower)
         wide = broad.sloped(forward, hypothesis, now, columns)
-    return broad.broadened(forward, hypothesis, now, wide, columns)
+    gross = now.objective[0] > policy.GROSS * size
+    return broad.broadened(forward, hypothesis, now, wide, columns, gross)
 
 
 def _rested(forward, hypothesis, now):
