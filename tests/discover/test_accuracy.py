@@ -1,5 +1,7 @@
 """Steps are as long as noise leaves unseen; where a chain errs by more than expected, they are cut."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from made_records import made
@@ -89,3 +91,12 @@ def test_other_data_of_the_same_chains_are_not_held_against_shorter_steps_again(
     other = forward.of(forward.experiment)
     assert other._refine == forward._refine
     assert other.simulations == 0 < forward.simulations
+
+
+def test_steps_are_not_cut_where_what_is_left_hides_what_they_err_by():
+    forward = _after_many_reflections(2500.0)
+    other = Forward(replace(forward.experiment, approximate=True))
+    assert other._refine == accuracy.refinement(forward.norm) < forward._refine
+    assert _error(other) ** 2 < 0.05 * accuracy.HIDES * forward.experiment.size(
+        0
+    )  # a small part of what is left

@@ -31,8 +31,8 @@ from sonicvacuum.discover.faults.table import FAULTS
 from sonicvacuum.discover.faults.timing import late_runs, time_zero, unknown_zeros
 from sonicvacuum.discover.faults.weights import ALIKE
 from sonicvacuum.discover.fit import smooth
-from sonicvacuum.discover.fit.refit import polish
-from sonicvacuum.discover.fit.wide import nominal
+from sonicvacuum.discover.fit.refit import fit, polish
+from sonicvacuum.discover.fit.wide import far, nominal
 from sonicvacuum.discover.model.experiment import Experiment
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.nominal import predicted, read_at, read_to_the_end
@@ -72,16 +72,18 @@ class Ranking:
         simulations: chains simulated so far.
         behind: gauges exchanged, and slips that traces show, fitted beside the last model, which gain nothing
             by themselves.
+        far: whether the last model leaves so much that simulations need not be as accurate as noise asks.
     """
 
     def __init__(self, bench: Bench, catalogue: Catalogue, threads: int, plain: list[Finding]):
         self.bench, self.catalogue, self.threads = bench, catalogue, threads
         self.findings, self.simulations = list(plain), 0
         self.behind: list[Judged] = []
+        self.far = False
 
     def make(self, bench: Bench) -> Experiment:
         """The data set of a record as far as it was put right."""
-        return bench.masked(together((bench.record,), self.catalogue))
+        return replace(bench.masked(together((bench.record,), self.catalogue)), approximate=self.far)
 
     def judged(self, bench: Bench) -> Experiment:
         """The same with the smooth misfit that the record states counted as noise, as the search has it."""
@@ -91,11 +93,18 @@ class Ranking:
 
     def nominal(self) -> Model:
         """The nominal model of the record as far as it was put right."""
+        self.far = False
         forward = Forward(self.judged(self.bench), self.threads)
         found = nominal(forward)
         # Far from the data nuisances creep; a slip must not be asked to do what they would have done.
         found = found if found.settled else polish(forward, found)
         self.simulations += forward.chains
+        if forward.cut > 1.0 and far(forward, found):
+            self.far = True
+            forward = Forward(self.judged(self.bench), self.threads)
+            same = fit(forward, found.hypothesis, found.u[None], found.nu[None])
+            found = replace(same, others=found.others, elsewhere=found.elsewhere)
+            self.simulations += forward.chains
         return Model(self.bench, forward, found)
 
     def factors(self, slips: list[Slip], model: Model) -> list[Slip]:

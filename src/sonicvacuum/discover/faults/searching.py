@@ -25,6 +25,7 @@ from sonicvacuum.discover.faults.weights import hollow, unexplained, weight_of
 from sonicvacuum.discover.fit.enough import data
 from sonicvacuum.discover.fit.evidence import Candidate
 from sonicvacuum.discover.fit.refit import Fit, fit
+from sonicvacuum.discover.fit.wide import far
 from sonicvacuum.discover.judge import explanations
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Hypothesis
@@ -208,6 +209,10 @@ class Searching(Ranking):
     def _investigate(self) -> Investigation:
         """The effects; where spikes that a pulse hid, or tails of noise, are all that they leave, without."""
         found = self._searched()
+        if self.far and not far(found.forward, found.final):
+            self.far, self._nominal = False, None
+            self.simulations += found.forward.chains
+            found = self._searched()
         if unexplained(found) and self._masks(strays(found.forward, found.final), found.final):
             found = self._searched()
         faint = unexplained(found) and single_samples(found.forward, found.final)

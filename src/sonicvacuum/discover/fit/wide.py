@@ -17,6 +17,7 @@ from sonicvacuum.discover.correlation import correlated
 from sonicvacuum.discover.fit import unequal
 from sonicvacuum.discover.fit.enough import data
 from sonicvacuum.discover.fit.refit import Fit, fit, polish, simulated
+from sonicvacuum.discover.model import accuracy
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Hypothesis
 from sonicvacuum.discover.model.nuisances import SCATTER
@@ -217,12 +218,20 @@ def leaves_much(forward: Forward, objective: float) -> bool:
     return objective >= noise(forward)
 
 
-def again(forward: Forward, one: Fit, more: np.ndarray | None = None) -> Fit:
+def far(forward: Forward, one: Fit) -> bool:
+    """Whether a fit in which something is hardly known leaves so much that simulations need not be as
+    accurate as noise asks for.
+    """
+    return one.objective > accuracy.HIDES * data(forward) and wide(forward)
+
+
+def again(forward: Forward, one: Fit, more: np.ndarray | None = None, finish: bool = True) -> Fit:
     """The better of a fit and of one from all over the priors, with the effects as they are there; from
-    `more` (L, q) nuisances as well.
+    `more` (L, q) nuisances as well. Without `finish` its last steps are left to `refit.finished`.
     """
     rows = starts(forward) if more is None else np.concatenate([starts(forward), more])
     u = np.repeat(one.u[None], len(rows), axis=0)
     rows = aligned(forward, one.hypothesis, u, rows)
-    other = fit(forward, one.hypothesis, u, rows, keep=FOLLOWED, halved=FIRST, reach=one.objective)
+    followed = {"keep": FOLLOWED, "halved": FIRST, "reach": one.objective, "finish": finish}
+    other = fit(forward, one.hypothesis, u, rows, **followed)
     return min((one, other), key=lambda f: f.objective)

@@ -31,6 +31,9 @@ ERROR, ERROR_AIM, LONGEST = 1e-6, 0.05, 3.0
 # together or the step is the full one's SHORTEST part. Effects whose steppers err otherwise are named for a
 # difference of ten in χ² and more.
 TOLERATED, SHORTEST = 0.5, 4.0
+# Where a model that is hardly known leaves so many times the noise's χ², errors of some standard errors over
+# all data are small beside the hundreds that it leaves: its steps are not cut.
+HIDES = 25.0
 # Only where traces last this share of the time in which the slowest wave would cross the chain five times:
 # ordinary records end before.
 LASTING = 0.3
@@ -66,10 +69,10 @@ def refinement(norm: float, leading: bool = False) -> float:
 
 def cut(forward) -> float:
     """By how much the steps of a `Forward` are cut beyond what its norm asks for: halved until the error of
-    its nominal chains is tolerated.
+    its nominal chains is tolerated; not at all where its data are `approximate`.
     """
     experiment, least = forward.experiment, refinement(forward.norm)
-    if not reflected(experiment):
+    if experiment.approximate or not reflected(experiment):
         return 1.0
     refine, seen = least, _nominal(forward, least)
     while refine < SHORTEST:

@@ -206,6 +206,7 @@ class Experiment:
         shared: nuisances that all runs share, besides the modulus of the beads and the gains.
         slow: baselines and drifts that count as noise; None: none.
         notes: what was left out of the data, one line each.
+        approximate: whether what a model leaves hides small errors of its simulation, see `accuracy.cut`.
     """
 
     name: str
@@ -229,6 +230,7 @@ class Experiment:
     shared: tuple[Shared, ...] = ()
     slow: Slow | None = None
     notes: tuple[str, ...] = ()
+    approximate: bool = False
 
     @property
     def beads(self) -> int:
