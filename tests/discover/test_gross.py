@@ -14,7 +14,7 @@ from sonicvacuum.discover.compare import compare
 from sonicvacuum.discover.fit import refit, wide
 from sonicvacuum.discover.fit.evidence import Combination, log_bayes
 from sonicvacuum.discover.fit.wide import nominal
-from sonicvacuum.discover.judge import explanations, gross, weighing
+from sonicvacuum.discover.judge import explanations, gross, leading, weighing
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, variants
 from sonicvacuum.discover.model.problem import experiment
@@ -171,7 +171,7 @@ def test_an_explanation_that_missed_its_minimum_is_fitted_once_more():
     missed = refit.fit(forward, Hypothesis((Component(droop, free),)), np.array([[1.0]]), null.nu * 0.0)
     gain = null.objective - missed.objective
     one = Combination(("sensor-droop",), missed, gain, log_bayes(missed, gain))
-    (found,) = gross._at_their_best(forward, null, [one])
+    (found,) = leading.at_their_best(forward, null, [one])
     size = sum(forward.experiment.size(k) for k in range(2))
     assert missed.objective > 2.0 * size
     assert found.fit.objective < size * (1.0 + 4.0 * np.sqrt(2.0 / size))  # noise, within 4 of its errors
@@ -181,19 +181,68 @@ def test_an_explanation_that_missed_its_minimum_is_fitted_once_more():
 
 def test_the_eleventh_explanation_may_be_the_best_one(monkeypatch):
     """Friction beside a gauge that discharges, in one of nine records of real chains: walls hardly known have
-    many minima. Which ones end lowest is known once all near the best have been fitted from all over.
+    many minima. Which ones end lowest is known once all near the best have begun where the best ones stand.
     """
-    tried = []
-    monkeypatch.setattr(gross.wide, "wide", lambda forward: True)
+    monkeypatch.setattr(leading.wide, "wide", lambda forward: True)
     monkeypatch.setattr(
-        gross.abreast, "each", lambda forward, follow, items: [follow(None, c) for c in items]
+        leading.abreast, "each", lambda forward, follow, items: [follow(None, c) for c in items]
     )
-    monkeypatch.setattr(gross, "_again", lambda forward, c, null, nu: tried.append(c.effects) or c)
-    fits = [SimpleNamespace(objective=float(k), nu=np.zeros(3)) for k in range(15)]
+    monkeypatch.setattr(leading, "_finished", lambda forward, one: one[0])
+    all_over, beside = [], []
+
+    def again(forward, one, more, finish):
+        all_over.append(one.objective)
+        return one
+
+    def begun(forward, one, leaders, near):
+        beside.append(one.objective)
+        found = SimpleNamespace(objective=0.5, nu=one.nu)
+        return found if one.objective == 1.010 else one
+
+    monkeypatch.setattr(leading.wide, "again", again)
+    monkeypatch.setattr(leading, "_beside", begun)
+    monkeypatch.setattr(leading, "_explained", lambda null, c, one: (c.effects, one.objective))
+    fits = [SimpleNamespace(objective=1.0 + 0.001 * k, nu=np.zeros(3)) for k in range(15)]
     found = [Combination((f"e{k:02d}",), one, 0.0, 0.0) for k, one in enumerate(fits)]
-    assert gross._at_their_best(None, None, found[::-1]) == found
-    assert tried == [c.effects for c in found[: gross.AGAIN]]
-    assert gross.AGAIN >= 11
+    told = leading.at_their_best(None, None, found[::-1])
+    assert beside[: leading.ASKED] == [one.objective for one in fits[: leading.ASKED]]
+    assert all_over == [1.0, 1.001, 1.002, 0.5]  # the three that lead, then the one that has come past them
+    assert told[10] == (("e10",), 0.5)
+    assert told[leading.ASKED :] == found[leading.ASKED :]
+
+
+def test_a_loss_is_found_from_where_another_one_stands():
+    """Followed from the nominal fit, with speeds that make up for it, the right one leaves much."""
+    forward = Forward(experiment(made([("viscous-drag", {"rate_per_s": 900.0})], 0.0)))
+    null, size = nominal(forward), sum(forward.experiment.size(k) for k in range(2))
+
+    def fitted(name, u, nu, **how):
+        effect = CATALOGUE.effect(name)
+        (free,) = variants(effect, setup_of(forward))
+        return refit.fit(forward, Hypothesis((Component(effect, free),)), np.array([[u]]), nu, **how)
+
+    stuck = fitted("viscous-drag", -6.0, null.nu, iterations=0, finish=False)
+    leader = wide.again(forward, fitted("linear-dashpot", 0.0, null.nu))
+    found = leading._beside(forward, stuck, [stuck, leader], np.inf)
+    assert min(stuck.objective, leader.objective) > 10.0 * size
+    assert found.objective < size * (1.0 + 4.0 * np.sqrt(2.0 / size))  # noise, within 4 of its errors
+
+
+def test_what_an_explanation_shares_with_a_leader_begins_as_the_leader_has_it():
+    of = {name: CATALOGUE.effect(name) for name in ("sensor-droop", "viscous-drag", "linear-dashpot")}
+    setup = setup_of(Forward(experiment(made((), 0.0))))
+    parts = {name: Component(effect, variants(effect, setup)[0]) for name, effect in of.items()}
+
+    def fit_of(first, second, u, nu):
+        return SimpleNamespace(hypothesis=Hypothesis((parts[first], parts[second])), u=np.array(u), nu=nu)
+
+    one = fit_of("sensor-droop", "viscous-drag", [1.0, 2.0], np.zeros(3))
+    leader = fit_of("linear-dashpot", "sensor-droop", [3.0, 4.0], np.ones(3))
+    rows = leading._starts(one, leader)
+    np.testing.assert_array_equal(rows[0][0], [4.0, 2.0])
+    strengths = parts["viscous-drag"].free[0].starts()
+    np.testing.assert_array_equal([u for u, _ in rows][1:], [[4.0, s] for s in strengths])
+    assert all(nu is leader.nu for _, nu in rows)
 
 
 def test_a_mass_or_a_gap_is_what_comes_nearest_to_anything():

@@ -11,15 +11,14 @@ of places, comes nearest to what is not understood far more often than others do
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from functools import partial
 
 import numpy as np
 
 from sonicvacuum.discover import policy
-from sonicvacuum.discover.fit import discrepancy, enough, evidence, places, smooth, wide
+from sonicvacuum.discover.fit import discrepancy, enough, places, smooth, wide
 from sonicvacuum.discover.fit.evidence import Combination
 from sonicvacuum.discover.fit.refit import Fit, fit
-from sonicvacuum.discover.judge import explanations, rivals, weighing
+from sonicvacuum.discover.judge import explanations, leading, rivals, weighing
 from sonicvacuum.discover.judge.rivals import Rival
 from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.forward import Forward
@@ -33,10 +32,6 @@ LEADING = 6
 # A third effect is fitted beside a pair where slopes promise that it takes away this share of what the pair
 # leaves beyond noise.
 THIRD = 0.5
-# Explanations, by what they leave, that are fitted once more from all over what is hardly known, so many
-# times unless little changes: effects that have grown find other minima. Of nine records of real chains the
-# best explanation stood eleventh in one before that.
-AGAIN, TIMES, STAYS = 12, 3, 0.98
 _PROFILES = {effect.id for effect in profiles.effects()}
 
 
@@ -85,7 +80,7 @@ def standing_out(
     """
     prior = _beside_much(prior, setup)
     found = [*found, *_crossed(forward, null, found, setup), *_profiles(forward, null)]
-    found = _at_their_best(forward, null, found)
+    found = leading.at_their_best(forward, null, found)
     first = None
     while True:
         ranked = sorted(weighing.weighed(forward, null, found), key=lambda c: -c.log_bayes)
@@ -107,7 +102,8 @@ def standing_out(
         more = _more(forward, null, fit, setup, found) if grown else []
         if not more:
             return first
-        found = [*found, *_at_their_best(forward, null, more)]
+        # They begin where the best explanation has come to already.
+        found = [*found, *leading.at_their_best(forward, null, more, leaders=1)]
 
 
 def of_three(forward: Forward, null: Fit, found: Iterable[Combination], setup: Setup) -> Fit | None:
@@ -151,29 +147,6 @@ def _instead(forward, ranked: list[Combination], weights: Mapping[str, float]) -
         if p > policy.TOLD and told:
             said.append(f"were it {' + '.join(c.effects)} (probability {p:.2f}): {told}")
     return said
-
-
-def _at_their_best(forward, null, found: list[Combination]) -> list[Combination]:
-    """The same with the leading ones fitted from all over the priors, and from where the others ended: with
-    walls and speeds hardly known, one explanation misses the minimum that another finds.
-    """
-    if not wide.wide(forward):
-        return found
-    ranked = sorted(found, key=lambda c: c.fit.objective)
-    nu = np.array([c.fit.nu for c in ranked[:AGAIN]])
-    again = partial(_again, null=null, nu=nu)
-    return abreast.each(forward, again, ranked[:AGAIN]) + ranked[AGAIN:]
-
-
-def _again(forward, c: Combination, null: Fit, nu: np.ndarray) -> Combination:
-    one = c.fit
-    for _ in range(TIMES):
-        before, one = one, wide.again(forward, one, nu)
-        if one.objective > STAYS * before.objective:
-            break
-    gain = null.objective - one.objective
-    worth = c.log_bayes - evidence.log_bayes(c.fit, c.gain) + evidence.log_bayes(one, gain)
-    return Combination(c.effects, one, gain, worth)
 
 
 def _crossed(forward, null, found: list[Combination], setup: Setup) -> list[Combination]:
