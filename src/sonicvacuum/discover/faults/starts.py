@@ -31,6 +31,9 @@ FACTORS = ("gain-common", "clock")
 CLEAR = 10.0
 # Sizes below so many prior widths are found from none.
 NEAR = {"gauge-delayed": 1.0, "run-off": 2.0, "gain-common": 2.0, "clock": 3.0}
+# A gauge's delay is found from none only below this share of a pulse's width as well: small hard beads have
+# pulses much shorter than delays err, and slopes know nothing of one that the trace's pulse is clear of.
+OVERLAP = 0.25
 
 
 def unfinished(record: Record, predicted: Predicted) -> bool:
@@ -70,15 +73,17 @@ def with_starts(
 def _started(slip, record, predicted, model, whole):
     if slip.fault not in NEAR:
         return slip
+    near = NEAR[slip.fault] * slip.width
     if slip.fault == "gauge-delayed":
         start = gauge_delay(slip, record, predicted)
+        near = min(near, OVERLAP * _pulse_us(slip.sensor, record, predicted))
     elif slip.fault == "gain-common":
         start = _of_runs((_higher(record, run, whole) for run in whole), FARTHEST_GAIN)
     elif slip.fault == "clock":
         start = _of_runs((_longer(record, run, whole) for run in whole), FARTHEST)
     else:
         start = _speed(slip.run, record, whole, model)
-    return replace(slip, start=start) if abs(start) > NEAR[slip.fault] * slip.width else slip
+    return replace(slip, start=start) if abs(start) > near else slip
 
 
 def _weighed(record, fault):
@@ -154,6 +159,12 @@ def run_clock(run: str, runs: int = 1) -> Slip:
 
 def _one_clock(run, record, size):
     return changes.clock(record, size, (run,))
+
+
+def _pulse_us(id, record, predicted):
+    """Length of the model's shortest pulse at a gauge, at half its height, in us; infinite without any."""
+    own = ((_length(p[id]), record.signals[run].interval_s) for run, p in predicted.items() if id in p)
+    return min((1e6 * interval * samples for samples, interval in own if samples), default=math.inf)
 
 
 def _length(reading):
