@@ -107,10 +107,14 @@ def _shifted(run, lag):
 
 
 def _factor(pairs):
-    """Least-squares factor of predictions on measurements, each pair at its best shift; 1 where none fits."""
+    """Least-squares factor of predictions on measurements, each pair at its best shift; 1 where none fits.
+
+    A trace may be upside down: the little that noise has of the pulse the right way up would make the model's
+    too small to tell.
+    """
     product = power = 0.0
     for measured, predicted in pairs:
         if np.any(measured):
-            product += float(correlated(measured, predicted).max())
+            product += float(np.abs(correlated(measured, predicted)).max())
             power += float(predicted @ predicted)
     return product / power if product > 0.0 and power > 0.0 else 1.0
