@@ -169,7 +169,7 @@ class Search(Searching):
             better = self._instead(found, ranked)
             if better is None:
                 break
-            found, ranked = better, []
+            found, ranked = self._factors_anew(better), []
         order = sorted(counted_on(self.findings, found), key=lambda f: -f.probability)
         return Outcome(found, tuple(order), self.bench.record, self.simulations + self._alone.simulations)
 

@@ -18,9 +18,9 @@ from sonicvacuum.discover.faults.found import Bench, Finding
 from sonicvacuum.discover.faults.judged import Judged, Model, scatter
 from sonicvacuum.discover.faults.judging import Judge
 from sonicvacuum.discover.faults.ranking import Ranking
-from sonicvacuum.discover.faults.slips import hypotheses
+from sonicvacuum.discover.faults.slips import Slip, hypotheses
 from sonicvacuum.discover.faults.strays import Strays, masked, single_samples, strays, told
-from sonicvacuum.discover.faults.timing import delay_left_open, stated_again
+from sonicvacuum.discover.faults.timing import delay_left_open, late_runs, stated_again
 from sonicvacuum.discover.faults.weights import hollow, unexplained, weight_of
 from sonicvacuum.discover.fit.enough import data
 from sonicvacuum.discover.fit.evidence import Candidate
@@ -55,11 +55,11 @@ class Led:
 
 
 def _sized_anew(said: Finding, judged: Judged) -> Finding:
-    """What is said of a factor that was put right, times what it is off by."""
-    slip = judged.slip
+    """What is said of a factor or a time zero that was put right, with what it is off by."""
+    slip, more = judged.slip, judged.slip.value(judged.size)
     if not said.corrected or (said.fault, said.run, said.sensor) != (slip.fault, slip.run, slip.sensor):
         return said
-    return replace(said, value=said.value * slip.value(judged.size))
+    return replace(said, value=said.value * more if slip.value is math.exp else said.value + more)
 
 
 class Searching(Ranking):
@@ -124,11 +124,14 @@ class Searching(Ranking):
         return told.get(explanations.key(joint.effects), -math.inf)
 
     def _factors_anew(self, found: Investigation) -> Investigation:
-        """The effects, where beside them a factor that was put right has another size with that: damping
-        takes a part of every pulse, as less gain of all gauges would.
+        """The effects, where beside them a factor, or the time zero of one run, that was put right has
+        another size with that: damping takes a part of every pulse, as less gain of all gauges would, and
+        makes pulses late, as a late trigger would.
         """
+        if found.final is found.null:
+            return found
         model = Model(self.bench, found.forward, found.final)
-        again = self.factors(hypotheses(self.bench.record), model) if found.final is not found.null else []
+        again = self.factors(hypotheses(self.bench.record), model) + self._zeros_anew(model)
         if not again:
             return found
         judge = Judge(model, self.judged)
@@ -141,6 +144,15 @@ class Searching(Ranking):
         self._accept([best], best)
         self.simulations += found.forward.chains
         return self._investigate()
+
+    def _zeros_anew(self, model: Model) -> list[Slip]:
+        """Time zeros of single runs that were put right, asked for once more beside a model that strains
+        them.
+        """
+        runs = {f.run for f in self.findings if f.corrected and f.fault == "time-zero" and f.run}
+        seen = predicted(self.make(model.bench), self.threads) if runs else {}
+        late = late_runs(model.bench.record, model, seen) if runs else []
+        return [replace(slip, known=True) for slip in late if slip.run in runs]
 
     def _clock_by_a_step(self, found: Investigation) -> Investigation:
         """The effects beside a clock that is off by a step, where one that was put right by any factor hides
