@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import made_tables
 import msgspec
 import numpy as np
 import pytest
@@ -10,7 +11,10 @@ from made_records import SIGMA, made
 from sonicvacuum.discover import session
 from sonicvacuum.discover.faults import strays
 from sonicvacuum.discover.faults.found import Bench, Finding
+from sonicvacuum.discover.fit.wide import nominal
 from sonicvacuum.discover.model import masks
+from sonicvacuum.discover.model.forward import Forward
+from sonicvacuum.discover.model.problem import experiment
 from sonicvacuum.effects import CATALOGUE
 from sonicvacuum.records import Signals
 
@@ -84,3 +88,10 @@ def test_tails_of_the_noise_are_told_as_spikes_and_nothing_unknown():
     found = session.discover(replace(record, signals=signals)).verdict
     assert found.named == []
     assert [(f.fault, f.sensor, f.value) for f in found.faults] == [("spikes", "g4", 4.0)]
+
+
+def test_a_table_has_no_samples_that_could_be_spikes():
+    """One of which something unknown was left ended in an error."""
+    table = made_tables.chain(departures=[("mass", 2, 3.0)])
+    forward = Forward(experiment(table))
+    assert not strays.single_samples(forward, nominal(forward))

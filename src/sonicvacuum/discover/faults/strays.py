@@ -62,7 +62,10 @@ def standing_out(left: np.ndarray, faint: bool = False) -> np.ndarray:
 def single_samples(forward: Forward, fit: Fit) -> bool:
     """Whether nothing but samples far beyond the noise is left of a fit, by the tests of its goodness."""
     p = goodness(forward, fit).tests
-    return p["outliers"] < MISFIT and all(one >= MISFIT for name, one in p.items() if name != "outliers")
+    # Values without traces have no samples.
+    return p.get("outliers", 1.0) < MISFIT and all(
+        one >= MISFIT for name, one in p.items() if name != "outliers"
+    )
 
 
 def masked(bench: Bench, found: Strays) -> Bench:
