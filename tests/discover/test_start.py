@@ -57,9 +57,8 @@ def test_starts_are_not_held_against_shorter_steps(monkeypatch):
     monkeypatch.setattr(accuracy, "LASTING", 0.0)
     monkeypatch.setattr(accuracy, "cut", lambda forward: pytest.fail("the steps were held against others"))
     data = experiment(record)
-    assert data.gauges[0].gain == pytest.approx(
-        0.1, rel=0.5
-    )  # of the record; the nominal wall is another one
+    # A tenth of a volt a newton; the nominal wall is not the one there is.
+    assert data.gauges[0].gain == pytest.approx(0.1, rel=0.5)
 
 
 def test_a_gain_that_nobody_knows_is_that_of_the_pulse_whichever_way_up():
