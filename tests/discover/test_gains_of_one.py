@@ -2,6 +2,8 @@
 before.
 """
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from made_records import DAMPING, SIGMA, made
@@ -11,6 +13,8 @@ from sonicvacuum.discover import session
 from sonicvacuum.discover.faults import changes, gains
 from sonicvacuum.discover.faults.found import Bench, Finding
 from sonicvacuum.discover.faults.judged import Model
+from sonicvacuum.discover.faults.searching import _sized_anew
+from sonicvacuum.discover.faults.slips import Slip
 from sonicvacuum.discover.fit.wide import nominal
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.nominal import predicted
@@ -126,3 +130,15 @@ def test_noise_tells_nothing_of_a_factor_beside_a_step(sound):
     # Over 2.44 the noise of so many samples has a third less of χ² than over 2, over 1.64 half more.
     square = gains._noise(doubled, "v2", "g7", np.log(2.0)) ** 2
     assert more - less == pytest.approx(-0.5 * samples * square * (np.exp(0.4) - np.exp(-0.4)), rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ("fault", "told", "more", "put"), [("gauge-gain", 3.2, 1.03, 3.296), ("time-zero", 31.0, 3.5, 34.5)]
+)
+def test_what_is_asked_for_once_more_is_told_with_what_was_said(fault, told, more, put):
+    """A factor times the other, whether steps or heights tell it; a time added."""
+    said = Finding(fault, value=told, run="v1", corrected=True)
+    again = SimpleNamespace(slip=Slip(fault, None, "v1", value=lambda size: more), size=0.0)
+    assert _sized_anew(said, again).value == pytest.approx(put)
+    other = SimpleNamespace(slip=Slip(fault, None, "v2", value=lambda size: more), size=0.0)
+    assert _sized_anew(said, other) is said

@@ -59,7 +59,7 @@ def _sized_anew(said: Finding, judged: Judged) -> Finding:
     slip, more = judged.slip, judged.slip.value(judged.size)
     if not said.corrected or (said.fault, said.run, said.sensor) != (slip.fault, slip.run, slip.sensor):
         return said
-    return replace(said, value=said.value * more if slip.value is math.exp else said.value + more)
+    return replace(said, value=said.value + more if said.fault == "time-zero" else said.value * more)
 
 
 class Searching(Ranking):
