@@ -8,7 +8,7 @@ import pytest
 from record_cases import BALL, CONTENT, SCALARS, STRIKER, TIME, content, made
 
 from sonicvacuum.effects import effect
-from sonicvacuum.forward.amplitude import speed_at_amplitude
+from sonicvacuum.forward.amplitude import speeds_at_amplitudes
 from sonicvacuum.observe.quantities import measure
 from sonicvacuum.physics.run import simulate
 from sonicvacuum.physics.solitary import SolitaryWave
@@ -163,7 +163,8 @@ def test_speeds_at_an_amplitude_are_those_of_each_chain_alone():
     diameters, force = record.specimen.diameters, 1.0
 
     def found(lanes):
-        return [x.value for x in speed_at_amplitude(chains.take(lanes), diameters, gauge.take(lanes), force)]
+        (speeds,) = speeds_at_amplitudes(chains.take(lanes), diameters, gauge.take(lanes), [force])
+        return [x.value for x in speeds]
 
     # Strikes end at amplitudes within 3 % of the one wanted, by other steps beside other chains.
     alone = [found(np.array([k]))[0] for k in range(3)]

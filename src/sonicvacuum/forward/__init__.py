@@ -5,6 +5,6 @@ as single numbers. What is predicted of a record and what `discover` fits both c
 """
 
 from sonicvacuum.forward.motion import Seen, readings, see
-from sonicvacuum.forward.scalars import measured, of_amplitude, passages, virtual
+from sonicvacuum.forward.scalars import measured, of_amplitudes, passages, virtual
 
-__all__ = ["Seen", "measured", "of_amplitude", "passages", "readings", "see", "virtual"]
+__all__ = ["Seen", "measured", "of_amplitudes", "passages", "readings", "see", "virtual"]

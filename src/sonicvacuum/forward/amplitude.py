@@ -1,14 +1,18 @@
-"""The speed of a wave of given amplitude at a gauge, whatever struck the chain.
+"""Speeds of waves of given amplitudes at a gauge, whatever struck the chain.
 
-The striker's speed at which the gauge reads that amplitude is sought, for all chains of a batch side by side.
+Strikers' speeds are sought at which the gauge reads these amplitudes, for all chains of a batch and all
+amplitudes side by side. Strikes of one chain are points of one smooth curve, speed over amplitude: each tells
+of all amplitudes near it, so that a table takes hardly more strikes than it has values.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from sonicvacuum.effects import Setup
+from sonicvacuum.forward.curve import Curve
 from sonicvacuum.forward.motion import see
 from sonicvacuum.gauges import Gauge, position
 from sonicvacuum.laboratory.bodies import Bodies
@@ -16,70 +20,64 @@ from sonicvacuum.observe.quantities import measure_run
 from sonicvacuum.observe.run import Geometry
 from sonicvacuum.observe.trace import Measured, Unsettled, missing
 from sonicvacuum.physics.chain import Chain
+from sonicvacuum.physics.lanes import LANES
 from sonicvacuum.physics.scales import (
     EMBEDDED_SHARE,
     STRIKER_POWER,
-    WAVE_POWER,
     impact_forces,
     passage_of,
     sampling_of,
 )
 
-# The search ends once all amplitudes are so near (natural log): what the slope between the last two strikes
-# then errs by, a few hundredths, moves a speed by a few parts in 1e4 at most.
-NEAR = 0.03
+# So many times each chain is struck for an amplitude at most.
 TRIES = 8
-# Steps in the logarithm of the striker's speed go no further than this.
-STRIDE = math.log(4.0)
+# One strike serves amplitudes that are no further from it than this (natural log).
+SERVED = 0.35
+# Strikes simulated together differ by this factor of speed at most, their contact times by a quarter: samples
+# are as dense as the fastest asks for, and as many as the slowest does. Fewer than fill the stepper's lanes
+# are not parted.
+ALIKE = 3.0
 # The speed is taken over this many beads on either side of the gauge, where the chain has them.
 REACH = 2
 # Beads before the wall in which the reflection lies on the pulse.
 CLEAR = 2
 # The wave has reached the wall, and has passed all gauges, after so many crossings of the slowest chain; most
 # waves have after MOSTLY.
-MOSTLY, CROSSED = 0.7, 1.7
-# Within these the exponent that two strikes show is believed; strikes nearer than this show none.
-_LEAST, _MOST, _APART = 0.4, 1.6, 1e-4
+MOSTLY, CROSSED = 0.8, 1.7
 
 
-def speed_at_amplitude(
-    chain: Chain, diameters: Bodies | float, sensor: Gauge, amplitude: float, refine: float = 1.0
-) -> list[Measured]:
-    """Speed in m/s of the wave that peaks at `amplitude` N at a gauge, one for each lane.
+def speeds_at_amplitudes(
+    chain: Chain, diameters: Bodies | float, sensor: Gauge, amplitudes: Sequence[float], refine: float = 1.0
+) -> list[list[Measured]]:
+    """Speeds in m/s of waves that peak at `amplitudes` (n,) in N at a gauge: for each of them, of each lane.
 
     Args:
         chain: with its effects; the strikers' speeds do not matter.
         diameters: of the beads in m.
         sensor: the gauge, with its electronics and gain.
-        amplitude: reading in N.
+        amplitudes: readings in N.
         refine: divides the step of the simulation.
 
     Returns:
         Peak-to-peak speeds between gauges 2 beads before and behind (near the wall: over the last 4 beads
-        that are clear of the reflection), a power law of the amplitude between the last two strikes; NaN with
-        a reason where there is none.
+        that are clear of the reflection), by the curve through strikes nearby; NaN with a reason where there
+        is none.
     """
     pair = _pair(sensor, chain.beads)
     if pair is None:
-        return [missing("short: the chain has too few beads for a speed at this gauge")] * chain.lanes
-    target = math.log(amplitude)
-    strike = last = first = np.log(_first_guess(chain, amplitude))
-    before, mostly = None, passage_of(chain.struck_at(np.exp(first)), MOSTLY)
+        short = missing("short: the chain has too few beads for a speed at this gauge")
+        return [[short] * chain.lanes for _ in amplitudes]
+    targets = np.log(np.asarray(amplitudes, dtype=float))
+    first = np.stack([np.log(_first_guess(chain, a)) for a in amplitudes], axis=1)
+    curves = [Curve() for _ in range(chain.lanes)]
+    wanted = [(lane, first[lane, k]) for lane in range(chain.lanes) for k in _apart(targets)]
     for _ in range(TRIES):
-        # A contact time goes as the speed to the power −1/5.
-        begun = mostly * math.exp(0.2 * float((first - strike).max()))
-        seen = np.log(_struck(chain, diameters, sensor, pair, np.exp(strike), begun, refine))
-        off = seen[0] - target
-        known = np.isfinite(off)
-        if not known.any():
-            return [missing(f"absent: no pulse at {sensor.id}")] * chain.lanes
-        if before is not None and np.abs(off[known]).max() < NEAR:
+        for lane, point in _struck(chain, diameters, sensor, pair, wanted, refine):
+            curves[lane].add(*point)
+        wanted = [(lane, s) for lane, curve in enumerate(curves) for s in _further(curve, targets)]
+        if not wanted:
             break
-        power = _exponent(before, seen, strike, last) if before is not None else STRIKER_POWER
-        before, last = seen, strike
-        # Those without a pulse stay as they are.
-        strike = strike - np.where(known, np.clip(power * off, -STRIDE, STRIDE), 0.0)
-    return _between(before, seen, off, sensor)
+    return [[_told(curve, target, sensor) for curve in curves] for target in targets.tolist()]
 
 
 def _first_guess(chain, amplitude):
@@ -87,28 +85,34 @@ def _first_guess(chain, amplitude):
     return chain.speed * (amplitude / (EMBEDDED_SHARE * impact_forces(chain))) ** STRIKER_POWER
 
 
-def _exponent(before, now, strike, last):
-    """(lanes,) d log striker speed / d log amplitude between two strikes, the usual one for strikes alike."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        power = (strike - last) / (now[0] - before[0])
-    return np.where(np.abs(now[0] - before[0]) > _APART, np.clip(power, _LEAST, _MOST), STRIKER_POWER)
+def _apart(targets):
+    """Which of (n,) logarithms of amplitudes are struck at first, so that each is served by one of them."""
+    chosen, order = [], np.argsort(targets).tolist()
+    while order:
+        low = targets[order[0]]
+        serves = max(k for k in range(len(order)) if targets[order[k]] - low <= SERVED)
+        chosen.append(order[serves])
+        order = [k for k in order if targets[k] - targets[chosen[-1]] > SERVED]
+    return chosen
 
 
-def _between(before, now, off, sensor):
-    """The speeds at the amplitude wanted, `off` (lanes,) away from the last strike's (natural log)."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        slope = (now[1] - before[1]) / (now[0] - before[0])
-    slope = np.where(np.abs(now[0] - before[0]) > _APART, slope, WAVE_POWER)
-    return [_told(x, o, sensor) for x, o in zip(now[1] - slope * off, off, strict=True)]
+def _further(curve, targets):
+    """Logarithms of the speeds at which a chain is struck next, none where nothing more is to be learned."""
+    left = np.array([t for t in targets.tolist() if not curve.tells(t)])
+    if curve.empty or not len(left):
+        return []
+    return [curve.strike_for(left[k]) for k in _apart(left)]
 
 
-def _told(log_speed, off, sensor) -> Measured:
+def _told(curve, target, sensor) -> Measured:
     """One speed, or why there is none."""
-    if not math.isfinite(off):
+    if curve.silent:
         return missing(f"absent: no pulse at {sensor.id}")
-    if abs(off) > NEAR:
+    if curve.empty:
+        return missing("no passage")
+    if not curve.tells(target):
         return missing("outside: no striker speed gives this amplitude")
-    return Measured(float(np.exp(log_speed))) if math.isfinite(log_speed) else missing("no passage")
+    return Measured(math.exp(curve.speed(target)))
 
 
 def _pair(sensor, beads):
@@ -121,17 +125,41 @@ def _pair(sensor, beads):
     return Gauge("(before)", "embedded", first), Gauge("(behind)", "embedded", last)
 
 
-def _struck(chain, diameters, sensor, pair, speeds, begun, refine):
-    """(2, lanes) amplitude at the gauge and speed across the pair, of chains struck at these speeds; what is
-    settled in the first `begun` seconds is not simulated for longer.
+def _struck(chain, diameters, sensor, pair, wanted, refine):
+    """For each strike, lane and logarithm of the striker's speed, that lane and logarithms of the striker's
+    speed, the amplitude at the gauge and the speed across the pair.
     """
-    lanes = chain.struck_at(speeds)
+    lanes, strikes = np.array([w[0] for w in wanted]), np.array([w[1] for w in wanted])
+    found = np.empty((2, len(wanted)))
+    for here in _alike(strikes):
+        struck = chain.take(lanes[here]).struck_at(np.exp(strikes[here]))
+        found[:, here] = _shown_by(struck, diameters, sensor.take(lanes[here]), pair, refine)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        heights, speeds = np.log(found)
+    points = np.stack([strikes, heights, speeds], axis=1)
+    return zip(lanes.tolist(), points.tolist(), strict=True)
+
+
+def _alike(strikes):
+    """Places of the strikes that are simulated together."""
+    groups: list[list[int]] = []
+    for k in np.argsort(strikes, kind="stable").tolist():
+        if not groups or (len(groups[-1]) >= LANES and strikes[k] - strikes[groups[-1][0]] > math.log(ALIKE)):
+            groups.append([])
+        groups[-1].append(k)
+    return groups
+
+
+def _shown_by(lanes, diameters, sensor, pair, refine):
+    """(2, lanes) amplitude at the gauge and speed across the pair that chains show; what most of a crossing
+    settles is not simulated for longer.
+    """
     gauges = (replace(sensor, id="(gauge)"), *pair, Gauge("(end)", "wall", None))
-    setup, geometry = Setup(lanes, gauges), Geometry(chain.beads, diameters, gauges)
-    interval, found, left = sampling_of(lanes), np.empty((2, chain.lanes)), np.arange(chain.lanes)
+    setup, geometry = Setup(lanes, gauges), Geometry(lanes.beads, diameters, gauges)
+    interval, found, left = sampling_of(lanes), np.empty((2, lanes.lanes)), np.arange(lanes.lanes)
     for goes_on in (True, False):
-        own = setup if len(left) == chain.lanes else setup.take(left)
-        duration = begun if goes_on else passage_of(lanes, CROSSED)
+        own = setup if len(left) == lanes.lanes else setup.take(left)
+        duration = passage_of(lanes, MOSTLY if goes_on else CROSSED)
         seen = see(own, duration, interval, refine=refine, forgiving=True)
         found[:, left], unsettled = _shown(seen, geometry, goes_on)
         left = left[unsettled]

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from sonicvacuum.forward.amplitude import speed_at_amplitude
+from sonicvacuum.forward.amplitude import speeds_at_amplitudes
 from sonicvacuum.forward.motion import Seen, readings
 from sonicvacuum.gauges import Gauge
 from sonicvacuum.laboratory.bodies import Bodies
@@ -72,14 +72,26 @@ def measured(
         striker = (float(n[lane]) for n in (chain.striker_mass, chain.speed, chain.gravity))
         return restitution(history.time, history.of(0)[:, lane], *striker)
     if observable.quantity == "speed_at_amplitude":
-        return of_amplitude(observable, seen, np.array([lane]), diameters, refine)[0]
+        return of_amplitudes([observable], seen, np.array([lane]), diameters, refine)[0][0]
     return measure_run(observable.quantity, passage, **options)
 
 
-def of_amplitude(
-    observable, seen: Seen, lanes: np.ndarray, diameters: Bodies | float, refine: float = 1.0
-) -> list[Measured]:
-    """Speeds of waves of one amplitude in the chains of some lanes, whatever struck them."""
-    options = observable.options
-    gauge = next(g for g in seen.setup.sensors if g.id == options["sensor"]).take(lanes)
-    return speed_at_amplitude(seen.setup.chain.take(lanes), diameters, gauge, options["amplitude"], refine)
+def of_amplitudes(
+    observables, seen: Seen, lanes: np.ndarray, diameters: Bodies | float, refine: float = 1.0
+) -> list[list[Measured]]:
+    """Speeds of waves of n amplitudes in the chains of some lanes, whatever struck them: for each of n
+    observables, of each lane. What one gauge reads is found side by side.
+    """
+    gauges: dict[str, list[int]] = {}
+    for k, one in enumerate(observables):
+        gauges.setdefault(one.options["sensor"], []).append(k)
+    found: list[list[Measured]] = [[]] * len(observables)
+    chain = seen.setup.chain.take(lanes)
+    for name, places in gauges.items():
+        gauge = next(g for g in seen.setup.sensors if g.id == name).take(lanes)
+        amplitudes = [observables[k].options["amplitude"] for k in places]
+        for k, one in zip(
+            places, speeds_at_amplitudes(chain, diameters, gauge, amplitudes, refine), strict=True
+        ):
+            found[k] = one
+    return found

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from sonicvacuum.discover.model.beginnings import SOLITARY, is_inside, settled
-from sonicvacuum.forward import measured, of_amplitude
+from sonicvacuum.discover.model.beginnings import SOLITARY, settled
+from sonicvacuum.forward import measured, of_amplitudes
 from sonicvacuum.forward.columns import filled
 from sonicvacuum.forward.striker import Strikers
 from sonicvacuum.observe.contacts import BALL_QUANTITIES
@@ -123,9 +123,12 @@ def predict(experiment, wanted, seen, values: np.ndarray, refine: float = 1.0) -
     for k, scalars in enumerate(wanted):
         lanes = np.arange(k, len(values), len(wanted))
         own = values[lanes, : len(scalars)]
+        solitary = [n for n, one in enumerate(scalars) if one.quantity == SOLITARY]
+        if solitary:
+            own[:, solitary] = _solitary(experiment, [scalars[n] for n in solitary], seen, lanes, refine)
         for n, one in enumerate(scalars):
-            if not is_inside(one):
-                own[:, n] = _outside(experiment, one, seen, lanes, strikers, refine)
+            if one.quantity in BALL_QUANTITIES:
+                own[:, n] = _of_striker(experiment, one, seen, lanes, strikers, refine)
         found.append(np.nan_to_num(own, nan=0.0 if experiment.beads else np.nan, posinf=0.0, neginf=0.0))
     return found
 
@@ -168,18 +171,25 @@ def _never(scalar, duration):
     return scalar.value - off if scalar.bound == "at_least" else scalar.value + off
 
 
-def _outside(experiment, scalar, seen, lanes, strikers, refine):
-    """A number of some lanes that no gauge in the chain tells."""
+def _solitary(experiment, scalars, seen, lanes, refine):
+    """(L, n) speeds of waves of n amplitudes in the chains of some lanes."""
+    try:
+        found = of_amplitudes(scalars, seen, lanes, experiment.diameter, refine)
+        return np.array([[one.value for one in column] for column in found]).T
+    except ValueError:  # of which lane, is found one by one
+        return np.array([[_value(experiment, one, seen, lane, refine) for one in scalars] for lane in lanes])
+
+
+def _of_striker(experiment, scalar, seen, lanes, strikers, refine):
+    """A number of some lanes that the striker's motion tells."""
 
     def closer(lane):
         return _value(experiment, scalar, seen, lane, refine)
 
     try:
-        if scalar.quantity == SOLITARY:
-            return [one.value for one in of_amplitude(scalar, seen, lanes, experiment.diameter, refine)]
         found = getattr(strikers, scalar.quantity)[lanes]
     except ValueError:
-        return [closer(lane) for lane in lanes.tolist()]  # of which lane, is found one by one
+        return [closer(lane) for lane in lanes.tolist()]
     return filled(found, lanes, closer)
 
 
