@@ -44,7 +44,7 @@ def test_numbers_are_those_of_the_whole(begun, monkeypatch):
     nu[:, forward.layout.modulus] = np.array([0.0, 1.0, -1.0, -2.0, -3.0]) / begun.modulus_rel_sigma
     assert any(b.first_s < 0.8 * b.duration for b in begun.batches)
     found, chains = predicted(begun, nu)
-    monkeypatch.setattr(amplitude, "MOSTLY", 10.0 * amplitude.CROSSED)
+    monkeypatch.setattr(amplitude, "CROSSINGS", (10.0 * amplitude.CROSSINGS[-1],))
     expected, once = predicted(whole(begun), nu)
     np.testing.assert_allclose(found, expected, rtol=ROUNDING)
     assert once == nu.shape[0] * len(begun.runs) < chains

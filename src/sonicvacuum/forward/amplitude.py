@@ -41,9 +41,9 @@ ALIKE = 3.0
 REACH = 2
 # Beads before the wall in which the reflection lies on the pulse.
 CLEAR = 2
-# The wave has reached the wall, and has passed all gauges, after so many crossings of the slowest chain; most
-# waves have after MOSTLY.
-MOSTLY, CROSSED = 0.8, 1.7
+# The wave has reached the wall, and has passed all gauges, after the last of so many crossings of the slowest
+# chain; most waves have after the first.
+CROSSINGS = 0.8, 1.15, 1.7
 
 
 def speeds_at_amplitudes(
@@ -151,17 +151,16 @@ def _alike(strikes):
 
 
 def _shown_by(lanes, diameters, sensor, pair, refine):
-    """(2, lanes) amplitude at the gauge and speed across the pair that chains show; what most of a crossing
+    """(2, lanes) amplitude at the gauge and speed across the pair that chains show; what a part of the time
     settles is not simulated for longer.
     """
     gauges = (replace(sensor, id="(gauge)"), *pair, Gauge("(end)", "wall", None))
     setup, geometry = Setup(lanes, gauges), Geometry(lanes.beads, diameters, gauges)
     interval, found, left = sampling_of(lanes), np.empty((2, lanes.lanes)), np.arange(lanes.lanes)
-    for goes_on in (True, False):
+    for crossings in CROSSINGS:
         own = setup if len(left) == lanes.lanes else setup.take(left)
-        duration = passage_of(lanes, MOSTLY if goes_on else CROSSED)
-        seen = see(own, duration, interval, refine=refine, forgiving=True)
-        found[:, left], unsettled = _shown(seen, geometry, goes_on)
+        seen = see(own, passage_of(lanes, crossings), interval, refine=refine, forgiving=True)
+        found[:, left], unsettled = _shown(seen, geometry, crossings < CROSSINGS[-1])
         left = left[unsettled]
         if not len(left):
             break
