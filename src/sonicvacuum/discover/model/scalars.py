@@ -1,5 +1,7 @@
 """Observables of a run predicted from simulated readings, and what gains and shared errors do to them."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from sonicvacuum.discover.model.beginnings import SOLITARY, settled
@@ -15,10 +17,13 @@ DOUBLED = 3
 # One that does not open then explains nothing: what it predicts is off by so many impact speeds, or durations
 # of the simulation.
 OFF = 1e3
+# Amplitudes that are all within this of each other (natural log) show no slope of a curve; those of a table
+# show one that bends once, from sound to solitary waves.
+SPREAD, BENDS = 0.1, 2
 
 
 def gain_power(scalar, gauge: str) -> float:
-    """d log(quantity) / d log(gain of a gauge)."""
+    """d log(quantity) / d log(gain of a gauge), of a speed at an amplitude that of a Hertz chain at rest."""
     options = scalar.options
     if scalar.quantity == "amplitude":
         return float(options["sensor"] == gauge)
@@ -65,10 +70,32 @@ def gain_columns(experiment, run: int, value: np.ndarray) -> np.ndarray:
         for k, one in enumerate(data.scalars):
             at = len(gauges) * samples + k
             columns[:, s, at] = value[:, at] * gain_power(one, gauges[s].id)
+        _along_tables(columns[:, s], value, data.scalars, gauges[s].id)
     if data.scalars:
         own = slice(len(gauges) * samples, None)
         columns[:, :, own] *= ~held(data.scalars, value[:, own])[:, None]
     return columns
+
+
+def _along_tables(columns, value, scalars, gauge):
+    """Slopes (L, M) to a gauge's gain of its speeds at amplitudes, from the curve that these are: it is flat
+    under a static force, and steeper where contacts stiffen.
+    """
+    places = [
+        k for k, one in enumerate(scalars) if one.quantity == SOLITARY and one.options["sensor"] == gauge
+    ]
+    force = np.log([scalars[k].options["amplitude"] for k in places])
+    if len(places) < 2 or np.ptp(force) < SPREAD:
+        return
+    at = value.shape[1] - len(scalars) + np.array(places)
+    shown = value[:, at] > 0.0
+    sigma = np.array([scalars[k].sigma for k in places])
+    speed = np.log(np.where(shown, value[:, at], 1.0) * sigma)
+    bends = min(BENDS, len(np.unique(force)) - 1)
+    curve = np.polynomial.polynomial.polyfit(force - force.mean(), speed.T, bends)
+    power = np.polynomial.polynomial.polyval(force - force.mean(), np.polynomial.polynomial.polyder(curve))
+    told = shown.all(axis=1)[:, None] & np.isfinite(power)
+    columns[:, at] = np.where(told, -value[:, at] * power, columns[:, at])
 
 
 def shared_column(experiment, run: int, value: np.ndarray, source: str) -> np.ndarray:
@@ -99,14 +126,17 @@ def of_batch(experiment, layout, batch, seen, gain, nu, again, refine: float = 1
     if not any(wanted):
         return [np.zeros((len(nu), 0))] * len(wanted)
     errors = {layout.named(p): nu[:, p] for p in layout.other("shared")}
-    values = settled(experiment, batch, seen, np.repeat(gain, len(wanted), axis=0), again)
-    predicted = predict(experiment, wanted, seen, values, refine)
+    each = np.repeat(gain, len(wanted), axis=0)
+    values = settled(experiment, batch, seen, each, again)
+    predicted = predict(experiment, wanted, seen, values, each, refine)
     if not experiment.beads and any(np.isnan(own).any() for own in predicted):
         predicted = _opened(wanted, predicted, seen, again, batch.duration)
     return [read(scalars, own, errors) for scalars, own in zip(wanted, predicted, strict=True)]
 
 
-def predict(experiment, wanted, seen, values: np.ndarray, refine: float = 1.0) -> list[np.ndarray]:
+def predict(
+    experiment, wanted, seen, values: np.ndarray, gain: np.ndarray, refine: float = 1.0
+) -> list[np.ndarray]:
     """For each of R runs (L, n) values of its scalars in SI, 0 where the readings show no such thing; NaN of
     one ball whose contact has not opened, as 0 would be a ball that stops dead.
 
@@ -115,17 +145,18 @@ def predict(experiment, wanted, seen, values: np.ndarray, refine: float = 1.0) -
         wanted: the n scalars of each run.
         seen: the simulation, R runs for each of L lanes.
         values: (L R, n') what gauges in the chain tell.
+        gain: (L R, S) of the gauges.
         refine: divides the step of further simulations.
     """
     of_ball = any(one.quantity in BALL_QUANTITIES for scalars in wanted for one in scalars)
     strikers = Strikers(seen.history, seen.setup.chain) if of_ball else None
-    found = []
+    found, gauged = [], _with_gains(seen, gain)
     for k, scalars in enumerate(wanted):
         lanes = np.arange(k, len(values), len(wanted))
         own = values[lanes, : len(scalars)]
         solitary = [n for n, one in enumerate(scalars) if one.quantity == SOLITARY]
         if solitary:
-            own[:, solitary] = _solitary(experiment, [scalars[n] for n in solitary], seen, lanes, refine)
+            own[:, solitary] = _solitary(experiment, [scalars[n] for n in solitary], gauged, lanes, refine)
         for n, one in enumerate(scalars):
             if one.quantity in BALL_QUANTITIES:
                 own[:, n] = _of_striker(experiment, one, seen, lanes, strikers, refine)
@@ -169,6 +200,12 @@ def _never(scalar, duration):
     """What counts as predicted of a contact that does not open, on the side that a bound does not forgive."""
     off = OFF * (duration if scalar.quantity == "contact_duration" else 1.0)
     return scalar.value - off if scalar.bound == "at_least" else scalar.value + off
+
+
+def _with_gains(seen, gain):
+    """The simulation as its gauges have these gains (C, S): an amplitude that they read is another force."""
+    sensors = (replace(g, gain=g.gain * gain[:, s]) for s, g in enumerate(seen.setup.sensors))
+    return replace(seen, setup=replace(seen.setup, sensors=tuple(sensors)))
 
 
 def _solitary(experiment, scalars, seen, lanes, refine):
