@@ -31,8 +31,9 @@ from sonicvacuum.physics.scales import (
 
 # So many times each chain is struck for an amplitude at most.
 TRIES = 8
-# One strike serves amplitudes that are no further from it than this (natural log).
-SERVED = 0.35
+# One strike serves amplitudes that are no further from it than this (natural log); where these are dense,
+# strikes so far apart tell of all of them, see `curve`.
+SERVED, SPACED = 0.35, 1.0
 # Strikes simulated together differ by this factor of speed at most, their contact times by a quarter: samples
 # are as dense as the fastest asks for, and as many as the slowest does. Fewer than fill the stepper's lanes
 # are not parted.
@@ -68,9 +69,9 @@ def speeds_at_amplitudes(
         short = missing("short: the chain has too few beads for a speed at this gauge")
         return [[short] * chain.lanes for _ in amplitudes]
     targets = np.log(np.asarray(amplitudes, dtype=float))
-    first = np.stack([np.log(_first_guess(chain, a)) for a in amplitudes], axis=1)
+    first = np.stack([np.log(_first_guess(chain, a)) for a in np.exp(_spread(targets))], axis=1)
     curves = [Curve() for _ in range(chain.lanes)]
-    wanted = [(lane, first[lane, k]) for lane in range(chain.lanes) for k in _apart(targets)]
+    wanted = [(lane, strike) for lane in range(chain.lanes) for strike in first[lane].tolist()]
     for _ in range(TRIES):
         for lane, point in _struck(chain, diameters, sensor, pair, wanted, refine):
             curves[lane].add(*point)
@@ -85,8 +86,17 @@ def _first_guess(chain, amplitude):
     return chain.speed * (amplitude / (EMBEDDED_SHARE * impact_forces(chain))) ** STRIKER_POWER
 
 
+def _spread(targets):
+    """Logarithms of the amplitudes for which chains are struck at first: some of the (n,) wanted, or evenly
+    among them where these are fewer.
+    """
+    own = targets[_apart(targets)]
+    even = np.linspace(targets.min(), targets.max(), 1 + math.ceil(np.ptp(targets) / SPACED))
+    return even if len(even) < len(own) else own
+
+
 def _apart(targets):
-    """Which of (n,) logarithms of amplitudes are struck at first, so that each is served by one of them."""
+    """Which of (n,) logarithms of amplitudes are struck, so that each is served by one of them."""
     chosen, order = [], np.argsort(targets).tolist()
     while order:
         low = targets[order[0]]
