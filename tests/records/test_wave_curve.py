@@ -154,7 +154,7 @@ def test_a_table_of_many_values_takes_fewer_strikes(bench, struck, monkeypatch, 
 
 @pytest.mark.parametrize(
     ("amplitude_shown", "reason"),
-    [(math.nan, "absent: no pulse at near"), (5.0, "no passage")],
+    [(math.nan, "absent: no pulse at near clear of the wall's reflection"), (5.0, "no passage")],
 )
 def test_what_no_strike_shows_has_a_reason(bench, monkeypatch, amplitude_shown, reason):
     def shown(lanes, *_):

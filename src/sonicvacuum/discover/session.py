@@ -34,6 +34,7 @@ from sonicvacuum.physics import validity
 from sonicvacuum.records import Record, check_records
 from sonicvacuum.records.extent import check_extent
 from sonicvacuum.records.suspects import copies
+from sonicvacuum.records.unshown import unshown
 
 
 @dataclass(frozen=True)
@@ -172,7 +173,8 @@ def discover(
 
 def _taken_as_stated(found: Investigation, records: tuple[Record, ...]) -> list[str]:
     """What was taken as exact, or as known so well, where something is named: a tolerance might explain it
-    instead. And what the nominal model would have of the record otherwise than stated, and files read twice.
+    instead. And what the nominal model would have of the record otherwise than stated, or does not show at
+    all, and files read twice.
     """
     e, said = found.forward.experiment, []
     if found.named and e.record is not None:
@@ -180,7 +182,7 @@ def _taken_as_stated(found: Investigation, records: tuple[Record, ...]) -> list[
     final = found.final if verdict.named_effects(found) else None
     known = final is not None or not found.named
     moved = strained.lines(found.forward, found.null, final) if known else []
-    return [*filter(None, said), *moved, *(line for one in records for line in copies(one))]
+    return [*filter(None, said), *moved, *(line for one in records for line in (*copies(one), *unshown(one)))]
 
 
 def _doubts(found: Investigation, record: Record) -> list[str]:

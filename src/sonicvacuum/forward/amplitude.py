@@ -117,7 +117,7 @@ def _further(curve, targets):
 def _told(curve, target, sensor) -> Measured:
     """One speed, or why there is none."""
     if curve.silent:
-        return missing(f"absent: no pulse at {sensor.id}")
+        return missing(f"absent: no pulse at {sensor.id} clear of the wall's reflection")
     if curve.empty:
         return missing("no passage")
     if not curve.tells(target):

@@ -7,6 +7,7 @@ from sonicvacuum.records.checks import warnings
 from sonicvacuum.records.expected import Expected, Feature, expected
 from sonicvacuum.records.record import Record
 from sonicvacuum.records.suspects import suspects
+from sonicvacuum.records.unshown import unshown
 
 # Traces of four runs, three gauges and 480 samples take 0.4 s on one core where nothing is missing, 1.3 s
 # where one effect is, 4 where two are and up to 20 where more is, scalars 2 to 11 s (the blind study of
@@ -70,7 +71,7 @@ def review(record: Record, searched: Record | None = None, treatment=(), slips=(
         title=record.title,
         expected=seen,
         warnings=(*_untouched(record), *warnings(record)),
-        suspects=(*suspects(record, seen), *slips),
+        suspects=(*suspects(record, seen), *unshown(record), *slips),
         treatment=tuple(treatment),
         discover_s=_seconds(searched or record),
         longest_s=_longest(searched or record),

@@ -1,0 +1,38 @@
+"""Numbers of which the nominal model shows none: the check says so, and why."""
+
+import pytest
+from record_cases import CONTENT, STRIKER, content
+
+from sonicvacuum.records import Record
+from sonicvacuum.records.reader import parse
+from sonicvacuum.records.review import review
+
+TABLE = [
+    {"quantity": "speed_at_amplitude", "amplitude_N": a, "sensor": "near", "value": 430.0, "sigma": 5.0,
+     "unit": "m/s"}
+    for a in (2.0, 20.0)
+]  # fmt: skip
+
+
+def table_at(bead) -> Record:
+    """Speeds at two amplitudes that a gauge in a bead reads."""
+    return Record(
+        parse(
+            content(
+                CONTENT,
+                sensors=[{"id": "near", "kind": "embedded", "bead": bead}],
+                runs=[{"id": "table", "striker": STRIKER, "observables": TABLE}],
+            )
+        )
+    )
+
+
+@pytest.mark.parametrize("bead", [1, 5])
+def test_numbers_that_the_model_shows_are_not_suspected(bead):
+    assert not [line for line in review(table_at(bead)).suspects if "shows none" in line]
+
+
+def test_amplitudes_at_the_last_bead_are_told_to_lie_under_the_reflection():
+    """They were silent, and a bead more, behind the gauge, explained that there are speeds at all."""
+    (told,) = [line for line in review(table_at(10)).suspects if "shows none" in line]
+    assert told.startswith("run table: 2 × speed_at_amplitude near: the nominal model shows none (")
