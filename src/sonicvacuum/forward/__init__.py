@@ -5,6 +5,23 @@ as single numbers. What is predicted of a record and what `discover` fits both c
 """
 
 from sonicvacuum.forward.motion import Seen, readings, see
-from sonicvacuum.forward.scalars import measured, of_amplitudes, passages, virtual
+from sonicvacuum.forward.scalars import (
+    SOLITARY,
+    all_measured,
+    measured,
+    of_amplitudes,
+    passages,
+    virtual,
+)
 
-__all__ = ["Seen", "measured", "of_amplitudes", "passages", "readings", "see", "virtual"]
+__all__ = [
+    "SOLITARY",
+    "Seen",
+    "all_measured",
+    "measured",
+    "of_amplitudes",
+    "passages",
+    "readings",
+    "see",
+    "virtual",
+]

@@ -11,6 +11,9 @@ from sonicvacuum.observe.quantities import measure_run
 from sonicvacuum.observe.run import Geometry, Run
 from sonicvacuum.observe.trace import Measured
 
+# What needs further strikes, of all lanes side by side.
+SOLITARY = "speed_at_amplitude"
+
 
 def virtual(gauges: tuple[Gauge, ...], beads: int) -> tuple[Gauge, ...]:
     """Gauges that only the simulation has, so that it is known when the reflection returns."""
@@ -71,9 +74,21 @@ def measured(
     if observable.quantity == "restitution":
         striker = (float(n[lane]) for n in (chain.striker_mass, chain.speed, chain.gravity))
         return restitution(history.time, history.of(0)[:, lane], *striker)
-    if observable.quantity == "speed_at_amplitude":
+    if observable.quantity == SOLITARY:
         return of_amplitudes([observable], seen, np.array([lane]), diameters, refine)[0][0]
     return measure_run(observable.quantity, passage, **options)
+
+
+def all_measured(
+    observables, seen: Seen, lane: int, passage: Run, diameters: Bodies | float, refine: float = 1.0
+) -> tuple[Measured, ...]:
+    """Several of one lane, see `measured`; speeds of waves of all amplitudes side by side."""
+    waves = [one for one in observables if one.quantity == SOLITARY]
+    speeds = iter(of_amplitudes(waves, seen, np.array([lane]), diameters, refine))
+    return tuple(
+        next(speeds)[0] if one.quantity == SOLITARY else measured(one, seen, lane, passage, diameters, refine)
+        for one in observables
+    )
 
 
 def of_amplitudes(

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonicvacuum.effects.base import Setup
-from sonicvacuum.forward import measured, passages, see, virtual
+from sonicvacuum.forward import Seen, all_measured, passages, see, virtual
 from sonicvacuum.observe.trace import Measured
 from sonicvacuum.records.assemble import Batch, assemble, duration_of, interval_of
 from sonicvacuum.records.record import Record
@@ -69,15 +69,31 @@ def predict(record: Record, conditions: Conditions | None = None) -> tuple[Predi
     found: dict[int, Prediction] = {}
     for batch in assemble(record):
         seen = _seen(record, batch, conditions)
-        gauges, diameters = seen.setup.sensors, record.specimen.diameters
-        shown = passages(seen, slice(None), seen.readings, gauges, diameters, through=True)
+        scalars = _numbers(record, batch, seen, conditions)
         for lane, place in enumerate(batch.runs):
-            readings = dict(zip((g.id for g in gauges), seen.readings[lane], strict=True))
-            wanted = record.runs[place].observables
-            scalars = (measured(o, seen, lane, shown[lane], diameters, conditions.refine) for o in wanted)
+            readings = dict(zip((g.id for g in seen.setup.sensors), seen.readings[lane], strict=True))
             at_record = _at_record(record, place, seen.history.time, readings, conditions)
-            found[place] = Prediction(at_record, tuple(scalars))
+            found[place] = Prediction(at_record, scalars[lane])
     return tuple(found[k] for k in range(len(record.runs)))
+
+
+def numbers(record: Record, conditions: Conditions | None = None) -> list[tuple[Measured, ...]]:
+    """The observables of every run alone, as `predict` has them."""
+    conditions, found = conditions or Conditions(), {}
+    for batch in assemble(record):
+        scalars = _numbers(record, batch, _seen(record, batch, conditions), conditions)
+        found.update(zip(batch.runs, scalars, strict=True))
+    return [found[k] for k in range(len(record.runs))]
+
+
+def _numbers(record, batch, seen: Seen, conditions) -> list[tuple[Measured, ...]]:
+    """The observables of each run of a batch."""
+    diameters = record.specimen.diameters
+    shown = passages(seen, slice(None), seen.readings, seen.setup.sensors, diameters, through=True)
+    return [
+        all_measured(record.runs[place].observables, seen, lane, shown[lane], diameters, conditions.refine)
+        for lane, place in enumerate(batch.runs)
+    ]
 
 
 def _seen(record, batch, conditions):

@@ -4,7 +4,9 @@ A model that shows no such number predicts none: every effect, or slip of the la
 explains the record by far, whatever the value.
 """
 
-from sonicvacuum.records.predict import predict
+from collections import Counter
+
+from sonicvacuum.records.predict import numbers
 from sonicvacuum.records.record import Record
 
 
@@ -13,18 +15,21 @@ def unshown(record: Record) -> list[str]:
     if not any(run.observables for run in record.runs):
         return []
     try:
-        predicted = predict(record)
+        predicted = numbers(record)
     except (FloatingPointError, ValueError):
         return []  # what such a record lacks is told where it is read
-    found: dict[tuple[str, str, str], list[float]] = {}
-    for run, shown in zip(record.runs, predicted, strict=True):
-        for one, told in zip(run.observables, shown.observables, strict=True):
-            if not told.known:
-                gauges = "–".join(one.options[key] for key in ("from", "to", "sensor") if key in one.options)
-                found.setdefault((run.id, f"{one.quantity} {gauges}".rstrip(), told.reason), []).append(
-                    one.value
-                )
+    found = Counter(
+        (run.id, one.quantity, _gauges(one.options), told.reason)
+        for run, shown in zip(record.runs, predicted, strict=True)
+        for one, told in zip(run.observables, shown, strict=True)
+        if not told.known
+    )
     return [
-        f"run {run}: {len(values)} × {what}: the nominal model shows none ({reason})"
-        for (run, what, reason), values in found.items()
+        f"run {run}: {count} × {quantity}{gauges}: the nominal model shows none ({reason})"
+        for (run, quantity, gauges, reason), count in found.items()
     ]
+
+
+def _gauges(options) -> str:
+    named = "–".join(options[key] for key in ("from", "to", "sensor") if key in options)
+    return f" {named}" if named else ""

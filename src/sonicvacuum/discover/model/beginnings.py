@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 
 from sonicvacuum.discover.model.experiment import Batch, Experiment, Scalar
-from sonicvacuum.forward import Seen, measured, passages
+from sonicvacuum.forward import SOLITARY, Seen, measured, passages
 from sonicvacuum.forward.columns import Columns, filled
 from sonicvacuum.observe.contacts import BALL_QUANTITIES
 from sonicvacuum.observe.trace import Unsettled
@@ -22,8 +22,6 @@ from sonicvacuum.observe.trace import Unsettled
 # Times as long as nominal chains need; a beginning is worth it where the whole lasts so many times longer.
 ROOM, WORTH = 1.3, 1.25
 LONGER = 2.0
-# What needs further strikes, of all lanes side by side.
-SOLITARY = "speed_at_amplitude"
 # A signal has so many samples at least.
 _FEWEST = 5
 

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from sonicvacuum.discover.model.beginnings import SOLITARY, settled
-from sonicvacuum.forward import measured, of_amplitudes
+from sonicvacuum.discover.model.beginnings import settled
+from sonicvacuum.forward import SOLITARY, measured, of_amplitudes
 from sonicvacuum.forward.columns import filled
 from sonicvacuum.forward.striker import Strikers
 from sonicvacuum.observe.contacts import BALL_QUANTITIES
