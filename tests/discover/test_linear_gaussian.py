@@ -158,10 +158,8 @@ def hidden_odds(model, column, two_sided):
     return total / math.log(evidence.STRONG / evidence.WEAK) * 0.6 / len(IDS)
 
 
-@pytest.mark.parametrize("two_sided", [False, True])
-@pytest.mark.parametrize("apart", [0.02, 0.1, 0.5])
-def test_odds_of_an_effect_that_hides_are_the_integral_of_its_likelihood(apart, two_sided):
-    model = drawn(strength=2.0)
+def beside(model, apart: float, two_sided=False):
+    """The slope of an effect that differs so much from the model's own, and its screen at the best fit."""
     other = np.random.default_rng(np.random.SeedSequence(8)).normal(size=model.data.shape)
     column = model.columns[..., 0] + apart * other
     at = model.solved(range(3))
@@ -173,9 +171,24 @@ def test_odds_of_an_effect_that_hides_are_the_integral_of_its_likelihood(apart, 
         model.normal(at),
         Fit(Hypothesis(), model.normal(at)),
     )
+    return column, scores
+
+
+@pytest.mark.parametrize("two_sided", [False, True])
+@pytest.mark.parametrize("apart", [0.02, 0.1, 0.5])
+def test_odds_of_an_effect_that_hides_are_the_integral_of_its_likelihood(apart, two_sided):
+    model = drawn(strength=2.0)
+    column, scores = beside(model, apart, two_sided)
     found = behind.odds(scores, 20.0**2, 4.0**2, {"tsuji": 1.0})
     exact = hidden_odds(model, column, two_sided)
     assert found["tsuji"] == pytest.approx(exact, rel=2e-3)  # the trapezoid rule on 65 points
+
+
+@pytest.mark.parametrize(("apart", "hidden"), [(0.02, True), (0.4, True), (2.0, False), (50.0, False)])
+def test_an_effect_hides_where_little_of_its_change_is_left(apart, hidden):
+    """Of a change that differs by `apart` times another of the same length, apart/√(1 + apart²) is left."""
+    _, scores = beside(drawn(strength=2.0), apart)
+    assert behind.hides(scores, "tsuji") is hidden
 
 
 def test_what_hides_takes_its_share_from_all_explanations():

@@ -31,11 +31,11 @@ def told(found: Investigation, scores: Screen) -> tuple[Investigation, Screen]:
     if likeliest in fitted or len(found.named) >= policy.MOST_EFFECTS:
         return found, scores
     (effect,) = set(explanations.effects(likeliest)) - set(found.named)
-    more = _with(found, effect)
+    more = _with(found, effect, scores)
     return more, scores if more is found else upper.screened(more)
 
 
-def _with(found: Investigation, effect: str) -> Investigation:
+def _with(found: Investigation, effect: str, scores: Screen) -> Investigation:
     """The same with one more effect named, fitted beside the others; as it is where that gains nothing."""
     forward, null, setup = found.forward, found.null, singles.setup_of(found.forward)
     starts = pairs.beside(forward, null, found.final, setup, only=effect)
@@ -46,7 +46,11 @@ def _with(found: Investigation, effect: str) -> Investigation:
     own = pairs.combination(null, best, setup)
     sets = explanations.together(found.combinations, (), own)
     alone = " + ".join(found.named)
-    reason = f"{effect} does nearly what {alone} does, and both together are likelier than {alone} alone"
+    reason = f"both together are likelier than {alone} alone"
+    if behind.hides(scores, effect):
+        reason = f"{effect} does nearly what {alone} does, and {reason}"
+    else:
+        reason = f"what {effect} explains beside {alone} might be noise, but {reason}"
     return replace(
         found,
         named=list(own.effects),

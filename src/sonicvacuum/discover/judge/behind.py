@@ -21,6 +21,8 @@ from sonicvacuum.effects import IDS
 _POINTS = 65
 # Sets less likely than this beside what is named are not told of.
 _FAINT = 1e-4
+# What is named does nearly what an effect does where it leaves less than this share of that effect's change.
+_HIDDEN = 0.5
 
 
 def odds(scores: Screen, gain: float, least: float, prior: Mapping[str, float]) -> dict[str, float]:
@@ -48,6 +50,17 @@ def odds(scores: Screen, gain: float, least: float, prior: Mapping[str, float]) 
         own = [k for k, d in enumerate(scores.directions) if d.effect == effect]
         result[effect] = usual * prior.get(effect, 1.0) * float(np.mean(evident[own]))
     return result
+
+
+def hides(scores: Screen, effect: str) -> bool:
+    """Whether what is named takes up most of what an effect does, where that fits best what is left.
+
+    One that shows can be as likely as one that hides, by the data alone.
+    """
+    share, z = _share_left(scores)
+    fitting = [abs(z[k]) if d.two_sided else z[k] for k, d in enumerate(scores.directions)]
+    own = [k for k, d in enumerate(scores.directions) if d.effect == effect]
+    return bool(share[max(own, key=lambda k: fitting[k])] < _HIDDEN)
 
 
 def _share_left(scores):
