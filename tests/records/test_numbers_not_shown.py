@@ -5,7 +5,7 @@ from record_cases import CONTENT, STRIKER, content
 
 from sonicvacuum.records import Record
 from sonicvacuum.records.reader import parse
-from sonicvacuum.records.review import review
+from sonicvacuum.records.review import SECONDS_PER_STRIKE, review
 
 TABLE = [
     {"quantity": "speed_at_amplitude", "amplitude_N": a, "sensor": "near", "value": 430.0, "sigma": 5.0,
@@ -14,14 +14,14 @@ TABLE = [
 ]  # fmt: skip
 
 
-def table_at(bead) -> Record:
-    """Speeds at two amplitudes that a gauge in a bead reads."""
+def table_at(bead, table=TABLE) -> Record:
+    """Speeds at amplitudes, two if not given, that a gauge in a bead reads."""
     return Record(
         parse(
             content(
                 CONTENT,
                 sensors=[{"id": "near", "kind": "embedded", "bead": bead}],
-                runs=[{"id": "table", "striker": STRIKER, "observables": TABLE}],
+                runs=[{"id": "table", "striker": STRIKER, "observables": table}],
             )
         )
     )
@@ -36,3 +36,13 @@ def test_amplitudes_at_the_last_bead_are_told_to_lie_under_the_reflection():
     """They were silent, and a bead more, behind the gauge, explained that there are speeds at all."""
     (told,) = [line for line in review(table_at(10)).suspects if "shows none" in line]
     assert told.startswith("run table: 2 × speed_at_amplitude near: the nominal model shows none (")
+
+
+@pytest.mark.parametrize(
+    ("amplitudes", "strikes"), [((2.0,), 1), ((2.0, 20.0), 2), (tuple(range(10, 51)), 3)]
+)
+def test_a_table_takes_as_long_as_its_strikes(amplitudes, strikes):
+    """Values that are denser than an e-fold share strikes: from 10 to 50 N stand three, ln 5 = 1.6 apart."""
+    table = [TABLE[0] | {"amplitude_N": float(a)} for a in amplitudes]
+    told = review(table_at(5, table)).discover_s
+    assert told == pytest.approx(SECONDS_PER_STRIKE * strikes, rel=0.05)  # and hardly anything per value
