@@ -150,13 +150,14 @@ def predict(
     """
     of_ball = any(one.quantity in BALL_QUANTITIES for scalars in wanted for one in scalars)
     strikers = Strikers(seen.history, seen.setup.chain) if of_ball else None
-    found, gauged = [], _with_gains(seen, gain)
+    found = []
     for k, scalars in enumerate(wanted):
         lanes = np.arange(k, len(values), len(wanted))
         own = values[lanes, : len(scalars)]
         solitary = [n for n, one in enumerate(scalars) if one.quantity == SOLITARY]
         if solitary:
-            own[:, solitary] = _solitary(experiment, [scalars[n] for n in solitary], gauged, lanes, refine)
+            waves, gauged = [scalars[n] for n in solitary], _with_gains(seen, gain)
+            own[:, solitary] = _solitary(experiment, waves, gauged, lanes, refine)
         for n, one in enumerate(scalars):
             if one.quantity in BALL_QUANTITIES:
                 own[:, n] = _of_striker(experiment, one, seen, lanes, strikers, refine)
