@@ -9,10 +9,10 @@ from made_records import made
 
 from sonicvacuum.discover import session, written
 from sonicvacuum.discover.fit.wide import nominal
-from sonicvacuum.discover.model.experiment import whitened_gaps
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.noise import flicker, noise
 from sonicvacuum.discover.model.problem import experiment
+from sonicvacuum.discover.model.whitening import whitened_gaps
 from sonicvacuum.figures.discovery import label_of
 from sonicvacuum.records import Record, Signals, read, write
 from sonicvacuum.records.reader import parse

@@ -122,7 +122,7 @@ def test_a_gauge_that_reads_nothing_is_no_effect_in_place_of_a_dead_one(dying, n
     """A low-pass of all gauges took back that no shot had struck."""
     of_gauges = SimpleNamespace(effect=effect(name))
     final = SimpleNamespace(hypothesis=SimpleNamespace(components=(of_gauges,)), objective=0.0)
-    experiment = SimpleNamespace(sigma=None, correlation=None)
+    experiment = SimpleNamespace(sigma=None, correlation=None, colours=())
     found = SimpleNamespace(
         forward=SimpleNamespace(experiment=experiment), null=None, final=final, named=[name]
     )

@@ -9,7 +9,7 @@ import pytest
 from made_records import SIGMA, made
 from made_slips import altered, unstated
 
-from sonicvacuum.discover.faults import traces
+from sonicvacuum.discover.faults import traces, waves
 from sonicvacuum.discover.faults.examine import examine
 from sonicvacuum.discover.model.masks import cut, spikes
 from sonicvacuum.discover.model.noise import noise
@@ -185,7 +185,7 @@ def test_pure_noise_raises_no_alarm():
         noise = rng.normal(size=300)
         assert traces.noise_ratio(noise, 1.0) is None
         assert traces.drift(noise, 1.0) is None
-        assert traces.pickup(noise) is None
+        assert waves.pickup(noise) is None
         assert not spikes(noise, 1.0).any()
         assert not cut(noise, 1.0).any()
 
@@ -208,7 +208,7 @@ def test_noise_that_wanders_raises_no_alarm(rho, n):
         mean, error = traces.rest(noise, 1.0)
         assert abs(mean) < traces.SURE * error
         assert traces.drift(noise, 1.0) is None
-        assert traces.pickup(noise, 1.0) is None
+        assert waves.pickup(noise, 1.0) is None
         assert traces.noise_ratio(noise, 1.0) is None
 
 
@@ -227,7 +227,7 @@ def test_slips_are_seen_in_noise_that_wanders(rho):
     for _ in range(20):
         noise = wandering(rng, rho, len(place))
         assert traces.drift(noise + 0.25 * place, 1.0)[0] == pytest.approx(0.25, rel=0.2)  # three errors
-        frequency, _ = traces.pickup(noise + 6.0 * np.sin(0.7 * place), 1.0)
+        frequency, _ = waves.pickup(noise + 6.0 * np.sin(0.7 * place), 1.0)
         assert frequency == pytest.approx(
             0.7 / (2.0 * np.pi), rel=0.01
         )  # a hundredth of its thirteen periods
@@ -269,9 +269,9 @@ def test_where_a_known_line_hides_the_beginning_of_a_pulse_that_is_told_without_
     trace = 1.0 * np.sin(2.0 * np.pi * cycles * place + 2.5) + noise
     trace[200:] += 4.0 * np.sin(np.pi * (place[200:] - 200) / 80.0) ** 2
     assert len(traces.quiet(trace, 0.2)) < traces.FEWEST
-    stretch = traces.quiet_beside(trace, cycles, 0.2)
+    stretch = waves.quiet_beside(trace, cycles, 0.2)
     assert 120 < len(stretch) < 210  # before the pulse, and most of that
-    assert traces.is_line(stretch, cycles, 0.2)
+    assert waves.is_line(stretch, cycles, 0.2)
 
 
 def test_a_level_that_differs_from_run_to_run_may_also_swing(empty, model):

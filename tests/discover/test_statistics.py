@@ -16,9 +16,9 @@ from sonicvacuum.discover.fit.normal import Normal
 from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.judge import locate
 from sonicvacuum.discover.model import gauges
-from sonicvacuum.discover.model.experiment import lag_one
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, variants
 from sonicvacuum.discover.model.parameters import coordinate
+from sonicvacuum.discover.model.whitening import lag_one
 from sonicvacuum.effects import CATALOGUE, effect
 
 

@@ -22,7 +22,7 @@ MUTATIONS = (
         "rho = _correlations(",
         "rho = 0.0 * _correlations(",
     ),
-    ("no whitening", "experiment.py", "if not np.any(correlation):", "if True:"),
+    ("no whitening", "whitening.py", "if not np.any(correlation):", "if True:"),
     (
         "one-sided 1.645 is 0",
         "degenerate.py",

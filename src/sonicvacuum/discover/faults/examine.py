@@ -7,12 +7,14 @@ from dataclasses import replace
 import msgspec
 import numpy as np
 
-from sonicvacuum.discover.faults import changes, expected, policy, traces
+from sonicvacuum.discover.faults import changes, expected, policy, traces, waves
 from sonicvacuum.discover.faults.exchanges import read_twice, taken_twice
 from sonicvacuum.discover.faults.found import Bench, Finding
 from sonicvacuum.discover.faults.heard import heard
+from sonicvacuum.discover.faults.pickup import lines
 from sonicvacuum.discover.faults.pulses import pulses
 from sonicvacuum.discover.faults.table import FAULTS
+from sonicvacuum.discover.model.autoregression import Autoregression
 from sonicvacuum.discover.model.masks import cut, spikes
 from sonicvacuum.discover.model.noise import STEPPED, audible, even, loudness, rounding
 from sonicvacuum.discover.model.weak import wanders
@@ -42,8 +44,7 @@ def examine(
         look.samples(run)
     look.pulses()
     look.copies()
-    for gauge in record.gauges:
-        look.pickup(gauge)
+    look.pickup()
     for run in runs:
         look.quiet(run)
     for gauge in record.gauges:
@@ -64,8 +65,6 @@ def with_noise_of(findings: list[Finding], record: Record, gauges: Sequence[str]
 FEIGNED, SILENCE = ("drift", "baseline", "gauge-inverted"), ("gauge-dead", "run-without-impact")
 # Slips of which a level is part.
 UNLEVEL = ("drift", "pickup", "gauge-dead")
-# Periods of a line from which on a weak pulse is not taken for it.
-MANY = 8.0
 # Share of a level that differs from run to run by which it may change within a run.
 MOVING = 0.3
 
@@ -80,6 +79,8 @@ class _Look:
         self.lost, self.seen, self.rests = {}, defaultdict(dict), defaultdict(dict)
         self.levels, self.stretches = defaultdict(dict), defaultdict(dict)
         self.silent, self.blank, self.lines = set(), [], {}
+        # Gauge → noise that remembers more than one sample.
+        self.coloured: dict[str, Autoregression | None] = {}
         # As `taken_twice` and `read_twice` yield them.
         self.twice, self.read_twice = [], []
         # Gauge → what is known of its level and of its drift only so well, in its unit.
@@ -104,46 +105,27 @@ class _Look:
         """Noise of another size than stated, in the quiet stretches of all runs."""
         stretches = self.stretches[gauge.id]
         read = [self.record.signals[run].readings[gauge.id] for run in stretches]
-        found = traces.misstated(stretches, gauge.sigma, max(map(rounding, read), default=0.0))
+        coloured = self.coloured.get(gauge.id), max(map(len, read), default=0)
+        found = traces.misstated(stretches, gauge.sigma, max(map(rounding, read), default=0.0), *coloured)
         if found:
             self.seen["noise-misstated", gauge.id] = found
 
-    def pickup(self, gauge):
+    def pickup(self):
         """A steady line in a gauge's traces: one frequency in all runs that show it, taken off."""
-        shown, hidden, sigma = {}, {}, self.noises[gauge.id]
-        for run, signals in self.record.signals.items():
-            if gauge.id not in signals.readings or (run, gauge.id) in self.silent:
-                continue
-            trace, interval = self.readings[run][gauge.id], signals.interval_s
-            model = self._model(run, gauge.id)
-            for swings in (False, True):
-                whole = traces.quiet(trace, sigma, swings)
-                before = _cut(whole, trace, model, sigma)
-                # Many periods are no weak pulse, wherever the model has its own.
-                for stretch, least in ((whole, MANY), (before, 0.0)):
-                    found = traces.pickup(stretch, sigma)
-                    if found and found[0] * len(stretch) > least and run not in shown:
-                        shown[run] = stretch, interval, found[0] / interval
-                hidden[run] = before, interval
-        if not shown:
-            return
-        frequency, unseen = traces.shared_line(list(shown.values())), []
-        for run, (stretch, interval) in hidden.items():
-            cycles, trace = frequency * interval, self.readings[run][gauge.id]
-            if run in shown:
-                stretch = shown[run][0]
-            else:
-                stretch = max(stretch, traces.quiet_beside(trace, cycles, sigma), key=len)
-                if not traces.is_line(stretch, cycles, sigma):
-                    unseen.append(run)
-                    continue
-            wave, _ = traces.wave(stretch, cycles)
-            self.readings[run][gauge.id] = traces.without_wave(trace, wave, cycles)
-            self.seen["pickup", gauge.id][run] = 1e-3 * frequency
-            self.lines[run, gauge.id] = float(np.hypot(*wave)), frequency
-        # Where a run's own rest does not show it, it may be there all the same, with any phase.
-        most = max(self.lines[run, gauge.id][0] for run in shown)
-        self.lines |= {(run, gauge.id): (most, frequency) for run in unseen}
+        models = {
+            run: {id: model for id, model in own.items() if model.any()}
+            for run, own in self.predicted.items()
+        }
+        found, self.coloured = lines(self.record, self.readings, models, self.noises, self.silent)
+        for id, line in found.items():
+            for run, wave in line.waves.items():
+                cycles = line.frequency * self.record.signals[run].interval_s
+                self.readings[run][id] = waves.without_wave(self.readings[run][id], wave, cycles)
+                self.seen["pickup", id][run] = 1e-3 * line.frequency
+                self.lines[run, id] = float(np.hypot(*wave)), line.frequency
+            # Where a run's own rest does not show it, it may be there all the same, with any phase.
+            most = max(self.lines[run, id][0] for run in line.waves)
+            self.lines |= {(run, id): (most, line.frequency) for run in line.unseen}
 
     def _sample_slips(self, run, gauge):
         """Spikes and clipping: samples that are masked."""
@@ -184,11 +166,11 @@ class _Look:
         """What the stretch before the pulse shows: a slope, a level, the size of the noise."""
         trace = self.readings[run.id][gauge.id]
         steps = rounding(trace)
-        noise = max(self.noises[gauge.id], steps)
+        noise, coloured = max(self.noises[gauge.id], steps), self.coloured.get(gauge.id)
         loud = loudness(trace, noise)
-        stretch = _cut(traces.quiet(trace, loud), trace, self._model(run.id, gauge.id), loud)
+        stretch = expected.cut(traces.quiet(trace, loud), trace, self._model(run.id, gauge.id), loud)
         hides = traces.faint(trace, loud)
-        drifting = traces.drift(stretch, noise)
+        drifting = traces.drift(stretch, noise, coloured)
         if drifting is not None and hides and not traces.straight(stretch, loud):
             drifting = None
         if drifting is not None and ("drift", gauge.id) not in self.spared:
@@ -202,8 +184,8 @@ class _Look:
         common = steps if steps > STEPPED * audible(trace, noise) else 0.0
         level = None
         if not (hides and wanders(stretch)):
-            self.rests[gauge.id][run.id] = traces.rest(stretch, noise, common)
-            level = traces.level(stretch, noise, common)
+            self.rests[gauge.id][run.id] = traces.rest(stretch, noise, common, coloured)
+            level = traces.level(stretch, noise, common, noise=coloured)
         self.levels[gauge.id][run.id] = len(stretch), level
         self.readings[run.id][gauge.id] = trace
 
@@ -308,14 +290,6 @@ class _Look:
             for run, value in [(None, _shared(fault, runs))] if everywhere else runs.items():
                 result.append(Finding(fault, run, id, value, policy.PLAIN, FAULTS[fault].corrected))
         return result
-
-
-def _cut(found, trace, model, sigma):
-    """The quiet stretch of a trace; where the pulse hardly stands out, what precedes the model's at most."""
-    if model is None or not traces.faint(trace, sigma):
-        return found
-    half = int((np.abs(model) > 0.5 * np.abs(model).max()).argmax())
-    return found if len(found) <= half else expected.preceding(trace, model)
 
 
 def _shared(fault, runs):

@@ -3,6 +3,7 @@
 import numpy as np
 
 from sonicvacuum.discover.correlation import correlated
+from sonicvacuum.discover.faults.traces import faint
 from sonicvacuum.discover.model.noise import QUIET_PEAK, QUIET_SHARE, flicker, rounding
 
 # A pulse is expected where the model's reading is this many standard deviations of the noise high, or where
@@ -97,6 +98,16 @@ def preceding(trace: np.ndarray, model: np.ndarray) -> np.ndarray:
     """(n,) what a trace reads before the model's pulse, of (T,) readings as in `verdict`."""
     rises = int((np.abs(model) > QUIET_PEAK * np.abs(model).max()).argmax())
     return trace[: int(QUIET_SHARE * rises)]
+
+
+def cut(found: np.ndarray, trace: np.ndarray, model: np.ndarray | None, sigma: float) -> np.ndarray:
+    """The quiet stretch `found` of a trace; where the pulse hardly stands out, what precedes the model's at
+    most.
+    """
+    if model is None or not faint(trace, sigma):
+        return found
+    half = int((np.abs(model) > 0.5 * np.abs(model).max()).argmax())
+    return found if len(found) <= half else preceding(trace, model)
 
 
 def quiet(trace: np.ndarray, sigma: float) -> bool:

@@ -205,7 +205,7 @@ def noise_volume(experiment: Experiment) -> float:
     """Σ log σ² of all samples that count, their correlation included; of values where there are no traces."""
     if tabled(experiment):
         return sum(2.0 * math.log(one.sigma) for run in experiment.runs for one in run.scalars)
-    sigma2 = experiment.sigma**2 * (1.0 - experiment.correlation**2)
+    sigma2 = experiment.innovation
     counts = sum(
         np.full(len(sigma2), len(r.time)) if r.present is None else r.present.sum(axis=1)
         for r in experiment.runs

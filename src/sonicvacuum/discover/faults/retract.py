@@ -65,7 +65,7 @@ class _Asked:
         self.spared = spared
         experiment = found.forward.experiment
         # What an effect leaves in a trace would count as noise of another size.
-        self.noise = {"sigma": experiment.sigma, "correlation": experiment.correlation}
+        self.noise = {k: getattr(experiment, k) for k in ("sigma", "correlation", "colours")}
 
     def _fitted(self, spared) -> tuple[Forward, Fit]:
         bench, _ = examine(self.record, self.predicted, {*self.spared, *spared})

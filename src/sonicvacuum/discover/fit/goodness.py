@@ -82,7 +82,9 @@ def _tested(forward, fit):
         data = forward.experiment.runs[run]
         own = r if data.present is None else r[data.present[s]]
         uneven = _stepped(forward, run, s)
-        chi2, white = _chi2(own), 1.0 if uneven else max(map(_whiteness, (own, *less.get((run, s), ()))))
+        views = (own, *less.get((run, s), ()))
+        known = forward.experiment.remembered(s)
+        chi2, white = _chi2(own), 1.0 if uneven else max(_whiteness(view, known) for view in views)
         cells.append(Cell(data.id, forward.experiment.gauges[s].id, float(own @ own) / len(own), chi2, white))
         wide = width(_size(data, s))
         ringing = 1.0 if uneven else _oscillation(r, wide)
@@ -159,17 +161,16 @@ def _chi2_of(value, size):
     return tails.chi_squared(value * spread, size * spread)
 
 
-def _whiteness(r):
-    """p of white noise, or noise whose neighbours alone are correlated, against an autoregression of higher
-    order.
+def _whiteness(r, known=1):
+    """p of white noise, or of an autoregression of the `known` order, against one of higher order.
 
     The likelihood ratio by Burg's recursion (J. P. Burg, Maximum Entropy Spectral Analysis, Stanford 1975).
     Reflection coefficients of white noise are independent, so that the tail of the ratio is that of χ² down
     to 60 samples, where the sum of squared autocorrelations of Ljung and Box has six times too many p below
     1e-4.
     """
-    count, lags = len(r), min(LAGS, len(r) // 4)
-    if lags < 3:
+    count, lags = len(r), min(LAGS + known - 1, len(r) // 4)
+    if lags < known + 2:
         return 1.0
     forward = backward = r - r.mean()
     ratio = 0.0
@@ -178,9 +179,9 @@ def _whiteness(r):
         power = ahead @ ahead + behind @ behind
         reflection = 2.0 * (ahead @ behind) / power if power > 0.0 else 0.0
         forward, backward = ahead - reflection * behind, behind - reflection * ahead
-        if lag > 1:
+        if lag > known:
             ratio -= (count - lag - 1) * np.log1p(-(reflection**2))
-    return tails.chi_squared(ratio, lags - 1)
+    return tails.chi_squared(ratio, lags - known)
 
 
 def outliers(r):

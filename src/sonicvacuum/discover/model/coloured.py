@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from sonicvacuum.discover.model.experiment import lag_one
+from sonicvacuum.discover.model.whitening import lag_one
 
 # Correlations below so many standard errors (1/√n) are those of white noise.
 _SEEN = 2.0

@@ -8,12 +8,14 @@ that it is divided out of all of them at once (`divided`).
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 
+from sonicvacuum.discover.model.autoregression import Autoregression
 from sonicvacuum.discover.model.nuisances import Shared
+from sonicvacuum.discover.model.whitening import whitened
 from sonicvacuum.effects import CATALOGUE, Catalogue
 from sonicvacuum.effects.whereabouts import materials_of
 from sonicvacuum.gauges import Gauge
@@ -207,6 +209,8 @@ class Experiment:
         slow: baselines and drifts that count as noise; None: none.
         notes: what was left out of the data, one line each.
         approximate: whether what a model leaves hides small errors of its simulation, see `accuracy.cut`.
+        colours: noise of the gauges whose samples remember more than their neighbours, None of the others;
+            empty where there are none such.
     """
 
     name: str
@@ -231,6 +235,7 @@ class Experiment:
     slow: Slow | None = None
     notes: tuple[str, ...] = ()
     approximate: bool = False
+    colours: tuple[Autoregression | None, ...] = ()
 
     @property
     def beads(self) -> int:
@@ -279,7 +284,25 @@ class Experiment:
 
     def noise_whitened(self, run: int, readings: np.ndarray) -> np.ndarray:
         """(…, S, T) independent numbers from readings of a run over the noise of single samples, `sigma`."""
-        return whitened_gaps(readings, self.correlation, self.runs[run].present)
+        return whitened(readings, self.correlation, self.runs[run].present, self.colours)
+
+    def remembered(self, s: int) -> int:
+        """From how many samples before it one of a gauge is foretold, 1 where its noise is white as well."""
+        colour = self.colours[s] if self.colours else None
+        return max(1, colour.free) if colour else 1
+
+    @property
+    def innovation(self) -> np.ndarray:
+        """(S,) variance of what the samples before one do not foretell."""
+        left = 1.0 - self.correlation**2
+        for s, colour in enumerate(self.colours):
+            left[s] = colour.scale**2 * colour.innovations[-1] if colour else left[s]
+        return self.sigma**2 * left
+
+    @property
+    def uncoloured(self) -> "Experiment":
+        """The same with readings over their noise as they are, samples not whitened."""
+        return replace(self, correlation=np.zeros(len(self.gauges)), colours=())
 
     def length(self, run: int) -> int:
         """Length of a run's whitened data: a place for every sample, counting or not, and every scalar."""
@@ -297,42 +320,3 @@ class Experiment:
         """Number of data of a run: samples that count, and scalars."""
         data = self.runs[run]
         return data.samples + len(data.scalars)
-
-
-def whitened_gaps(noise: np.ndarray, correlation: np.ndarray, present: np.ndarray | None) -> np.ndarray:
-    """Independent numbers of unit variance from samples of a stationary first-order autoregression.
-
-    Args:
-        noise: (…, S, T) samples over their standard deviation.
-        correlation: (S,) of neighbouring samples.
-        present: (S, T) samples that count, or None for all.
-
-    Returns:
-        (…, S, T); 0 where a sample does not count. A sample whose last counting neighbour is k samples back
-        is predicted by ρ^k of that one, with the variance 1 − ρ^{2k}: what a Kalman filter makes of a gap
-        (Jones, Technometrics 22, 389, 1980).
-    """
-    if present is None:
-        if not np.any(correlation):
-            return noise
-        rho = correlation[:, None]
-        root, white = np.sqrt(1.0 - rho**2), np.empty_like(noise)
-        white[..., :1] = noise[..., :1]
-        np.multiply(noise[..., :-1], -rho / root, out=white[..., 1:])
-        white[..., 1:] += noise[..., 1:] / root
-        return white
-    white = np.zeros_like(noise)
-    for s, rho in enumerate(correlation):
-        at = np.flatnonzero(present[s])
-        kept = noise[..., s, at]
-        far = rho ** np.diff(at)
-        white[..., s, at[:1]] = kept[..., :1]
-        white[..., s, at[1:]] = (kept[..., 1:] - far * kept[..., :-1]) / np.sqrt(1.0 - far**2)
-    return white
-
-
-def lag_one(noise: np.ndarray) -> float:
-    """Correlation of neighbouring samples of (S,) noise, its mean removed."""
-    centred = noise - noise.mean()
-    power = centred @ centred
-    return float(centred[1:] @ centred[:-1] / power) if power > 0.0 else 0.0

@@ -13,10 +13,12 @@ from functools import lru_cache
 import numpy as np
 
 from sonicvacuum.discover.model import coloured
-from sonicvacuum.discover.model.experiment import lag_one
 from sonicvacuum.discover.model.masks import cut, spikes
 from sonicvacuum.discover.model.ripples import AGREE, of_all, ripple, swing
+from sonicvacuum.discover.model.spectrum import off_its_line
 from sonicvacuum.discover.model.weak import wanders, weak
+from sonicvacuum.discover.model.whitening import lag_one
+from sonicvacuum.gauges import Gauge
 from sonicvacuum.records.record import Record
 
 # Smooth error of the simulation and of the interpolation, relative to the largest reading of a gauge.
@@ -89,7 +91,7 @@ def as_recorded(record: Record) -> Record:
     sigma, _ = noise((record,))
     steps = {}
     for gauge, size in zip(record.gauges, sigma, strict=True):
-        found = max(map(rounding, _traces((record,), gauge)), default=0.0)
+        found = max(map(rounding, traces_of((record,), gauge)), default=0.0)
         if found > STEPPED * size:
             steps[gauge.id] = found * math.sqrt(12.0)
     return replace(record, steps=steps) if steps else record
@@ -100,7 +102,7 @@ def noise(records: Sequence[Record]) -> tuple[np.ndarray, np.ndarray]:
     gauges = records[0].gauges
     known = [max(rounded(record, g.id) for record in records) for g in gauges]
     seen = [
-        _of_gauge(tuple(t.tobytes() for t in _traces(records, g)), g, steps)
+        _of_gauge(tuple(t.tobytes() for t in traces_of(records, g)), g, steps)
         for g, steps in zip(gauges, known, strict=True)
     ]
     sigma, own, weights, rests = np.reshape(seen, (-1, 4)).T
@@ -109,7 +111,7 @@ def noise(records: Sequence[Record]) -> tuple[np.ndarray, np.ndarray]:
         # A standard error more, lest what swings slowly pass for a misfit: few samples tell it all.
         rho = np.where(rho > 0.0, np.minimum(rho + max(weights.sum(), 1.0) ** -0.5, 0.99), 0.0)
     for s in np.flatnonzero(np.isfinite(rests) & (rho > 0.0)):
-        found = float(swing(_traces(records, gauges[s]), rho[s]))
+        found = float(swing(traces_of(records, gauges[s]), rho[s]))
         error = math.sqrt((1.0 + rho[s] ** 2) / (1.0 - rho[s] ** 2) / (2.0 * max(rests[s], 0.5)))
         # What samples flicker by is less than they swing by, and all of them know this better than few.
         if not rests[s]:
@@ -127,9 +129,9 @@ def _of_gauge(samples: tuple[bytes, ...], gauge, steps: float) -> tuple[float, f
     Remembered, as each hypothesis of a slip asks again of gauges that it leaves as they are.
     """
     traces = [np.frombuffer(one) for one in samples]
-    quiet = _quiet_of(traces, gauge)
+    quiet = quiet_of(traces, gauge)
     sigma = _sigma(traces, gauge, quiet, max([steps, *map(rounding, traces)]))
-    if gauge.sigma or not traces or _coarse(traces, sigma):
+    if gauge.sigma or not traces or coarse(traces, sigma):
         return sigma, *_neighbours(traces, gauge, quiet, sigma), math.inf
     rest = sum(map(len, quiet))
     return sigma, *(_neighbours(traces, gauge, quiet, sigma) if rest else _of_short_rests(traces)), rest
@@ -147,13 +149,13 @@ def _of_short_rests(traces):
     return coloured.told(rests, sizes) if rests and sizes.all() else (0.0, 0.0)
 
 
-def _coarse(traces, sigma):
+def coarse(traces: Sequence[np.ndarray], sigma: float) -> bool:
     """Whether differences of traces are those of a recorder's steps."""
     return max(map(rounding, traces), default=0.0) > _COARSE * sigma
 
 
-def _traces(records, gauge):
-    """Its traces, what is not believed left out; none of one that is stuck, of which nothing is left."""
+def traces_of(records: Sequence[Record], gauge: Gauge) -> list[np.ndarray]:
+    """(T,) traces of a gauge, what is not believed left out; none of one that is stuck: nothing is left."""
     found = []
     for record in records:
         least = max(gauge.sigma, rounded(record, gauge.id))
@@ -162,8 +164,8 @@ def _traces(records, gauge):
     return [t for t in found if len(t)]
 
 
-def _quiet_of(traces, gauge):
-    """The quiet stretches of a gauge that are long enough.
+def quiet_of(traces: Sequence[np.ndarray], gauge: Gauge) -> list[np.ndarray]:
+    """(n,) quiet stretches of a gauge that are long enough.
 
     The weaker a pulse, the later it comes: where it hardly stands out of the noise, no more is believed to be
     rest than before one that does.
@@ -175,7 +177,7 @@ def _quiet_of(traces, gauge):
     quiet = [q for q in quiet if len(q) >= _LEAST]
     if _open(gauge):
         # Where level and slope are open, noise is what is left of both.
-        quiet = [_off_its_line(q) for q in quiet]
+        quiet = [off_its_line(q) for q in quiet]
     quiet = [_unrisen(q, sigma) for q in quiet]
     return quiet if sum(map(len, quiet)) >= _FEWEST else []
 
@@ -198,12 +200,6 @@ def _unrisen(stretch, sigma):
     return stretch
 
 
-def _off_its_line(stretch):
-    """A stretch without its straight line."""
-    place = np.arange(len(stretch)) - 0.5 * (len(stretch) - 1)
-    return stretch - stretch.mean() - place * (place @ stretch / (place @ place))
-
-
 def _sigma(traces, gauge, quiet, steps):
     """What the record states, or more where the quiet stretches are surely louder."""
     peak = max((float(np.abs(t).max()) for t in traces), default=0.0)
@@ -216,7 +212,7 @@ def _sigma(traces, gauge, quiet, steps):
     seen = math.sqrt(sum(q @ q for q in quiet) / count)
     if seen > floor * (1.0 + _SURE / math.sqrt(count)):
         return seen
-    if _coarse(traces, floor) or not seen > floor * (1.0 + _LOOKS / math.sqrt(count)):
+    if coarse(traces, floor) or not seen > floor * (1.0 + _LOOKS / math.sqrt(count)):
         return floor
     level, count = of_all(traces, quiet, _correlation(quiet))
     return level if level > floor * (1.0 + _SURE / math.sqrt(count)) else floor
@@ -275,8 +271,8 @@ def _neighbours(traces, gauge, quiet, sigma) -> tuple[float, float]:
     less correlated than they are, and their likelihood is asked as well.
     """
     own, count = _correlation(quiet), sum(map(len, quiet))
-    stated, coarse = bool(gauge.sigma), _coarse(traces, sigma)
-    if not count or coarse or (stated and sigma > 1.001 * gauge.sigma):
+    stated = bool(gauge.sigma)
+    if not count or coarse(traces, sigma) or (stated and sigma > 1.001 * gauge.sigma):
         return own, count
     seen, variance = ripple(traces, sigma, 0.0 if stated else 2.0 / count)
     error = max(1.0 - own**2, 0.01) / count

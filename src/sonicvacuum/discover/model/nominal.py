@@ -22,7 +22,7 @@ def predicted(experiment: Experiment, threads: int = 1) -> dict[str, dict[str, n
     those whose samples do not count, for the ones that are stuck.
     """
     bare = tuple(replace(r, present=None, scalars=()) for r in experiment.runs)
-    forward = Forward(replace(experiment, runs=bare, correlation=np.zeros(len(experiment.gauges))), threads)
+    forward = Forward(replace(experiment.uncoloured, runs=bare), threads)
     found = forward.sampled(Hypothesis(), np.zeros((1, 0)), np.zeros((1, forward.layout.size)))
     result = {}
     for run, value in zip(experiment.runs, found, strict=True):

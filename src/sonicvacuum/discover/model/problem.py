@@ -1,5 +1,5 @@
 """From a record to the experiment that is inferred from: chains to simulate, readings that count, and how
-loud their noise is (`noise`).
+loud their noise is (`colour`).
 """
 
 import math
@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from sonicvacuum.discover.model.beginnings import begun
+from sonicvacuum.discover.model.colour import colours
 from sonicvacuum.discover.model.experiment import Batch, Experiment, RunData, Scalar
 from sonicvacuum.discover.model.masks import repeated
 from sonicvacuum.discover.model.noise import MODEL_FLOOR, believed, doubtful, noise, rounded, stepped
@@ -39,6 +40,8 @@ def _ready(data: Experiment, records) -> Experiment:
     is simulated at first.
     """
     unknown = any(not math.isfinite(r.trigger_sigma_s) for r in records)
+    said = _of_colour(data)
+    data = replace(data, notes=(*data.notes, said)) if said else data
     return scattered(begun(started(replace(data, slow=slow(data)), unknown)))
 
 
@@ -69,6 +72,7 @@ def _experiment(record, catalogue):
         model_floor_rel=record.model_floor_rel,
         shared=shared(record, [part.chain for part in parts]),
         notes=_notes(record, runs),
+        colours=colours((record,), sigma),
     )
 
 
@@ -89,9 +93,20 @@ def together(records: Sequence[Record], catalogue: Catalogue = CATALOGUE) -> Exp
     turned = len({r.specimen.gravity_m_s2 for r in records}) > 1
     unasked = tuple(e.id for e in catalogue if turned and e.depends_on_orientation)
     excluded = tuple(dict.fromkeys((*first.excluded, *unasked)))
-    sigma, correlation = noise(records) if others else (first.sigma, first.correlation)
-    whole = replace(first, sigma=sigma, correlation=correlation, excluded=excluded)
-    return _ready(whole, records)
+    if others:
+        sigma, correlation = noise(records)
+        first = replace(first, sigma=sigma, correlation=correlation, colours=colours(records, sigma))
+    return _ready(replace(first, excluded=excluded), records)
+
+
+def _of_colour(experiment: Experiment) -> str | None:
+    """What is said of gauges whose noise remembers more than one sample."""
+    ids = [g.id for g, own in zip(experiment.gauges, experiment.colours, strict=False) if own]
+    if not ids:
+        return None
+    return (
+        f"the noise of {', '.join(ids)} is not white: its spectrum is that of the readings before the pulses"
+    )
 
 
 def _check_alike(record, other, seen: Experiment):

@@ -14,7 +14,7 @@ from functools import lru_cache
 import numpy as np
 
 # Differences of this order hold nothing of a pulse of eight samples or more.
-_CLEAR = 6
+CLEAR = 6
 # Orders of differences that are tried, the first one first; each is held against the next.
 ORDERS = (3, 4, 5, 6, 7)
 _NEIGHBOURS = np.linspace(-0.9, 0.995, 400)
@@ -39,6 +39,19 @@ def _power(order):
     """Mean square of differences of an order as a polynomial of ρ."""
     own, *others = _weights(order)
     return np.polynomial.Polynomial((own, *(2.0 * other for other in others)))
+
+
+def differenced(correlations: np.ndarray, order: int) -> np.ndarray:
+    """(n − order,) autocovariance at the lags 0, 1, … of differences of noise of variance 1.
+
+    Args:
+        correlations: (n,) its autocorrelation at the lags 0, 1, …
+        order: of the differences.
+    """
+    own = _weights(order)
+    both = np.concatenate([correlations[:0:-1], correlations])
+    found = np.convolve(both, np.concatenate([own[:0:-1], own]), "valid")
+    return found[len(found) // 2 :]
 
 
 def share(order: int) -> float:
@@ -86,8 +99,8 @@ def swing(traces: Sequence[np.ndarray], rho: np.ndarray) -> np.ndarray:
     """(…) standard deviation of noise whose neighbours are correlated by (…) `rho`, as differences of traces
     show it; 0 of traces that are too short.
     """
-    steps = np.concatenate([np.diff(t, _CLEAR) for t in traces])
-    return np.sqrt(float(steps @ steps) / max(len(steps), 1) / _power(_CLEAR)(np.asarray(rho)))
+    steps = np.concatenate([np.diff(t, CLEAR) for t in traces])
+    return np.sqrt(float(steps @ steps) / max(len(steps), 1) / _power(CLEAR)(np.asarray(rho)))
 
 
 def of_all(

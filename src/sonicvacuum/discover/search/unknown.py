@@ -290,7 +290,7 @@ def raw(forward: Forward, fit: Fit) -> list[np.ndarray]:
     """For each run the predicted readings (S, T) at the recorded times."""
     e = forward.experiment
     whole = tuple(replace(run, present=None) for run in e.runs)
-    plain = replace(e, runs=whole, correlation=np.zeros(len(e.gauges)), smooth=None)
+    plain = replace(e.uncoloured, runs=whole, smooth=None)
     white = forward.of(plain)
     found = white.sampled(fit.hypothesis, fit.u[None], fit.nu[None])
     forward.simulations += white.simulations
