@@ -21,8 +21,9 @@ from sonicvacuum.records.record import Record
 
 # Lags up to which samples of differences are alike, at most.
 _FAR = 400
-# Noise of the spectrum of others is stated, or seen, up to so many times larger or smaller.
-_ALIKE = 2.0
+# Noise of the spectrum of others is stated, or seen, up to so many times larger or smaller; of stretches at
+# rest, which show less of what is slow, smaller.
+_ALIKE, _LEAST = 2.0, 4.0
 
 Colours = tuple[Autoregression | None, ...]
 
@@ -56,6 +57,10 @@ def _of_gauges(samples, gauges, steps, sigma):
 def _sized(own, traces, quiet, sigma):
     """Noise of a spectrum in units of `sigma`; None of one that is not this gauge's."""
     count = sum(map(len, quiet))
+    power = sum(float(np.square(spectrum.off_its_line(q)).sum()) for q in quiet)
+    if count and power < (sigma / _LEAST) ** 2 * count:
+        # Stretches at rest without the noise that the record states tell nothing of it.
+        return None
     at_rest = spectrum.sized(own, quiet).scale ** 2
     seen, worth = _differenced(own, traces)
     if not count:
