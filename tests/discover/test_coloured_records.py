@@ -64,7 +64,7 @@ def test_slips_are_told_beside_slow_noise_where_they_stand_out_of_it(name):
     record, place = coloured(name, 3), np.arange(700)
     for fault, change in {
         "drift": lambda y: y + 80.0 * SIGMA * place / len(place),
-        "baseline": lambda y: y + 30.0 * SIGMA,
+        "baseline": lambda y: y + 60.0 * SIGMA,
         "pickup": lambda y: y + 6.0 * SIGMA * np.sin(0.7 * place),
     }.items():
         assert [(f.fault, f.sensor) for f in examine(altered(record, "g7", change))[1]] == [(fault, "g7")]

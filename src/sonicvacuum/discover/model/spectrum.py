@@ -42,9 +42,8 @@ _SLOW, _FIRST, _WANDERS = np.arange(2, 10), (2, 4, 8), 2.0
 # 1 − ρ.
 _TRIED = (0.0, 0.2, 0.4, 0.55, 0.68, 0.78, 0.86, 0.92, 0.96, 0.98)
 _BETWEEN = np.array((-0.6, -0.4, -0.2, -0.1, 0.0, 0.1, 0.2, 0.3))
-# Of laws whose −2 log likelihood is higher by no more than this, the one is taken that has most power at the
-# lowest frequency of a trace, in steps of the grid.
-_ALIKE, _LOWEST = 4.0, 8
+# Corners of 1/f noise besides, of which −2 log likelihood is higher by no more than this.
+_SLOWER, _ALIKE = np.geomspace(0.001, 0.1, 13), 4.0
 # Numbers that a law of slow noise has.
 _LAW = 2
 
@@ -63,15 +62,15 @@ class _Found:
         first = len(self.reflections) < 2
         return self.likelihood + (_SURELY_SLOW if self.law and first else 0.0 if first else _SURE)
 
-    def noise(self, lengths: Sequence[int]) -> Autoregression:
+    def noise(self, lengths: Sequence[int], corner: float = 0.0) -> Autoregression:
         """The noise, of stretches of such lengths, a standard error louder where it is slow: what wanders
-        more than was thought would pass for a misfit.
+        more than was thought would pass for a misfit. Times that of 1/f noise of a corner besides.
         """
         order, free = len(self.reflections), len(self.reflections) + _LAW * bool(self.law)
         power = _spectrum(_unbiased(Autoregression(self.reflections, free), lengths) if order else None)
         slow = 0.5 / order if self.law is None else self.law[0]
         if self.law is not None:
-            power = power * _slow(self.law)
+            power = power * _slow(self.law) * _slow((corner, 1.0, 0.0))
         power = power * (1.0 + math.sqrt(2.0 * free / sum(lengths)) / (1.0 + (_FREQUENCIES / slow) ** 2))
         followed = min(_FOLLOWED, 4 * order + 16) if self.law is None else _FOLLOWED
         return from_correlations(np.fft.irfft(power)[: 1 + followed], free)
@@ -115,17 +114,32 @@ def _of_law(law: Law) -> Autoregression:
 def told(stretches: Sequence[np.ndarray]) -> Autoregression | None:
     """The noise of (n,) stretches; None where it may be white or of first order."""
     stretches = [s for s in stretches if len(s) >= 2 * _EACH]
-    best, louder = _likeliest(stretches)
+    best = _likeliest(stretches)
     if best is None or not best.doubted < _of_first_order(stretches):
         return None
     # Noise is there from the first sample to the last: what comes at the end is the foot of a pulse.
     begun = [s[: len(s) // 2] for s in stretches]
-    noise = louder.noise([len(s) for s in stretches])
+    noise = _slower(best, stretches)
     return noise if _likelihood(begun, noise) < _of_first_order(begun) + _PRICE else None
 
 
+def _slower(found, stretches):
+    """The noise of a spectrum; of one that wanders with as much 1/f noise besides as stretches allow, which
+    hardly tell what wanders more slowly than they last.
+    """
+    lengths = [len(s) for s in stretches]
+    noise = found.noise(lengths)
+    most = _likelihood(stretches, noise) + _ALIKE
+    for corner in _SLOWER if found.law else ():
+        slower = found.noise(lengths, corner)
+        if _likelihood(stretches, slower) > most:
+            break
+        noise = slower
+    return noise
+
+
 def _of_first_order(stretches):
-    """The lowest −2 log likelihood of white noise and of the first order, two for its number."""
+    """The lowest −2 log likelihood of white noise and of the first order, a number more."""
 
     def of(rho):
         return _likelihood(stretches, Autoregression((float(rho),), 1))
@@ -147,7 +161,7 @@ def together(groups: Sequence[Sequence[np.ndarray]]) -> list[Autoregression | No
 def sized(noise: Autoregression, stretches: Sequence[np.ndarray]) -> Autoregression:
     """Noise of a spectrum as large as (n,) stretches show it, less their lines; as it is without any."""
     power = sum(float(np.square(noise.whitened(off_its_line(s))).sum()) for s in stretches)
-    # What was chosen freely takes up as many samples; most of a spectrum of all gauges the others' do.
+    # Numbers that were chosen freely take up as many samples.
     count = max(sum(max(len(s) - 2, 0) for s in stretches) - noise.free, 1)
     return replace(noise, scale=noise.scale * math.sqrt(power / count)) if power > 0.0 else noise
 
@@ -175,21 +189,15 @@ def _own(group, shared):
 
 
 def _likeliest(stretches):
-    """The likeliest spectrum, doubted, and the one that is taken in its place; None where it is of first
-    order, or stretches are too short.
-    """
+    """The likeliest spectrum, doubted; None where it is of first order, or stretches are too short."""
     if sum(map(len, stretches)) < 3 * _EACH:
-        return None, None
+        return None
     left, likelihood = _beside_lines(stretches, None)
     plain = _orders(left, likelihood, None)
     laws = _LAWS if _wander(stretches, plain[min(1, len(plain) - 1)]) else ()
     found = plain + [one for law in laws for one in _orders(*_beside_lines(stretches, _of_law(law)), law)]
     best = min(found, key=lambda one: one.doubted)
-    if best.law is None:
-        return (None, None) if best in plain[:2] else (best, best)
-    # Short stretches hardly tell what wanders more slowly than they last.
-    alike = [one for one in found if one.law and one.doubted < best.doubted + _ALIKE]
-    return best, max(alike, key=lambda one: float(_slow(one.law)[_LOWEST]))
+    return None if best in plain[:2] else best
 
 
 def _wander(stretches, first):
