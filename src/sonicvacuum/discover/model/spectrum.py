@@ -25,13 +25,14 @@ _MOST, _BESIDE, _EACH, _IN_ONE = 48, 6, 12, 8
 _PRICE = 4.0
 _SURE, _SURELY_SLOW = 20.0, 4.0
 # Corner f₀, power α and lowest frequency f₁, in cycles per sample, of a law of slow noise beside white noise
-# of power 1, whose power is (f₀²/(f² + f₁²))^α/2: those that are tried, and lags up to which it is followed.
+# of power 1, whose power is (f₀²/(f² + f₁²))^α/2: those that are tried, every third of them first, and lags
+# up to which it is followed.
 Law = tuple[float, float, float]
 _LAWS = (
     *((f, power, 0.0) for f in np.geomspace(0.2, 0.003, 7) for power in (1.0, 1.5, 2.0)),
     *((ratio * f, 2.0, f) for f in (0.001, 0.003, 0.01, 0.03) for ratio in (2.0, 4.0, 8.0)),
 )
-_FOLLOWED = 256
+_SOME, _FOLLOWED = 3, 256
 # Frequencies of a spectrum that is made an autocorrelation.
 _GRID = 8192
 _FREQUENCIES = np.arange(_GRID // 2 + 1) / _GRID
@@ -113,7 +114,13 @@ def _of_law(law: Law) -> Autoregression:
 
 def told(stretches: Sequence[np.ndarray]) -> Autoregression | None:
     """The noise of (n,) stretches; None where it may be white or of first order."""
-    stretches = [s for s in stretches if len(s) >= 2 * _EACH]
+    return _told(tuple(s.tobytes() for s in stretches if len(s) >= 2 * _EACH))
+
+
+@lru_cache(maxsize=256)
+def _told(samples: tuple[bytes, ...]) -> Autoregression | None:
+    """Remembered, as each hypothesis of a slip asks again of gauges that it leaves as they are."""
+    stretches = [np.frombuffer(s) for s in samples]
     best = _likeliest(stretches)
     if best is None or not best.doubted < _of_first_order(stretches):
         return None
@@ -194,10 +201,20 @@ def _likeliest(stretches):
         return None
     left, likelihood = _beside_lines(stretches, None)
     plain = _orders(left, likelihood, None)
-    laws = _LAWS if _wander(stretches, plain[min(1, len(plain) - 1)]) else ()
-    found = plain + [one for law in laws for one in _orders(*_beside_lines(stretches, _of_law(law)), law)]
+    found = list(plain)
+    if _wander(stretches, plain[min(1, len(plain) - 1)]):
+        found += _beside_laws(stretches, _LAWS[::_SOME])
+        # Where some laws are far off the others are.
+        least = min(one.likelihood for one in plain[:2]) + _ALIKE
+        if min(one.likelihood for one in found[len(plain) :]) < least:
+            found += _beside_laws(stretches, [law for k, law in enumerate(_LAWS) if k % _SOME])
     best = min(found, key=lambda one: one.doubted)
     return None if best in plain[:2] else best
+
+
+def _beside_laws(stretches, laws):
+    """Spectra of rising orders beside each law."""
+    return [one for law in laws for one in _orders(*_beside_lines(stretches, _of_law(law)), law)]
 
 
 def _wander(stretches, first):
