@@ -99,6 +99,17 @@ def test_the_foot_of_a_pulse_is_no_noise():
         assert spectrum.told([rng.standard_normal(len(foot)) + foot for foot in feet]) is None
 
 
+def test_readings_without_noise_tell_nothing_of_it():
+    smooth = [1e-3 * np.exp((np.arange(n) - n) / 30.0) for n in LENGTHS]
+    assert spectrum.audible(smooth, 1.0) == []
+    wave = [np.sin(0.3 * np.arange(n)) for n in LENGTHS]
+    # Two samples foretell the next one but for rounding: what is left stays a number.
+    found = spectrum.told(wave)
+    assert found is None or (found.innovations[-1] > 0.0 and np.isfinite(found.whitened(wave[0])).all())
+    kept = spectrum.audible(wave, 1.0)
+    assert all(one is other for one, other in zip(kept, wave, strict=True))
+
+
 def test_gauges_share_a_spectrum_and_one_of_another_keeps_its_own():
     rng = np.random.default_rng(np.random.SeedSequence(75))
 

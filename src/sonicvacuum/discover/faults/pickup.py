@@ -103,14 +103,15 @@ def _noise(found, traces_, sigma):
     if coarse(traces_, sigma):
         return []
     if not found.shown:
-        return [rest for rest, _ in found.rests]
+        return spectrum.audible([rest for rest, _ in found.rests], sigma)
     frequency = waves.shared_line(list(found.shown.values()))
     cycles = [frequency * interval for _, interval in found.rests]
-    return [
+    bare = [
         waves.without_wave(rest, waves.wave(rest, each)[0], each)
         for (rest, _), each in zip(found.rests, cycles, strict=True)
         if len(rest) >= traces.FEWEST
     ]
+    return spectrum.audible(bare, sigma)
 
 
 def _line(found, readings, sigma, noise, id) -> Line | None:

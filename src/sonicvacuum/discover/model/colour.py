@@ -21,9 +21,8 @@ from sonicvacuum.records.record import Record
 
 # Lags up to which samples of differences are alike, at most.
 _FAR = 400
-# Noise of the spectrum of others is stated, or seen, up to so many times larger or smaller; of stretches at
-# rest, which show less of what is slow, smaller.
-_ALIKE, _LEAST = 2.0, 4.0
+# Noise of the spectrum of others is stated, or seen, up to so many times larger or smaller.
+_ALIKE = 2.0
 
 Colours = tuple[Autoregression | None, ...]
 
@@ -49,6 +48,7 @@ def _of_gauges(samples, gauges, steps, sigma):
     # Rounded noise that rests on few steps has no spectrum of its own.
     fine = [t and not step and not coarse(t, s) for t, step, s in zip(traces, steps, sigma, strict=True)]
     quiet = [quiet_of(t, g) if ok else [] for t, g, ok in zip(traces, gauges, fine, strict=True)]
+    quiet = [spectrum.audible(q, size) for q, size in zip(quiet, sigma, strict=True)]
     told = spectrum.together(quiet)
     every = zip(told, traces, quiet, sigma, fine, strict=True)
     return tuple(_sized(own, t, q, s) if own and ok else None for own, t, q, s, ok in every)
@@ -57,10 +57,6 @@ def _of_gauges(samples, gauges, steps, sigma):
 def _sized(own, traces, quiet, sigma):
     """Noise of a spectrum in units of `sigma`; None of one that is not this gauge's."""
     count = sum(map(len, quiet))
-    power = sum(float(np.square(spectrum.off_its_line(q)).sum()) for q in quiet)
-    if count and power < (sigma / _LEAST) ** 2 * count:
-        # Stretches at rest without the noise that the record states tell nothing of it.
-        return None
     at_rest = spectrum.sized(own, quiet).scale ** 2
     seen, worth = _differenced(own, traces)
     if not count:

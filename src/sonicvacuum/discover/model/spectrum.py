@@ -45,6 +45,8 @@ _TRIED = (0.0, 0.2, 0.4, 0.55, 0.68, 0.78, 0.86, 0.92, 0.96, 0.98)
 _BETWEEN = np.array((-0.6, -0.4, -0.2, -0.1, 0.0, 0.1, 0.2, 0.3))
 # Corners of 1/f noise besides, of which −2 log likelihood is higher by no more than this.
 _SLOWER, _ALIKE = np.geomspace(0.001, 0.1, 13), 4.0
+# Stretches at rest show this share of the noise at least; what is foretold to this share is no noise.
+_LEAST, _EXACT = 0.25, 1e-9
 # Numbers that a law of slow noise has.
 _LAW = 2
 
@@ -165,6 +167,14 @@ def together(groups: Sequence[Sequence[np.ndarray]]) -> list[Autoregression | No
     return [_own(group, shared) for group in scaled]
 
 
+def audible(stretches: Sequence[np.ndarray], sigma: float) -> list[np.ndarray]:
+    """(n,) stretches of a gauge, none of those that show far less than its noise of one sample, about lines:
+    simulated readings have no noise before the pulse, and what there is of the pulse is none.
+    """
+    power = sum(float(np.square(off_its_line(s)).sum()) for s in stretches)
+    return list(stretches) if power > (_LEAST * sigma) ** 2 * sum(map(len, stretches)) else []
+
+
 def sized(noise: Autoregression, stretches: Sequence[np.ndarray]) -> Autoregression:
     """Noise of a spectrum as large as (n,) stretches show it, less their lines; as it is without any."""
     power = sum(float(np.square(noise.whitened(off_its_line(s))).sum()) for s in stretches)
@@ -261,13 +271,13 @@ def _orders(left, likelihood, law):
     count = sum(map(len, left)) - 2 * len(left)
     power = sum(float(s @ s) for s in left)
     likelihood += count * math.log(max(power, 1e-300) / count) + _PRICE * _LAW * bool(law)
-    found, reflections = [_Found(law, (), likelihood)], ()
+    found, reflections, start = [_Found(law, (), likelihood)], (), power
     in_one = int(np.median([len(s) for s in left])) // _IN_ONE
     for lag in range(1, min(_BESIDE if law else _MOST, count // _EACH, in_one) + 1):
         pairs = [(f[1:], b[:-1]) for f, b in zip(forward, backward, strict=True) if len(f) > 1]
         power = sum(float(a @ a + b @ b) for a, b in pairs)
         number = sum(len(a) for a, _ in pairs)
-        if not power > 0.0 or number < _EACH * lag:
+        if not power > _EXACT * start or number < _EACH * lag:
             break
         k = 2.0 * sum(float(a @ b) for a, b in pairs) / power
         forward, backward = [a - k * b for a, b in pairs], [b - k * a for a, b in pairs]
