@@ -104,7 +104,7 @@ def _of_colour(experiment: Experiment) -> str | None:
     ids = [g.id for g, own in zip(experiment.gauges, experiment.colours, strict=False) if own]
     if not ids:
         return None
-    return f"the noise of {', '.join(ids)} is not white: its spectrum is taken from the samples at rest"
+    return f"{', '.join(ids)}: noise that is not white, its spectrum taken from the samples at rest"
 
 
 def _check_alike(record, other, seen: Experiment):
