@@ -82,17 +82,16 @@ def _stretches(record, readings, models, sigma, silent, id):
             continue
         trace, interval = readings[run][id], signals.interval_s
         model = models.get(run, {}).get(id)
-        rest = expected.cut(traces.quiet(trace, sigma), trace, model, sigma)
-        for swings in (False, True):
-            whole = traces.quiet(trace, sigma, swings)
-            before = expected.cut(whole, trace, model, sigma)
+        quiet = [traces.quiet(trace, sigma, swings) for swings in (False, True)]
+        before = [expected.cut(whole, trace, model, sigma) for whole in quiet]
+        for whole, rest in zip(quiet, before, strict=True):
             # Many periods are no weak pulse, wherever the model has its own.
-            for stretch, least in ((whole, MANY), (before, 0.0)):
+            for stretch, least in ((whole, MANY), (rest, 0.0)):
                 seen = waves.pickup(stretch, sigma)
                 if seen and seen[0] * len(stretch) > least and run not in found.shown:
                     found.shown[run] = stretch, interval, seen[0] / interval
-            found.hidden[run] = before, interval
-        found.rests.append((rest, interval))
+        found.rests.append((before[0], interval))
+        found.hidden[run] = before[1], interval
     return found
 
 
