@@ -1,9 +1,9 @@
 """One data set as the inference sees it: samples and scalars with their noise, chains that were struck,
 gauges.
 
-Signals of a run are whitened once: divided by the gauge's noise and, where the noise before the arrival is
-correlated from sample to sample, by the AR(1) recursion (`whiten`). A smooth discrepancy joins the runs, so
-that it is divided out of all of them at once (`divided`).
+Signals of a run are whitened once: divided by the gauge's noise and, where samples at rest foretell the next
+one, less what they foretell (`whitening`). A smooth discrepancy joins the runs, so that it is divided out of
+all of them at once (`divided`).
 """
 
 import math
