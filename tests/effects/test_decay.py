@@ -8,7 +8,9 @@ from effect_cases import nominal, run, size
 from reference import Plain
 
 from sonicvacuum.effects import effect
+from sonicvacuum.physics.contact import contact_time
 from sonicvacuum.physics.run import simulate
+from sonicvacuum.physics.steps import damping_times
 
 SPEEDS = 0.44 * np.geomspace(0.5, 2.0, 8)
 
@@ -31,6 +33,17 @@ def peak_forces(setup, contact, duration=3e-4):
     top, lanes = force.argmax(axis=0), np.arange(force.shape[1])
     before, at, after = (force[top + k, lanes] for k in (-1, 0, 1))
     return at - (after - before) ** 2 / (8 * (after - 2 * at + before))
+
+
+def time_scale(chain):
+    """s, contact time of the strike."""
+    return float(contact_time(chain.lightest, chain.stiffness, chain.speed).min())
+
+
+def of(chain):
+    """The chain's laws, their coefficients and masses."""
+    laws, bodies = chain.laws(), chain.beads + 1
+    return laws, chain.coefficients(laws, bodies), chain.masses(bodies)
 
 
 @pytest.mark.parametrize("id", POWERS)
@@ -66,6 +79,34 @@ def test_forces_of_relaxing_contacts_converge_to_the_fourth_order(strength, tau)
     # Remembered forces interpolated linearly would be 4e-5 to 3e-4 off, and better at half the step by four
     # only. 16 is the stepper's order; 8, and 1e-7, leave room for the moment at which a contact opens.
     assert coarse < 3e-6 and halved < max(coarse / 8, 1e-7)
+
+
+OVERDAMPED = [
+    ("hunt-crossley", {"damping_s_per_m": 10.0}, 10.0, 1.0),
+    ("hunt-crossley", {"damping_s_per_m": 3.0}, 2.0, 20.0),
+    ("velocity-power", {"gamma": 200.0, "alpha": 2.5}, 10.0, 1.0),
+    ("linear-dashpot", {"damping_kg_s": 1000.0}, 1.0, 1.0),
+    ("tsuji", {"alpha": 20.0}, 1.0, 1.0),
+    ("guide-friction", {"force_N": 0.5}, 1.0, 1.0),
+]
+
+
+@pytest.mark.parametrize("id, values, speed, heavy", OVERDAMPED)
+def test_overdamped_forces_are_right_at_steps_as_long_as_damping_allows(id, values, speed, heavy):
+    """Late steps take in what is stopped at once; the jump of a damping force at the strike is resolved."""
+    setup = effect(id).apply(nominal(Plain(beads=12)), **values)
+    chain = setup.chain.struck_at(np.array([speed]))
+    chain = replace(chain, striker_mass=heavy * chain.striker_mass)
+    fast = time_scale(chain)
+    forces = [simulate(chain, range(13), 60 * fast, fast / 20, refine=r).force[..., 0] for r in (1, 4)]
+    peaks = np.abs(forces[1]).max(axis=0)
+    assert np.all(peaks[:4] > 0.0)
+    error = np.abs(forces[0] - forces[1]).max(axis=0) / np.maximum(peaks, 1e-4 * peaks[0])
+    # In shares of each contact's own peak. 5e-4 is what steps of beads that hardly damp leave beside a
+    # dashpot, whose force jumps at contact; late steps half as long again would be unstable (errors of 0.5).
+    assert error.max() < 5e-4
+    decay = damping_times(chain, *of(chain))[1].max()
+    assert decay < fast / 5  # which makes the step shorter, else this would test nothing
 
 
 def test_a_solitary_wave_decays_exponentially_under_drag():

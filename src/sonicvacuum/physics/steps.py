@@ -14,8 +14,11 @@ from sonicvacuum.physics.laws import HERTZ, LawSet, columns_of, elastic_at
 STEP = {"splitting": 0.1, "runge-kutta": 0.05}
 EARLY_REFINEMENT = 8
 EARLY_CONTACT_TIMES = 4.5
-# Step in units of the time in which damping stops a bead: stable and accurate to the stepper's order.
-DECAY_STEP = 0.25
+# Steps in units of the time in which damping stops a bead: the late one follows what is left of the motion
+# and is stable, the early one resolves the jump of a force that damping makes at once. After so many of
+# these times that is over, though the striker's contact may last longer. Forces err by 1e-4 of their peak at
+# most, as those of beads that hardly damp (a strike two hundred times overdamped: `test_steps`).
+DECAY_STEP, EARLY_DECAY_STEP, EARLY_DECAYS = 1.0, 1.0 / 32.0, 180.0
 # And in units of the time in which a memory forgets, in the early phase too: what is forgotten so soon
 # follows the force, and the strike is hardly sharper to it than the rest. With ten times the elastic force
 # remembered and 0.3 us to forget it, forces err by 1e-6 of their peak.
@@ -67,22 +70,24 @@ def _typical_compression(chain, mass):
     return np.maximum(impact, np.cbrt(np.square(chain.load / chain.stiffness)))
 
 
-def damping_time(chain: Chain, laws: LawSet, table: np.ndarray, mass: np.ndarray) -> np.ndarray:
-    """(lanes,) shortest time in s in which damping stops a bead; infinite where nothing does."""
-    fastest = np.zeros(chain.lanes)
+def damping_times(chain: Chain, laws: LawSet, table: np.ndarray, mass: np.ndarray) -> tuple:
+    """(lanes,) shortest times in s in which contacts, and contacts and what acts on bodies, stop a bead;
+    infinite where nothing does.
+    """
+    contacts, bodies = np.zeros(chain.lanes), np.zeros(chain.lanes)
     lightest, delta, force = _typical(chain, laws, table, mass)
     rate = np.broadcast_to(chain.speed, delta.shape)
     for term in laws.in_slot("force"):
         columns = columns_of(laws, term, table)
         fall = term.formula(delta, rate, force, *columns) - term.formula(delta, 0.5 * rate, force, *columns)
-        fastest = np.maximum(fastest, np.abs(2.0 * fall / (rate * lightest)).max(axis=0))
+        contacts = contacts + np.abs(2.0 * fall / (rate * lightest)).max(axis=0)
     for term in laws.in_slot("body"):
         # Friction stops the slow sooner than the fast.
-        for velocity in (rate, CREEP * rate):
-            fall = np.broadcast_to(term.formula(velocity, *columns_of(laws, term, table)), rate.shape)
-            fastest = np.maximum(fastest, np.abs(fall / velocity).max(axis=0))
+        speeds, columns = (rate, CREEP * rate), columns_of(laws, term, table)
+        falls = (np.abs(np.broadcast_to(term.formula(v, *columns), v.shape) / v) for v in speeds)
+        bodies = bodies + np.maximum(*(fall.max(axis=0) for fall in falls))
     with np.errstate(divide="ignore", over="ignore"):  # next to nothing takes as long as nothing
-        return 1.0 / fastest
+        return 1.0 / contacts, 1.0 / (contacts + bodies)
 
 
 def memory_time(chain: Chain, laws: LawSet, table: np.ndarray, mass: np.ndarray) -> np.ndarray:
@@ -108,16 +113,18 @@ def choose_steps(chain: Chain, laws: LawSet, table: np.ndarray, mass: np.ndarray
     """Steps in s of each chain: (lanes,) before and after the end of the early phase, and that end in s."""
     stepper = "splitting" if laws.splits else "runge-kutta"
     late = STEP[stepper] * time_scale(chain, laws, table, mass)
-    if not laws.is_positional:
-        late = np.minimum(late, DECAY_STEP * damping_time(chain, laws, table, mass))
     early = late / EARLY_REFINEMENT
+    struck = chain.first.mass
+    until = EARLY_CONTACT_TIMES * contact_time(struck, chain.striker_stiffness, chain.speed)
+    if not laws.is_positional:
+        contacts, decay = damping_times(chain, laws, table, mass)
+        late, early = np.minimum(late, DECAY_STEP * decay), np.minimum(early, EARLY_DECAY_STEP * decay)
+        until = np.minimum(until, EARLY_DECAYS * contacts)
+    heavy = np.maximum(1.0, chain.striker_mass / struck)
     if laws.in_slot("memory"):
         most = MEMORY_STEP * memory_time(chain, laws, table, mass)
         early, late = np.minimum(early, most), np.minimum(late, most)
-    struck = chain.first.mass
-    heavy = np.maximum(1.0, chain.striker_mass / struck)
-    until = EARLY_CONTACT_TIMES * heavy * contact_time(struck, chain.striker_stiffness, chain.speed)
-    return early, late, until
+    return early, late, heavy * until
 
 
 def reachable_bodies(chain: Chain, duration: float) -> int:
