@@ -29,6 +29,8 @@ _ROOM = 1e-6
 # A turn that takes away less than this share of what is still to go is the last one: were the others worth as
 # much, most of it would remain, and laws far beyond their ranges take long to simulate.
 STILL = 0.1
+# So many steps tell whether a turn gains anything: what leads to laws that stop all pulses gains nothing.
+BEGUN = 5
 # Part of a range within which a bound is near, at most.
 CLOSE = 0.05
 
@@ -91,11 +93,13 @@ def beyond(forward: Forward, fit: Fit, lowest: float = np.inf) -> tuple[Fit, boo
 
 
 def _further(forward: Forward, fit: Fit, soon: float) -> Fit:
-    """The fit with its stuck coordinates let go once."""
+    """The fit with its stuck coordinates let go once; but for the last steps where that gains nothing."""
     at = stuck(fit, soon)
     wider = iter([_wider(c, soon) if s else c for c, s in zip(fit.hypothesis.coordinates, at, strict=True)])
     parts = tuple(replace(c, free=tuple(next(wider) for _ in c.free)) for c in fit.hypothesis.components)
-    return polish(forward, Fit(Hypothesis(parts), fit.normal, others=fit.others))
+    one = Fit(Hypothesis(parts), fit.normal, others=fit.others)
+    begun = polish(forward, one, BEGUN, finish=False)
+    return polish(forward, one) if begun.objective < fit.objective - WORTH else begun
 
 
 def _off_below(c: Coordinate) -> bool:
