@@ -26,11 +26,10 @@ FAST = 1.0 / 300.0
 # In χ², less is no reason to leave the range.
 WORTH = 0.5
 _ROOM = 1e-6
-# A turn that takes away less than this share of what is still to go is the last one: were the others worth as
-# much, most of it would remain, and laws far beyond their ranges take long to simulate.
-STILL = 0.1
-# So many steps tell whether a turn gains anything: what leads to laws that stop all pulses gains nothing.
-BEGUN = 5
+# A turn that takes away less than this share of what is still to go is not taken to its end, and is the last
+# one: were the others worth as much, most of it would remain, and laws far beyond their ranges take long to
+# simulate. So many steps of it tell.
+STILL, BEGUN = 0.1, 5
 # Part of a range within which a bound is near, at most.
 CLOSE = 0.05
 
@@ -82,7 +81,12 @@ def beyond(forward: Forward, fit: Fit, lowest: float = np.inf) -> tuple[Fit, boo
     for _ in range(TURNS):
         if not stuck(found, soon).any():
             return found, False
-        further = _further(forward, found, soon)
+        freed = _freed(found, soon)
+        begun = polish(forward, freed, BEGUN, finish=False)
+        nearer, to_go = found.objective - begun.objective, begun.objective - lowest
+        if not nearer > WORTH or nearer < STILL * to_go:
+            return found, nearer > WORTH
+        further = polish(forward, freed)
         if not further.objective < found.objective - WORTH:
             return found, False
         nearer, to_go = found.objective - further.objective, further.objective - lowest
@@ -92,14 +96,12 @@ def beyond(forward: Forward, fit: Fit, lowest: float = np.inf) -> tuple[Fit, boo
     return found, held
 
 
-def _further(forward: Forward, fit: Fit, soon: float) -> Fit:
-    """The fit with its stuck coordinates let go once; but for the last steps where that gains nothing."""
+def _freed(fit: Fit, soon: float) -> Fit:
+    """The fit with wider bounds of its stuck coordinates."""
     at = stuck(fit, soon)
     wider = iter([_wider(c, soon) if s else c for c, s in zip(fit.hypothesis.coordinates, at, strict=True)])
     parts = tuple(replace(c, free=tuple(next(wider) for _ in c.free)) for c in fit.hypothesis.components)
-    one = Fit(Hypothesis(parts), fit.normal, others=fit.others)
-    begun = polish(forward, one, BEGUN, finish=False)
-    return polish(forward, one) if begun.objective < fit.objective - WORTH else begun
+    return Fit(Hypothesis(parts), fit.normal, others=fit.others)
 
 
 def _off_below(c: Coordinate) -> bool:
