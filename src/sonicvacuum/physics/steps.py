@@ -16,8 +16,8 @@ EARLY_REFINEMENT = 8
 EARLY_CONTACT_TIMES = 4.5
 # Steps in units of the time in which damping stops a bead: the late one follows what is left of the motion
 # and is stable, the early one resolves the jump of a force that damping makes at once. After so many of
-# these times that is over, though the striker's contact may last longer. Forces err by 1e-4 of their peak at
-# most, as those of beads that hardly damp (a strike two hundred times overdamped: `test_steps`).
+# these times that is over, though the striker's contact may last longer. However much a chain is damped,
+# forces err by no more than those of a chain that hardly is, 5e-4 of their peak beside a dashpot.
 DECAY_STEP, EARLY_DECAY_STEP, EARLY_DECAYS = 1.0, 1.0 / 32.0, 180.0
 # And in units of the time in which a memory forgets, in the early phase too: what is forgotten so soon
 # follows the force, and the strike is hardly sharper to it than the rest. With ten times the elastic force
