@@ -92,19 +92,20 @@ OVERDAMPED = [
 
 
 @pytest.mark.parametrize("id, values, speed, heavy", OVERDAMPED)
-def test_overdamped_forces_are_right_at_steps_as_long_as_damping_allows(id, values, speed, heavy):
-    """Late steps take in what is stopped at once; the jump of a damping force at the strike is resolved."""
+@pytest.mark.parametrize("refine, most", [(1.0, 5e-4), (1.0 / 3.0, 2e-2)])
+def test_overdamped_forces_are_right_though_fine_steps_end_early(id, values, speed, heavy, refine, most):
+    """The jump of a damping force at the strike is resolved; steps as long as searches take are stable."""
     setup = effect(id).apply(nominal(Plain(beads=12)), **values)
     chain = setup.chain.struck_at(np.array([speed]))
     chain = replace(chain, striker_mass=heavy * chain.striker_mass)
     fast = time_scale(chain)
-    forces = [simulate(chain, range(13), 60 * fast, fast / 20, refine=r).force[..., 0] for r in (1, 4)]
+    forces = [simulate(chain, range(13), 60 * fast, fast / 20, refine=r).force[..., 0] for r in (refine, 4)]
     peaks = np.abs(forces[1]).max(axis=0)
     assert np.all(peaks[:4] > 0.0)
     error = np.abs(forces[0] - forces[1]).max(axis=0) / np.maximum(peaks, 1e-4 * peaks[0])
     # In shares of each contact's own peak. 5e-4 is what steps of beads that hardly damp leave beside a
-    # dashpot, whose force jumps at contact; late steps half as long again would be unstable (errors of 0.5).
-    assert error.max() < 5e-4
+    # dashpot, whose force jumps at contact; 2e-2 what three times as long ones do. Unstable ones: 1 and more.
+    assert error.max() < most
     decay = damping_times(chain, *of(chain))[1].max()
     assert decay < fast / 5  # which makes the step shorter, else this would test nothing
 

@@ -14,11 +14,12 @@ from sonicvacuum.physics.laws import HERTZ, LawSet, columns_of, elastic_at
 STEP = {"splitting": 0.1, "runge-kutta": 0.05}
 EARLY_REFINEMENT = 8
 EARLY_CONTACT_TIMES = 4.5
-# Steps in units of the time in which damping stops a bead: the late one follows what is left of the motion
-# and is stable, the early one resolves the jump of a force that damping makes at once. After so many of
-# these times that is over, though the striker's contact may last longer. However much a chain is damped,
-# forces err by no more than those of a chain that hardly is, 5e-4 of their peak beside a dashpot.
-DECAY_STEP, EARLY_DECAY_STEP, EARLY_DECAYS = 1.0, 1.0 / 32.0, 180.0
+# Step in units of the time in which damping stops a bead: stable where steps are three times as long, as
+# searches take them beside noise (2.3 of these times are not), and accurate to the stepper's order.
+DECAY_STEP = 0.25
+# The fine steps of the strike end with the jump that a contact's damping makes, after so many of its times,
+# though the striker may be there for longer.
+EARLY_DECAYS = 180.0
 # And in units of the time in which a memory forgets, in the early phase too: what is forgotten so soon
 # follows the force, and the strike is hardly sharper to it than the rest. With ten times the elastic force
 # remembered and 0.3 us to forget it, forces err by 1e-6 of their peak.
@@ -113,13 +114,12 @@ def choose_steps(chain: Chain, laws: LawSet, table: np.ndarray, mass: np.ndarray
     """Steps in s of each chain: (lanes,) before and after the end of the early phase, and that end in s."""
     stepper = "splitting" if laws.splits else "runge-kutta"
     late = STEP[stepper] * time_scale(chain, laws, table, mass)
-    early = late / EARLY_REFINEMENT
     struck = chain.first.mass
     until = EARLY_CONTACT_TIMES * contact_time(struck, chain.striker_stiffness, chain.speed)
     if not laws.is_positional:
         contacts, decay = damping_times(chain, laws, table, mass)
-        late, early = np.minimum(late, DECAY_STEP * decay), np.minimum(early, EARLY_DECAY_STEP * decay)
-        until = np.minimum(until, EARLY_DECAYS * contacts)
+        late, until = np.minimum(late, DECAY_STEP * decay), np.minimum(until, EARLY_DECAYS * contacts)
+    early = late / EARLY_REFINEMENT
     heavy = np.maximum(1.0, chain.striker_mass / struck)
     if laws.in_slot("memory"):
         most = MEMORY_STEP * memory_time(chain, laws, table, mass)
