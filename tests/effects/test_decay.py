@@ -92,7 +92,7 @@ OVERDAMPED = [
 
 
 @pytest.mark.parametrize("id, values, speed, heavy", OVERDAMPED)
-@pytest.mark.parametrize("refine, most", [(1.0, 5e-4), (1.0 / 3.0, 2e-2)])
+@pytest.mark.parametrize("refine, most", [(1.0, 1e-4), (1.0 / 3.0, 2e-3)])
 def test_overdamped_forces_are_right_though_fine_steps_end_early(id, values, speed, heavy, refine, most):
     """The jump of a damping force at the strike is resolved; steps as long as searches take are stable."""
     setup = effect(id).apply(nominal(Plain(beads=12)), **values)
@@ -103,8 +103,8 @@ def test_overdamped_forces_are_right_though_fine_steps_end_early(id, values, spe
     peaks = np.abs(forces[1]).max(axis=0)
     assert np.all(peaks[:4] > 0.0)
     error = np.abs(forces[0] - forces[1]).max(axis=0) / np.maximum(peaks, 1e-4 * peaks[0])
-    # In shares of each contact's own peak. 5e-4 is what steps of beads that hardly damp leave beside a
-    # dashpot, whose force jumps at contact; 2e-2 what three times as long ones do. Unstable ones: 1 and more.
+    # In shares of each contact's own peak, with room for two: 3e-5 and 8e-4 remain beside a dashpot, whose
+    # force jumps at contact, less elsewhere. Unstable steps leave forces of many times the peak.
     assert error.max() < most
     decay = damping_times(chain, *of(chain))[1].max()
     assert decay < fast / 5  # which makes the step shorter, else this would test nothing
