@@ -10,7 +10,7 @@ from reference import Plain
 from sonicvacuum.effects import effect
 from sonicvacuum.physics.contact import contact_time
 from sonicvacuum.physics.run import simulate
-from sonicvacuum.physics.steps import damping_times
+from sonicvacuum.physics.steps import damping_rates
 
 SPEEDS = 0.44 * np.geomspace(0.5, 2.0, 8)
 
@@ -83,8 +83,10 @@ def test_forces_of_relaxing_contacts_converge_to_the_fourth_order(strength, tau)
 
 OVERDAMPED = [
     ("hunt-crossley", {"damping_s_per_m": 10.0}, 10.0, 1.0),
+    ("hunt-crossley", {"damping_s_per_m": 10.0}, 10.0, 3.0),
     ("hunt-crossley", {"damping_s_per_m": 3.0}, 2.0, 20.0),
     ("velocity-power", {"gamma": 200.0, "alpha": 2.5}, 10.0, 1.0),
+    ("velocity-power", {"gamma": 300.0, "alpha": 1.9}, 5.0, 8.0),
     ("linear-dashpot", {"damping_kg_s": 1000.0}, 1.0, 1.0),
     ("tsuji", {"alpha": 20.0}, 1.0, 1.0),
     ("guide-friction", {"force_N": 0.5}, 1.0, 1.0),
@@ -106,8 +108,38 @@ def test_overdamped_forces_are_right_though_fine_steps_end_early(id, values, spe
     # In shares of each contact's own peak, with room for two: 3e-5 and 8e-4 remain beside a dashpot, whose
     # force jumps at contact, less elsewhere. Unstable steps leave forces of many times the peak.
     assert error.max() < most
-    decay = damping_times(chain, *of(chain))[1].max()
-    assert decay < fast / 5  # which makes the step shorter, else this would test nothing
+    contacts, _, bodies = damping_rates(chain, *of(chain))
+    assert (
+        1.0 / (contacts + bodies).min() < fast / 5
+    )  # which makes the step shorter, else this would test nothing
+
+
+def test_a_strike_across_a_gap_is_as_sharp_as_the_first():
+    setup = effect("velocity-power").apply(nominal(Plain(beads=12)), gamma=200.0, alpha=2.5)
+    setup = effect("contact-gap").apply(setup, gap_um=100.0, contact=4)
+    chain = setup.chain.struck_at(np.array([10.0]))
+    fast = time_scale(chain)
+    coarse, fine = (simulate(chain, [4, 5], 60 * fast, fast / 20, refine=r).force[..., 0] for r in (1 / 3, 4))
+    error = np.abs(coarse - fine).max(axis=0) / fine.max(axis=0)
+    # 8e-3 remain in the contact with the gap; steps that waves in touching beads allow leave 0.5.
+    assert error.max() < 0.02
+
+
+def test_damping_rates_are_those_where_damping_stops_a_bead():
+    chain = nominal(Plain(beads=12)).chain.struck_at(np.array([10.0]))
+    chain = replace(chain, striker_mass=chain.lightest)
+    deep = effect("hunt-crossley").apply(replace(nominal(Plain(beads=12)), chain=chain), damping_s_per_m=10.0)
+    strike, settled, _ = damping_rates(deep.chain, *of(deep.chain))
+    # m v = (3/2) α K ∫ δ^{3/2} dδ = (3/5) α K δ^{5/2} where a bead rests, of rate (3/2) α K δ^{3/2}/m.
+    mass, stiffness = chain.lightest, of(deep.chain)[1][:, 0].max(axis=0)  # that of the wall
+    depth = (mass * 10.0 / (0.6 * 10.0 * stiffness)) ** 0.4
+    assert strike == pytest.approx(15.0 * stiffness * depth**1.5 / mass, rel=1e-6)  # the law is a pure power
+    assert settled == pytest.approx(strike, rel=1e-12)  # a force linear in speed: rounding
+    fast = effect("velocity-power").apply(
+        replace(nominal(Plain(beads=12)), chain=chain), gamma=200.0, alpha=2.5
+    )
+    strike, settled, _ = damping_rates(fast.chain, *of(fast.chain))
+    assert np.all(settled < strike / 10)
 
 
 def test_a_solitary_wave_decays_exponentially_under_drag():

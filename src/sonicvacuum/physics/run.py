@@ -162,12 +162,12 @@ class _Batch:
     def _choose_steps(self, coefficients, mass, step, refine):
         lanes, end = self.chain.lanes, (self.samples - 1) * self.interval
         if step is None:
-            fine, late, until = choose_steps(self.chain, self.laws, coefficients, mass)
+            steps = choose_steps(self.chain, self.laws, coefficients, mass, refine)
         else:
-            fine, late, until = np.full(lanes, step), np.full(lanes, step), np.zeros(lanes)
-        self.fine, self.late, self.until = fine / refine, late / refine, until
+            steps = np.full(lanes, step / refine), np.full(lanes, step / refine), np.zeros(lanes)
+        self.fine, self.late, self.until = fine, late, until = steps
         with np.errstate(all="ignore"):
-            self.steps = np.minimum(until, end) / self.fine + np.maximum(end - until, 0.0) / self.late
+            self.steps = np.minimum(until, end) / fine + np.maximum(end - until, 0.0) / late
         countless = ~(self.steps < COUNTLESS)
         if countless.any():
             worst = int(countless.argmax())

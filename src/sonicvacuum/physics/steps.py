@@ -14,9 +14,12 @@ from sonicvacuum.physics.laws import HERTZ, LawSet, columns_of, elastic_at
 STEP = {"splitting": 0.1, "runge-kutta": 0.05}
 EARLY_REFINEMENT = 8
 EARLY_CONTACT_TIMES = 4.5
-# Step in units of the time in which damping stops a bead: stable where steps are three times as long, as
-# searches take them beside noise (2.3 of these times are not), and accurate to the stepper's order.
+# Step in units of the time in which damping stops a bead: accurate to the stepper's order, and stable where
+# steps are three times as long, as searches take them beside noise (2.3 of these times are not).
 DECAY_STEP = 0.25
+# The same once the strike is over: fine steps of the strike set the error, the rest need only be stable, so
+# searches take no longer ones.
+LATE_DECAY_STEP = 0.75
 # The fine steps of the strike end with the jump that a contact's damping makes, after so many of its times,
 # though the striker may be there for longer.
 EARLY_DECAYS = 180.0
@@ -68,33 +71,87 @@ def _hertz_like(chain, laws, table, mass):
 def _typical_compression(chain, mass):
     """(lanes,) m: 1.5 (m v²/K)^{2/5}, of a Hertz contact at the striker's speed; or that at rest."""
     impact = 1.5 * (mass * chain.speed**2 / chain.stiffness) ** 0.4
-    return np.maximum(impact, np.cbrt(np.square(chain.load / chain.stiffness)))
+    return np.maximum(impact, _compression_at_rest(chain))
 
 
-def damping_times(chain: Chain, laws: LawSet, table: np.ndarray, mass: np.ndarray) -> tuple:
-    """(lanes,) shortest times in s in which contacts, and contacts and what acts on bodies, stop a bead;
-    infinite where nothing does.
+def _compression_at_rest(chain):
+    """(lanes,) m, of Hertz contacts under the static load."""
+    return np.cbrt(np.square(chain.load / chain.stiffness))
+
+
+def damping_rates(chain: Chain, laws: LawSet, table: np.ndarray, mass: np.ndarray) -> tuple:
+    """(lanes,) greatest rates in 1/s at which contacts stop a bead, in the strike and when its jump is over;
+    and at which what acts on bodies does.
     """
-    contacts, bodies = np.zeros(chain.lanes), np.zeros(chain.lanes)
-    lightest, delta, force = _typical(chain, laws, table, mass)
-    rate = np.broadcast_to(chain.speed, delta.shape)
-    for term in laws.in_slot("force"):
-        columns = columns_of(laws, term, table)
-        fall = term.formula(delta, rate, force, *columns) - term.formula(delta, 0.5 * rate, force, *columns)
-        contacts = contacts + np.abs(2.0 * fall / (rate * lightest)).max(axis=0)
+    lightest, delta = _typical(chain, table, mass)
+    speed = np.broadcast_to(chain.speed, delta.shape)
+    elastic = elastic_at(laws, table, delta)
+    damping, contacts = _damping(laws, table, lightest, delta, speed)
+    # The speed that damping would take on the way to such a depth. A heavy striker goes on pushing.
+    taken = contacts * delta / np.square(np.maximum(1.0, chain.striker_mass / lightest))
+    if np.any(taken > speed):
+        delta = _where_stopped(chain, laws, table, lightest, delta, contacts, taken)
+        damping, contacts = _damping(laws, table, lightest, delta, speed)
+    settled = contacts
+    # Across a gap, each strike is as sharp as the first.
+    if np.any(damping > elastic) and not chain.gaps(len(table)).any():
+        settled = _settled(laws, table, lightest, delta, speed, (elastic, damping, contacts))
+    bodies = np.zeros(chain.lanes)
     for term in laws.in_slot("body"):
         # Friction stops the slow sooner than the fast.
-        speeds, columns = (rate, CREEP * rate), columns_of(laws, term, table)
+        speeds, columns = (speed, CREEP * speed), columns_of(laws, term, table)
         falls = (np.abs(np.broadcast_to(term.formula(v, *columns), v.shape) / v) for v in speeds)
         bodies = bodies + np.maximum(*(fall.max(axis=0) for fall in falls))
-    with np.errstate(divide="ignore", over="ignore"):  # next to nothing takes as long as nothing
-        return 1.0 / contacts, 1.0 / (contacts + bodies)
+    return contacts.max(axis=0), settled.max(axis=0), bodies
+
+
+def _damping(laws, table, lightest, delta, speed):
+    """(bodies, lanes) forces in N that damp contacts of such depth and speed, and how soon they stop a bead,
+    as rates in 1/s.
+    """
+    full, half = np.zeros(delta.shape), np.zeros(delta.shape)
+    force = elastic_at(laws, table, delta)
+    for term in laws.in_slot("force"):
+        columns = columns_of(laws, term, table)
+        full = full + term.formula(delta, speed, force, *columns)
+        half = half + term.formula(delta, 0.5 * speed, force, *columns)
+    return np.abs(full), np.abs(2.0 * (full - half) / (speed * lightest))
+
+
+def _where_stopped(chain, laws, table, lightest, delta, contacts, taken):
+    """(bodies, lanes) m: `delta`, or the depth at which rates, `contacts` at `delta`, have stopped a bead.
+
+    Rates like δ^p stop a bead of speed v where ∫ rate dδ = rate δ/(p + 1) = v; if only the deepest rise so
+    steeply, sooner.
+    """
+    _, halved = _damping(laws, table, lightest, 0.5 * delta, np.broadcast_to(chain.speed, delta.shape))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        power = np.maximum(np.log2(contacts / halved), 0.0)
+        share = ((power + 1.0) * chain.speed / taken) ** (1.0 / (power + 1.0))
+    depth = np.where(taken > chain.speed, np.minimum(share, 1.0), 1.0) * delta
+    return np.maximum(depth, _compression_at_rest(chain))
+
+
+def _settled(laws, table, lightest, delta, speed, strike):
+    """(bodies, lanes) rates in 1/s at the speed where damping bears no more than an elastic impact does.
+
+    `strike` holds what the impact and damping bear in N at `speed`, and how soon damping stops a bead then.
+    """
+    elastic, damping, contacts = strike
+    with np.errstate(divide="ignore", invalid="ignore"):
+        # Forces like v^p; if only the fastest rise so steeply, the speed is lower still.
+        power = -np.log2(1.0 - 0.5 * contacts * speed * lightest / damping)
+        slower = np.minimum((elastic / damping) ** (1.0 / power), 1.0)
+    steep = (damping > elastic) & (power > 1.0)
+    _, rates = _damping(laws, table, lightest, delta, np.where(steep, slower, 1.0) * speed)
+    return rates
 
 
 def memory_time(chain: Chain, laws: LawSet, table: np.ndarray, mass: np.ndarray) -> np.ndarray:
     """(lanes,) shortest time in s in which a contact forgets; infinite where none remembers."""
     fastest = np.zeros(chain.lanes)
-    *_, force = _typical(chain, laws, table, mass)
+    _, delta = _typical(chain, table, mass)
+    force = elastic_at(laws, table, delta)
     for term in laws.in_slot("memory"):
         columns = columns_of(laws, term, table)
         fall = term.growth(force, force, *columns) - term.growth(force, 0.5 * force, *columns)
@@ -103,26 +160,36 @@ def memory_time(chain: Chain, laws: LawSet, table: np.ndarray, mass: np.ndarray)
         return 1.0 / fastest
 
 
-def _typical(chain, laws, table, mass):
-    """(lanes,) lightest mass in kg; (bodies, lanes) typical compressions in m, their elastic forces in N."""
+def _typical(chain, table, mass):
+    """(lanes,) lightest mass in kg; (bodies, lanes) typical compressions in m."""
     lightest = mass.min(axis=0)
-    delta = np.broadcast_to(_typical_compression(chain, lightest), (len(table), chain.lanes))
-    return lightest, delta, elastic_at(laws, table, delta)
+    return lightest, np.broadcast_to(_typical_compression(chain, lightest), (len(table), chain.lanes))
 
 
-def choose_steps(chain: Chain, laws: LawSet, table: np.ndarray, mass: np.ndarray) -> tuple:
-    """Steps in s of each chain: (lanes,) before and after the end of the early phase, and that end in s."""
+def choose_steps(
+    chain: Chain, laws: LawSet, table: np.ndarray, mass: np.ndarray, refine: float = 1.0
+) -> tuple:
+    """Steps in s of each chain: (lanes,) before and after the end of the early phase, and that end in s.
+
+    Args:
+        chain, laws, table, mass: as `time_scale` takes them.
+        refine: how many times as fine as standard; below 1, coarser where that is stable.
+    """
     stepper = "splitting" if laws.splits else "runge-kutta"
-    late = STEP[stepper] * time_scale(chain, laws, table, mass)
+    late = STEP[stepper] / refine * time_scale(chain, laws, table, mass)
+    early = late / EARLY_REFINEMENT
     struck = chain.first.mass
     until = EARLY_CONTACT_TIMES * contact_time(struck, chain.striker_stiffness, chain.speed)
     if not laws.is_positional:
-        contacts, decay = damping_times(chain, laws, table, mass)
-        late, until = np.minimum(late, DECAY_STEP * decay), np.minimum(until, EARLY_DECAYS * contacts)
-    early = late / EARLY_REFINEMENT
+        contacts, settled, bodies = damping_rates(chain, laws, table, mass)
+        with np.errstate(divide="ignore", over="ignore"):  # next to nothing takes as long as nothing
+            early = np.minimum(early, DECAY_STEP / refine / EARLY_REFINEMENT / (contacts + bodies))
+            stable = max(refine, 1.0) / LATE_DECAY_STEP
+            late = np.minimum(late, 1.0 / (stable * settled + refine / DECAY_STEP * bodies))
+            until = np.minimum(until, EARLY_DECAYS / contacts)
     heavy = np.maximum(1.0, chain.striker_mass / struck)
     if laws.in_slot("memory"):
-        most = MEMORY_STEP * memory_time(chain, laws, table, mass)
+        most = MEMORY_STEP / refine * memory_time(chain, laws, table, mass)
         early, late = np.minimum(early, most), np.minimum(late, most)
     return early, late, heavy * until
 
