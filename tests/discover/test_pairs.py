@@ -100,6 +100,27 @@ def test_trials_all_over_the_range_promise_what_slopes_do_not():
     assert not any("gravity" in s.effects for s in pairs.everywhere(forward, null, one, setup, ("gravity",)))
 
 
+def test_either_effect_of_the_best_pair_is_exchanged(monkeypatch):
+    """A ball of nylon that loses as Kuwabara and Kono say and is stiffer than its handbook: relaxation alone
+    explains more than the loss alone, and relaxation with the loss more than any pair tried before; starts
+    with the loss promised less than all those with relaxation, and none was fitted.
+    """
+    ways = {"loss": (90.0, 80.0, 70.0), "relaxing": (99.0, 98.0, 97.0, 96.0)}
+    starts = [
+        SimpleNamespace(effects=frozenset([one, f"{one} {gain:g}"]), gain=gain)
+        for one, gains in ways.items()
+        for gain in gains
+    ]
+    best = SimpleNamespace(effects=("loss", "relaxing"), log_bayes=0.0)
+    search = pairs.Pairs.__new__(pairs.Pairs)
+    search.seen, search.asked, search.found, search.tried = starts[:3], starts[3:], {"best": best}, set()
+    fitted = []
+    monkeypatch.setattr(pairs, "_adapted", lambda start, best: None)
+    monkeypatch.setattr(pairs.Pairs, "_refit", lambda self, starts: fitted.append([s.gain for s in starts]))
+    search._exchange()
+    assert fitted[0] == [99.0, 90.0, 98.0, 80.0]
+
+
 @pytest.mark.parametrize(
     ("more", "named", "kept"),
     [(1.0, ["a", "b"], True), (-1.0, ["a", "b"], False), (1.0, ["a", "unknown"], False), (1.0, None, False)],

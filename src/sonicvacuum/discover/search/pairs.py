@@ -102,15 +102,15 @@ class Pairs:
         return self.ranked[0].fit.objective > FAR_OFF * enough.data(self.forward)
 
     def _exchange(self):
-        """Pairs that share one effect with the best one, as they started and as the best one has it."""
+        """Pairs that share either effect with the best one, as they started and as the best one has it."""
         for _ in range(ROUNDS):
             if not self.found:
                 return
             best = self.ranked[0]
             near = [s for s in (*self.seen, *self.asked) if len(s.effects & set(best.effects)) == 1]
-            self._refit(_best(near, self.found, EXCHANGED))
+            self._refit(_in_turn(_best(near, self.found), best)[:EXCHANGED])
             adapted = [b for s in near if (b := _adapted(s, best)) and _key(b, best) not in self.tried]
-            chosen = _best(adapted, {}, EXCHANGED)
+            chosen = _in_turn(_best(adapted, {}), best)[:EXCHANGED]
             self.tried |= {_key(b, best) for b in chosen}
             self._refit(chosen)
             if self.ranked[0] is best:
@@ -207,13 +207,24 @@ def _adapted(start: Start, best: Combination) -> Start | None:
     return Start(start.gain, start.hypothesis, u, nu, places)
 
 
-def _best(starts, found, most):
-    """The most promising start of each pair that has not been fitted, `most` of them."""
+def _best(starts, found, most=None):
+    """The most promising start of each pair that has not been fitted, `most` of them, best first."""
     best: dict[frozenset, Start] = {}
     for s in sorted(starts, key=lambda s: -s.gain):
         if s.effects not in found:
             best.setdefault(s.effects, s)
     return list(best.values())[:most]
+
+
+def _in_turn(starts: list[Start], best: Combination) -> list[Start]:
+    """Starts that share one effect with the best pair, by turns those with the one and with the other.
+
+    What starts promise tells more of the effect that was fitted alone than of the one put beside it: all with
+    the one that is better alone would come first.
+    """
+    kept = [next(iter(s.effects & set(best.effects))) for s in starts]
+    turns = [kept[:k].count(name) for k, name in enumerate(kept)]
+    return [starts[k] for k in sorted(range(len(starts)), key=turns.__getitem__)]
 
 
 def screened(forward: Forward, first: Fit, setup: Setup) -> screen.Screen:
