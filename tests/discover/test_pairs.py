@@ -121,6 +121,29 @@ def test_either_effect_of_the_best_pair_is_exchanged(monkeypatch):
     assert fitted[0] == [99.0, 90.0, 98.0, 80.0]
 
 
+@pytest.mark.parametrize(("at_end", "fitted"), [(False, ["close"]), (True, ["close", "far"])])
+def test_what_stands_in_for_an_effect_of_the_best_pair_is_fitted(monkeypatch, at_end, fitted):
+    """A softer wall, a stiffer bead and a heavier ball change rebounds alike: of a pair with one of them the
+    others are as likely, and were never asked for where the effect alone was far from what it is in the pair.
+    """
+    columns = [slice(0, 1), slice(1, 2)]
+    best = SimpleNamespace(objective=20.0, hypothesis=SimpleNamespace(columns=columns))
+    search = pairs.Pairs.__new__(pairs.Pairs)
+    search.forward, search.null, search.setup = None, SimpleNamespace(objective=1020.0), None
+    search.found = {"best": SimpleNamespace(fit=best, log_bayes=0.0)}
+    # With both 1000 are gained, without effect 0 it is 900.
+    gains = {"close": 975.0, "far": 950.0}
+    starts = [SimpleNamespace(effects=frozenset([name]), gain=gain) for name, gain in gains.items()]
+    monkeypatch.setattr(pairs, "instead", lambda forward, null, one, k, setup: starts if k == 0 else [])
+    monkeypatch.setattr(pairs.restart, "less", lambda forward, one, k: k)
+    monkeypatch.setattr(pairs.restart, "promised", lambda k: 120.0)
+    monkeypatch.setattr(pairs.bounds, "near", lambda one: np.array([at_end, False]))
+    asked = []
+    monkeypatch.setattr(pairs.Pairs, "_refit", lambda self, starts: asked.append(starts))
+    search._stood_in()
+    assert [[next(iter(s.effects)) for s in one] for one in asked] == [fitted]
+
+
 @pytest.mark.parametrize(
     ("more", "named", "kept"),
     [(1.0, ["a", "b"], True), (-1.0, ["a", "b"], False), (1.0, ["a", "unknown"], False), (1.0, None, False)],

@@ -27,6 +27,9 @@ from sonicvacuum.effects import Setup
 STARTED = 4
 # Pairs refitted from the nominal screen, from single fits, and in each round of exchanges.
 LINEAR, BESIDE, EXCHANGED, ROUNDS = 3, 3, 4, 2
+# What may stand in for an effect of the best pair promises this share of what that gains beside the other; so
+# many are fitted.
+STANDS, STANDING = 0.7, 3
 # Pairs that are started again, and what that has to gain in log evidence before others follow it.
 LEADING, WORTH = 4, 0.5
 # Beside a pair that leaves so many times the noise, so many others are tried.
@@ -71,7 +74,7 @@ class Pairs:
         self._refit(_best(self.asked, self.found, BESIDE))
         self._refit(_best(self.seen, self.found, LINEAR))
         self._exchange()
-        self._unbound()
+        self._stood_in()
         self._refine()
         self._with_other_strengths()
         return self.ranked
@@ -116,17 +119,26 @@ class Pairs:
             if self.ranked[0] is best:
                 return
 
-    def _unbound(self):
-        """In place of an effect of the best pair that ends near a bound, every other one: it may tend there
-        to another law, of which no start was made beside the other effect.
+    def _stood_in(self):
+        """In place of either effect of the best pair, what promises nearly as much there; beside one near a
+        bound whatever promises most: it may tend there to another law, of which no start was made.
         """
-        if not self.found:
-            return
-        best = self.ranked[0].fit
-        ends = bounds.near(best)
-        at = [k for k, columns in enumerate(best.hypothesis.columns) if any(ends[columns])]
-        others = (s for k in at for s in instead(self.forward, self.null, best, k, self.setup))
-        self._refit(_best(others, self.found, BESIDE))
+        for _ in range(ROUNDS):
+            if not self.found:
+                return
+            best = self.ranked[0]
+            self._refit([s for k in range(2) for s in self._standing(best.fit, k)])
+            if self.ranked[0] is best:
+                return
+
+    def _standing(self, best: Fit, k: int) -> list[Start]:
+        """What may stand in effect k's place, best first."""
+        starts = _best(instead(self.forward, self.null, best, k, self.setup), self.found, STANDING)
+        if not starts or any(bounds.near(best)[best.hypothesis.columns[k]]):
+            return starts
+        gained = self.null.objective - best.objective
+        left = self.null.objective - restart.promised(restart.less(self.forward, best, k))
+        return [s for s in starts if s.gain > left + STANDS * (gained - left)]
 
     def _refine(self):
         """Look for narrow minima of effects with a place in the leading pairs, see `around`."""
