@@ -127,14 +127,14 @@ def test_what_stands_in_for_an_effect_of_the_best_pair_is_fitted(monkeypatch, at
     others are as likely, and were never asked for where the effect alone was far from what it is in the pair.
     """
     columns = [slice(0, 1), slice(1, 2)]
-    best = SimpleNamespace(objective=20.0, hypothesis=SimpleNamespace(columns=columns))
+    best = SimpleNamespace(objective=20.0, hypothesis=SimpleNamespace(columns=columns, ids=("a", "b")))
     search = pairs.Pairs.__new__(pairs.Pairs)
     search.forward, search.null, search.setup = None, SimpleNamespace(objective=1020.0), None
     search.found = {"best": SimpleNamespace(fit=best, log_bayes=0.0)}
     # With both 1000 are gained, without effect 0 it is 900.
     gains = {"close": 975.0, "far": 950.0}
     starts = [SimpleNamespace(effects=frozenset([name]), gain=gain) for name, gain in gains.items()]
-    monkeypatch.setattr(pairs, "instead", lambda forward, null, one, k, setup: starts if k == 0 else [])
+    monkeypatch.setattr(pairs, "everywhere", lambda forward, null, k, setup, known: starts if k == 0 else [])
     monkeypatch.setattr(pairs.restart, "less", lambda forward, one, k: k)
     monkeypatch.setattr(pairs.restart, "promised", lambda k: 120.0)
     monkeypatch.setattr(pairs.bounds, "near", lambda one: np.array([at_end, False]))

@@ -133,11 +133,13 @@ class Pairs:
 
     def _standing(self, best: Fit, k: int) -> list[Start]:
         """What may stand in effect k's place, best first."""
-        starts = _best(instead(self.forward, self.null, best, k, self.setup), self.found, STANDING)
+        beside = restart.less(self.forward, best, k)
+        others = everywhere(self.forward, self.null, beside, self.setup, best.hypothesis.ids)
+        starts = _best(others, self.found, STANDING)
         if not starts or any(bounds.near(best)[best.hypothesis.columns[k]]):
             return starts
         gained = self.null.objective - best.objective
-        left = self.null.objective - restart.promised(restart.less(self.forward, best, k))
+        left = self.null.objective - restart.promised(beside)
         return [s for s in starts if s.gain > left + STANDS * (gained - left)]
 
     def _refine(self):
