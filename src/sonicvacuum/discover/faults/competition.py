@@ -147,13 +147,13 @@ class Search(Searching):
                 self._led = Led(model, ranked[0], alone, told, self.bench)
             elif (one := self._beside_one_effect(ranked, model)) is not None:
                 self._accept([one], one)
-            else:
+            elif not (looked and self._values_beside_one_effect(model)):
                 break
         else:
             ranked, looked = [], True
         bench = self.bench
         found = self._clock_by_a_step(self._factors_anew(self._effects_instead(self._investigate())))
-        found = self._zeros_as_stated(found)
+        found = self._values_beside(self._errors_as_stated(self._zeros_as_stated(found)))
         anew = self.bench is not bench
         if anew or (model.bench is bench and found.null.objective < model.fit.objective - SAME_MINIMUM):
             # What slips gained beside spikes, or on a fit that had stopped short, is none of their own.
@@ -170,7 +170,7 @@ class Search(Searching):
             if better is None:
                 break
             found, ranked = self._factors_anew(better), []
-        order = sorted(counted_on(self.findings, found), key=lambda f: -f.probability)
+        order = sorted(counted_on(self._as_seen(found), found), key=lambda f: -f.probability)
         return Outcome(found, tuple(order), self.bench.record, self.simulations + self._alone.simulations)
 
     def _sure(self, judged: Judged, model: Model) -> bool:

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sonicvacuum.discover.faults import changes, clocks, policy
+from sonicvacuum.discover.faults import changes, clocks, policy, several
 from sonicvacuum.discover.faults.alone import Kept, alone
 from sonicvacuum.discover.faults.examine import with_noise_of
 from sonicvacuum.discover.faults.found import Bench, Finding
@@ -70,6 +70,10 @@ class Searching(Ranking):
         self._nominal: Model | None = None
         self._led: Led | None = None
         self._alone = Kept()
+        # Errors of tables that are taken to be of another size.
+        self._sized: list[Judged] = []
+        # Values of tables that are off, of which only a model tells by how much.
+        self._off: list[Slip] = []
         self._given = bench.record
 
     def _accept(self, ranked: list[Judged], chosen: Judged, share: float = 1.0) -> None:
@@ -85,6 +89,10 @@ class Searching(Ranking):
                 told = judged.findings(p)
                 self.findings += [replace(finding, corrected=judged is chosen) for finding in told]
         self.bench = chosen.model.bench
+        if chosen.slip.undo is not None:
+            self._sized.append(chosen)
+        if chosen.slip.seen is not None:
+            self._off.append(chosen.slip)
         if chosen.slip.fault == "gauge-delayed":
             seen = predicted(self.make(self.bench), self.threads)
             record = delay_left_open(self.bench.record, chosen.slip.sensor, seen)
@@ -205,6 +213,64 @@ class Searching(Ranking):
             return found
         self.bench, self.findings = bench, [f for f in self.findings if f is not told[0]]
         return after
+
+    def _values_beside_one_effect(self, model: Model) -> bool:
+        """Whether several values of a table are all that the best effect alone leaves; they are put right
+        then: sets of effects would be asked for what they do.
+        """
+        best = [] if self.bench.record.signals else self._alone.beside(model)[:1]
+        return bool(best) and self._values_off(replace(model, fit=best[0].fit))
+
+    def _values_off(self, model: Model) -> bool:
+        """Whether several values of a table are all that a model leaves; they are put right then."""
+        chosen = several.leaving_noise(self, model, policy.MOST - self._corrected())
+        for one in chosen:
+            self._accept([one], one)
+        return bool(chosen)
+
+    def _corrected(self) -> int:
+        return sum(f.corrected for f in self.findings)
+
+    def _values_beside(self, found: Investigation) -> Investigation:
+        """The effects, where several values of a table are all that they leave, of the table without them."""
+        if self.bench.record.signals or found.final is found.null or not unexplained(found):
+            return found
+        bench, findings = self.bench, list(self.findings)
+        if not self._values_off(Model(bench, found.forward, found.final)):
+            return found
+        self.simulations += found.forward.chains
+        after = self._investigate()
+        if not unexplained(after):
+            return after
+        self.bench, self.findings = bench, findings
+        return found
+
+    def _as_seen(self, found: Investigation) -> list[Finding]:
+        """What is said, of values that are off by how much beside the effects that were found."""
+        model = Model(self.bench, found.forward, found.final)
+        value = {slip.at: slip.seen(model) for slip in self._off if slip.seen}
+        at = [(f.fault, f.run, f.sensor, f.quantity) for f in self.findings]
+        return [
+            replace(f, value=value.get(k, f.value)) if f.corrected else f
+            for k, f in zip(at, self.findings, strict=True)
+        ]
+
+    def _errors_as_stated(self, found: Investigation) -> Investigation:
+        """The effects beside errors as a table states them, where a few values that are off, or in each
+        other's place, explain beside effects what errors of another size were told for.
+        """
+        sized, self._sized = self._sized, []
+        for errors in sized:
+            chosen = several.instead_of_errors(self, found, errors, policy.MOST + 1 - self._corrected())
+            if not chosen:
+                continue
+            kind = errors.slip.fault, errors.slip.quantity
+            self.findings = [f for f in self.findings if (f.fault, f.quantity) != kind]
+            for one in chosen:
+                self._accept([one], one)
+            self.simulations += found.forward.chains
+            found = self._investigate()
+        return found
 
     def _beside_clock(self, ratio: float) -> tuple[Model, float]:
         """The nominal model beside a clock so many times the one that was put right, and the least that one

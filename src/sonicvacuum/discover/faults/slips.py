@@ -55,6 +55,7 @@ class Slip:
         shown: whether traces show by themselves, before anything is fitted, that it may have been made: it is
             asked for beside effects as well where it gains nothing without them.
         expected: size that other numbers of the record speak for; 0 where none do.
+        undo: (record put right) → as it was, whatever else was put right since; None where nobody asks.
     """
 
     fault: str
@@ -77,6 +78,7 @@ class Slip:
     each: Mapping[str, float] = field(default_factory=dict)
     shown: bool = False
     expected: float = 0.0
+    undo: Callable[[Record], Record] | None = None
 
     @property
     def log_prior(self) -> float:

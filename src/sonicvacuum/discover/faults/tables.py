@@ -63,10 +63,11 @@ def hypotheses(record: Record, model: Model) -> list[Slip]:
     off = _started(off, forward, start)
     gauges = swaps([g.id for g in record.gauges])
     seen = held([(k, j) for k, (_, rows) in enumerate(runs) for j, _ in rows], model, start)
+    out = standing_out(runs, start, model)
     rows = [
-        *_values(runs, start, model, seen),
+        *_values(runs, start, model, seen, out.values),
         *_gauges(runs, seen),
-        *_exchanged(runs, seen),
+        *_exchanged(runs, seen, out.exchanged),
         *_noise(runs, model),
     ]
     return [*whole, *off, *gauges, *rows]
@@ -130,9 +131,9 @@ def _led(slip, forward, start) -> tuple[float, float]:
     return float(slope @ left) / known, known
 
 
-def _values(runs, start, model, seen):
+def _values(runs, start, model, seen, out):
     """Values by themselves."""
-    places, out = list(seen.place), standing_out(runs, start, model)
+    places = list(seen.place)
     chosen = foremost(places, seen.alone(places))
     for k, j in sorted({*chosen, *out}):
         run, rows = runs[k]
@@ -191,14 +192,16 @@ def _level(one):
     return {key: value for key, value in one.options.items() if key != "sensor"}
 
 
-def _exchanged(runs, seen):
+def _exchanged(runs, seen, out):
     """Rows of one quantity in two runs, and all rows of two runs."""
     places = [{one.in_words: (k, j) for j, one in rows} for k, (_, rows) in enumerate(runs)]
     pairs = list(itertools.combinations(range(len(runs)), 2))
     single = [(a, b, name) for a, b in pairs for name in places[a] if name in places[b]]
     gains = seen.exchanged([(places[a][name], places[b][name]) for a, b, name in single])
-    for a, b, name in foremost(single, gains):
-        yield _swapped_runs(runs, a, b, [(places[a][name], places[b][name])], len(single), name)
+    plain = [one for one in single if (places[one[0]][one[2]], places[one[1]][one[2]]) in out]
+    for a, b, name in dict.fromkeys([*plain, *foremost(single, gains)]):
+        one = _swapped_runs(runs, a, b, [(places[a][name], places[b][name])], len(single), name)
+        yield replace(one, plain=(a, b, name) in plain)
     together: dict[tuple[int, int], np.ndarray] = defaultdict(lambda: np.zeros(2))
     for (a, b, _), gain in zip(single, gains.T, strict=True):
         together[a, b] = together[a, b] + gain
@@ -238,15 +241,17 @@ def _noise(runs, model):
         if scale_gain(square, len(z)) < policy.LEAST_GAIN or not _random(z, factor):
             continue
         price = math.log(math.sqrt(2.0 * math.pi / (2.0 * len(z))) / (2.0 * ERRORS))
+        places = [at[:2] for at in z]
         yield Slip(
             "noise-misstated",
-            partial(values.rescaled, [at[:2] for at in z], factor),
+            partial(values.rescaled, places, factor),
             # Whoever misjudges errors mostly misjudges all of them.
             alternatives=2 * len(quantities) if name else 2,
             quantity=name and name.replace("_", " "),
             of_values=True,
             value=partial(constant, factor),
             occam=price,
+            undo=partial(values.rescaled, places, 1.0 / factor),
         )
 
 

@@ -44,7 +44,7 @@ def exchange(pairs: Sequence[tuple[Place, Place]], record: Record, _: float) -> 
     return _edited(record, edits)
 
 
-def rescaled(places: Sequence[Place], factor: float, record: Record, _: float) -> Record:
+def rescaled(places: Sequence[Place], factor: float, record: Record, _: float = 0.0) -> Record:
     """The record with the errors of some values so many times as large."""
     own = record.block.runs
     edits = {(k, j): {"sigma": own[k].observables[j].sigma * factor} for k, j in places}
