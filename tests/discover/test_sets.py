@@ -71,6 +71,18 @@ def test_a_move_that_leads_nowhere_is_not_made_again(turns):
     assert made == ["_exchanged", "_again", "_one_for_two", "_exchanged"]
 
 
+@pytest.mark.parametrize(("two", "grown"), [("bce", "bce"), ("be", "bcd"), (None, "bcd")])
+def test_before_a_pair_grows_two_effects_are_tried_in_place_of_one(turns, two, grown):
+    """One of a pair may be none: what is added to it leads further from the set that it stands for."""
+    found, _ = turns
+    found._counted = lambda null, one: one
+    found._pruned = found._grown = lambda one: one
+    found._hopeless, found._elsewhere = lambda *rest: False, lambda *rest: None
+    found._added = lambda one: fitted("bcd") if len(one.hypothesis.ids) == 2 else None
+    found._two = lambda one: two and fitted(two)
+    assert found.grow(None, fitted("bd")).hypothesis.ids == tuple(grown)
+
+
 def test_large_sets_are_only_started_again(turns):
     found, _ = turns
     found._again, found._two = lambda one: None, lambda one: pytest.fail("a large set was searched")

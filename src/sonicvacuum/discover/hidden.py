@@ -1,16 +1,41 @@
 """What may hide behind the named effects: its share of the probability, and a name where it is the likeliest.
 
 Two effects of which either nearly makes up for the other leave nothing when one is named, so that no search
-asks for the pair (`judge.behind`). It is fitted where it is likelier than what was named.
+asks for the pair (`judge.behind`). Slopes tell how probable it is beside the named ones. Where that is not
+faint it is fitted: the named effects may stand in a minimum of their own, from which no slope leads to the
+lower one that they share with what hides.
 """
 
-from dataclasses import replace
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
 
 from sonicvacuum.discover import policy, upper
+from sonicvacuum.discover.fit.calibration import of_package
+from sonicvacuum.discover.fit.evidence import Combination
 from sonicvacuum.discover.judge import behind, explanations, rivals
 from sonicvacuum.discover.rounds import Investigation
-from sonicvacuum.discover.search import pairs, singles
+from sonicvacuum.discover.search import pairs, restart, singles
 from sonicvacuum.discover.search.screen import Screen
+
+# A set that hides is fitted where slopes make it as probable as this.
+FITTED = 0.05
+
+
+@dataclass(frozen=True)
+class Hiding:
+    """One effect beside the named ones, as they are fitted together.
+
+    Attributes:
+        effect: which one.
+        together: the set.
+        more: Δχ² that it gains beyond what slopes promise.
+    """
+
+    effect: str
+    together: Combination
+    more: float
 
 
 def told(found: Investigation, scores: Screen) -> tuple[Investigation, Screen]:
@@ -25,37 +50,67 @@ def told(found: Investigation, scores: Screen) -> tuple[Investigation, Screen]:
     gain = found.null.objective - found.final.objective
     beside = behind.odds(scores, gain, found.threshold, found.forward.experiment.prior_odds)
     odds = behind.told(found.probabilities, found.named, beside)
-    likeliest = max(odds, key=odds.get)
-    fitted = found.probabilities.keys()
-    found = replace(found, probabilities=odds)
-    if likeliest in fitted or len(found.named) >= policy.MOST_EFFECTS:
+    if len(found.named) >= policy.MOST_EFFECTS:
+        return replace(found, probabilities=odds), scores
+    hiding = _fitted(found, [n for n, p in odds.items() if p > FITTED and n not in found.probabilities])
+    lower = [one for one in hiding.values() if one.more > restart.LOWER]
+    odds, sets = _weighed(found, odds, lower), found.combinations
+    for one in lower:
+        sets = explanations.together(sets, (), one.together)
+    found = replace(found, probabilities=odds, combinations=sets)
+    likeliest = hiding.get(max(odds, key=odds.get))
+    if likeliest is None or not likeliest.together.fit.objective < found.final.objective:
         return found, scores
-    (effect,) = set(explanations.effects(likeliest)) - set(found.named)
-    more = _with(found, effect, scores)
-    return more, scores if more is found else upper.screened(more)
+    found = _with(found, likeliest, scores)
+    return found, upper.screened(found)
 
 
-def _with(found: Investigation, effect: str, scores: Screen) -> Investigation:
-    """The same with one more effect named, fitted beside the others; as it is where that gains nothing."""
+def _fitted(found: Investigation, names: list[str]) -> dict[str, Hiding]:
+    """Some sets of the named effects and one more, each fitted."""
+    if not names:
+        return {}
     forward, null, setup = found.forward, found.null, singles.setup_of(found.forward)
-    starts = pairs.beside(forward, null, found.final, setup, only=effect)
-    fits = [pairs.fitted(forward, start) for start in starts]
-    best = min(fits, key=lambda one: one.objective, default=found.final)
-    if not best.objective < found.final.objective:
-        return found
-    own = pairs.combination(null, best, setup)
-    sets = explanations.together(found.combinations, (), own)
+    asked = {effect for name in names for effect in explanations.effects(name)} - set(found.named)
+    starts = pairs.beside(forward, null, found.final, setup, asked)
+    fits = pairs.followed(forward, starts, found.final.objective)
+    hiding = {}
+    for start, one in zip(starts, fits, strict=True):
+        (effect,) = start.effects - set(found.named)
+        more = null.objective - start.gain - one.objective
+        if np.isfinite(one.objective):
+            together = pairs.combination(null, one, setup)
+            hiding[explanations.key(together.effects)] = Hiding(effect, together, more)
+    return hiding
+
+
+def _weighed(found: Investigation, odds: dict[str, float], lower: list[Hiding]) -> dict[str, float]:
+    """Probabilities with the sets that slopes promised too little of by their own evidence."""
+    sets, prior = [one.together for one in lower], found.forward.experiment.prior_odds
+    logs = explanations.log_weights(found.candidates, [*found.combinations, *sets], prior)
+    own = explanations.key(found.named)
+    if not lower or own not in logs:
+        return odds
+    odds, temper = dict(odds), of_package().temper
+    for name in (explanations.key(one.effects) for one in sets):
+        odds[name] = odds[own] * math.exp(min(temper * (logs[name] - logs[own]), 700.0))
+    total = sum(odds.values())
+    return {name: p / total for name, p in odds.items()}
+
+
+def _with(found: Investigation, one: Hiding, scores: Screen) -> Investigation:
+    """The same with one more effect named, fitted beside the others."""
     alone = " + ".join(found.named)
     reason = f"both together are likelier than {alone} alone"
-    if behind.hides(scores, effect):
-        reason = f"{effect} does nearly what {alone} does, and {reason}"
+    if one.more > restart.LOWER or behind.hides(scores, one.effect):
+        reason = f"{one.effect} does nearly what {alone} does, and {reason}"
     else:
-        reason = f"what {effect} explains beside {alone} might be noise, but {reason}"
+        reason = f"what {one.effect} explains beside {alone} might be noise, but {reason}"
+    sets = explanations.together(found.combinations, (), one.together)
     return replace(
         found,
-        named=list(own.effects),
-        final=best,
+        named=list(one.together.effects),
+        final=one.together.fit,
         reasons=[reason, *found.reasons],
         combinations=sets,
-        rivals=rivals.of_odds(found.probabilities, null, found.candidates, sets),
+        rivals=rivals.of_odds(found.probabilities, found.null, found.candidates, sets),
     )

@@ -150,7 +150,7 @@ class Case:
         best = self.found[0]
         single = max(c.gain for c in self.found)
         rival = best.log_bayes + seen.size.log_odds
-        start, lowest = best.fit, seen
+        start, lowest, least = best.fit, seen, -np.inf
         for pair in tried[:ASKED]:
             if pair.gain - single <= needed or not enough.suffice(self.forward, pair.fit):
                 continue
@@ -160,12 +160,15 @@ class Case:
             alarms.setdefault("pair", after.p)
             if pair.log_bayes + after.size.log_odds <= rival:
                 continue
+            if pair.log_bayes < least:
+                # It leaves no more by chance; a third effect beside the best pair is asked for first.
+                break
             if not after.failed:
                 alarms["pair"] = after.p
                 singles = [pairs.combination(self.null, c.fit, self.setup) for c in self.found]
                 return self._whole(pair, singles, alarms, after, tried, most), pair.fit, after
             if start is best.fit:
-                start, lowest = pair.fit, after
+                start, lowest, least = pair.fit, after, pair.log_bayes - policy.FURTHER
         return None, start, lowest
 
     def _whole(self, found: Combination, others, alarms, after: Left, tried, most) -> Decision:

@@ -6,7 +6,7 @@ followed, and all pairs of the nominal screen, whose joint gains are algebra. On
 share one effect with it are tried as well.
 """
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import replace
 from functools import partial
 
@@ -247,12 +247,12 @@ def screened(forward: Forward, first: Fit, setup: Setup) -> screen.Screen:
     return screen.screen(forward, first, directions.catalogue(setup, present), rough=True)
 
 
-def beside(forward: Forward, null: Fit, first: Fit, setup: Setup, only: str = "") -> list[Start]:
-    """Every effect beside those of a first fit, or one only."""
+def beside(forward: Forward, null: Fit, first: Fit, setup: Setup, only: Collection[str] = ()) -> list[Start]:
+    """Every effect beside those of a first fit, or some only."""
     scores = screened(forward, first, setup)
     gained = null.objective - first.objective
     own = np.array([c.place or 0 for c in first.hypothesis.components], dtype=int)
-    asked = [(name, k) for name, k in scores.best().items() if only in ("", name)]
+    asked = [(name, k) for name, k in scores.best().items() if not only or name in only]
 
     def start(branch, best):
         second, k = best

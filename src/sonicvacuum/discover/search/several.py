@@ -67,6 +67,9 @@ class Turns:
             if self._hopeless(fit):
                 return self._grown(fit)
             more = self._added(fit)
+            if more is not None and len(fit.hypothesis.components) == 2:
+                # A pair that holds an effect which is none would grow as far as it may.
+                more = max(filter(None, (more, self._two(fit))), key=self._evidence)
             if more is not None and self._hopeless(fit, more):
                 return self._grown(more)
             if more is None:
@@ -161,9 +164,8 @@ class Turns:
             return restart.fewer(branch, self.null, fit, k, pairs.ITERATIONS)
 
         found = self._once.of_each(fit, which, lambda new: abreast.each(self.forward, without, new))
-        for one in found:
-            if one.hypothesis.components:
-                self._noted(one)
+        for one in (f for f in found if f.hypothesis.components):
+            self._noted(one)
         return found
 
     def _promised(self, fit) -> list[planes.Start]:
@@ -246,8 +248,7 @@ class Turns:
         """
         count = len(fit.hypothesis.components)
         beside = [fit] if count + 2 <= FEW else []
-        if 1 < count < FEW:
-            beside += self._each_less(fit, range(count))
+        beside += self._each_less(fit, range(count if 1 < count < FEW else 0))
         starts = []
         for one in beside:
             gained = self.null.objective - one.objective
@@ -337,8 +338,8 @@ class Turns:
         for one in pairs.followed(self.forward, starts.values(), fit.objective):
             if np.isfinite(one.objective):
                 self._noted(one)
-        same = len(fit.hypothesis.components)
-        likeliest = max((c for c in self.tried.values() if len(c.effects) == same), key=lambda c: c.log_bayes)
+        same = [c for c in self.tried.values() if len(c.effects) == len(fit.hypothesis.components)]
+        likeliest = max(same, key=lambda c: c.log_bayes)
         return likeliest.fit if likeliest.log_bayes > self._evidence(fit) + pairs.WORTH else fit
 
     def _again(self, fit):
