@@ -11,9 +11,11 @@ import numpy as np
 from sonicvacuum.discover.faults import policy
 from sonicvacuum.discover.faults.foremost import Place
 
-# A course is told by so many values at least, without those that leave it; where these are several, they are
-# no more than this share of all.
-FEWEST, MOST = 3, 3
+# A course is told by so many values at least, without those that leave it; several leave it only where they
+# are no more than one in so many.
+FEWEST, ONE_IN = 3, 3
+# Values of a long course that are tried together: those without which, one at a time, least is left.
+TRIED = 20
 # χ² that two values by themselves leave less than they do in each other's place, and still are these.
 EXCHANGED = 30.0
 # From this relative error on a value says nothing: it was taken for off before.
@@ -53,7 +55,7 @@ class _Course:
     def most(self) -> int:
         """How many of its values may be off."""
         n = len(self.places)
-        return min(max(n // MOST, 1), n - FEWEST, policy.MOST)
+        return min(max(n // ONE_IN, 1), n - FEWEST, policy.MOST)
 
     def left(self, sets: np.ndarray) -> np.ndarray:
         """(m,) χ² along a straight line without each of m sets of k values, (m, k) places among them."""
@@ -68,7 +70,10 @@ class _Course:
 
     def without(self, count: int) -> tuple[float, tuple[int, ...]]:
         """The least χ² without so many of its values, and which these are."""
-        sets = list(itertools.combinations(range(len(self.places)), count))
+        asked = np.arange(len(self.places))
+        if count > 1:
+            asked = np.sort(np.argsort(self.left(asked[:, None]), kind="stable")[:TRIED])
+        sets = list(itertools.combinations(asked.tolist(), count))
         left = self.left(np.array(sets, dtype=int).reshape(len(sets), count))
         return float(left.min()), sets[left.argmin()]
 

@@ -238,10 +238,11 @@ class Searching(Ranking):
         bench, findings = self.bench, list(self.findings)
         if not self._values_off(Model(bench, found.forward, found.final)):
             return found
-        self.simulations += found.forward.chains
         after = self._investigate()
         if not unexplained(after):
+            self.simulations += found.forward.chains
             return after
+        self.simulations += after.forward.chains
         self.bench, self.findings = bench, findings
         return found
 

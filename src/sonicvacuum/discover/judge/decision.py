@@ -161,7 +161,7 @@ class Case:
             if pair.log_bayes + after.size.log_odds <= rival:
                 continue
             if pair.log_bayes < least:
-                # It leaves no more by chance; a third effect beside the best pair is asked for first.
+                # What it leaves is not seen by chance: a third beside the best pair is asked for first.
                 break
             if not after.failed:
                 alarms["pair"] = after.p
