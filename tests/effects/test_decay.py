@@ -7,7 +7,7 @@ import pytest
 from effect_cases import nominal, run, size
 from reference import Plain
 
-from sonicvacuum.effects import effect
+from sonicvacuum.effects import effect, velocity_power
 from sonicvacuum.physics.contact import contact_time
 from sonicvacuum.physics.run import simulate
 from sonicvacuum.physics.steps import damping_rates
@@ -122,6 +122,16 @@ def test_a_strike_across_a_gap_is_as_sharp_as_the_first():
     error = np.abs(coarse - fine).max(axis=0) / fine.max(axis=0)
     # 8e-3 remain in the contact with the gap; steps that waves in touching beads allow leave 0.5.
     assert error.max() < 0.02
+
+
+def test_damping_that_hardly_grows_with_speed_has_finite_rates():
+    setup = nominal(Plain(beads=12))
+    setup = replace(setup, chain=setup.chain.take([0, 0]))
+    # As free-form laws can be, beside one that damps more than contacts bear; the effect has no such power.
+    setup = velocity_power.change(setup, gamma=np.array([0.01, 1e4]), alpha=np.full(2, 0.003))
+    # Without a warning, which tests take for an error: what the strike bears over it, to the power 1/0.003,
+    # is no number.
+    assert all(np.isfinite(rates).all() for rates in damping_rates(setup.chain, *of(setup.chain)))
 
 
 def test_damping_rates_are_those_where_damping_stops_a_bead():

@@ -138,7 +138,7 @@ def _settled(laws, table, lightest, delta, speed, strike):
     `strike` holds what the impact and damping bear in N at `speed`, and how soon damping stops a bead then.
     """
     elastic, damping, contacts = strike
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         # Forces like v^p; if only the fastest rise so steeply, the speed is lower still.
         power = -np.log2(1.0 - 0.5 * contacts * speed * lightest / damping)
         slower = np.minimum((elastic / damping) ** (1.0 / power), 1.0)
