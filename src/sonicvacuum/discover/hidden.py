@@ -3,7 +3,8 @@
 Two effects of which either nearly makes up for the other leave nothing when one is named, so that no search
 asks for the pair (`judge.behind`). Slopes tell how probable it is beside the named ones. Where that is not
 faint it is fitted: the named effects may stand in a minimum of their own, from which no slope leads to the
-lower one that they share with what hides.
+lower one that they share with what hides; and where time zeros take up nearly all of a small change, as they
+do of a low-pass, slopes tell little of what a larger one leaves.
 """
 
 import math
@@ -30,7 +31,7 @@ class Hiding:
     Attributes:
         effect: which one.
         together: the set.
-        more: Δχ² that it gains beyond what slopes promise.
+        more: Δχ² that it gains beyond what slopes promise; negative where it is less.
     """
 
     effect: str
@@ -53,9 +54,9 @@ def told(found: Investigation, scores: Screen) -> tuple[Investigation, Screen]:
     if len(found.named) >= policy.MOST_EFFECTS:
         return replace(found, probabilities=odds), scores
     hiding = _fitted(found, [n for n, p in odds.items() if p > FITTED and n not in found.probabilities])
-    lower = [one for one in hiding.values() if one.more > restart.LOWER]
-    odds, sets = _weighed(found, odds, lower), found.combinations
-    for one in lower:
+    otherwise = [one for one in hiding.values() if abs(one.more) > restart.LOWER]
+    odds, sets = _weighed(found, odds, otherwise), found.combinations
+    for one in otherwise:
         sets = explanations.together(sets, (), one.together)
     found = replace(found, probabilities=odds, combinations=sets)
     likeliest = hiding.get(max(odds, key=odds.get))
@@ -83,12 +84,12 @@ def _fitted(found: Investigation, names: list[str]) -> dict[str, Hiding]:
     return hiding
 
 
-def _weighed(found: Investigation, odds: dict[str, float], lower: list[Hiding]) -> dict[str, float]:
-    """Probabilities with the sets that slopes promised too little of by their own evidence."""
-    sets, prior = [one.together for one in lower], found.forward.experiment.prior_odds
+def _weighed(found: Investigation, odds: dict[str, float], otherwise: list[Hiding]) -> dict[str, float]:
+    """Probabilities with the sets that slopes promised too little or too much of by their own evidence."""
+    sets, prior = [one.together for one in otherwise], found.forward.experiment.prior_odds
     logs = explanations.log_weights(found.candidates, [*found.combinations, *sets], prior)
     own = explanations.key(found.named)
-    if not lower or own not in logs:
+    if not otherwise or own not in logs:
         return odds
     odds, temper = dict(odds), of_package().temper
     for name in (explanations.key(one.effects) for one in sets):
