@@ -43,7 +43,12 @@ def test_a_preload_is_found_past_the_minima_that_lie_nearer(force, seed):
     assert best.gain > others[0].gain + 10.0  # of all other effects, on which χ² of 5 would be evidence
     fine = refit.finely(forward, best.fit)
     found = fine.hypothesis.coordinates[0].value(fine.u)[0]
-    assert found == pytest.approx(force, rel=3.5 * fine.sigma[0])  # the other minima are 20 σ off
+    assert found == pytest.approx(force, rel=0.1)  # a step of the search's minima; the others are 0.4 off
+    # χ² has several minima a few per cent apart, in either of which rounding may leave a fit, and whose widths
+    # are no errors: how far the truth is off is told by what it leaves with all else fitted.
+    held = Hypothesis((Component(CATALOGUE.effect(PRELOAD), (), {"force_N": force}),))
+    truth = refit.fit(forward.finely(), held, np.zeros((1, 0)), fine.nu)
+    assert -0.5 < truth.objective - fine.objective < 3.5**2  # no lower minimum there; 3.5 σ
 
 
 @pytest.mark.parametrize("force", [0.5, 0.2])
