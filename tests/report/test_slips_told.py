@@ -3,9 +3,10 @@
 import math
 from types import SimpleNamespace
 
+import made_chains
 import msgspec
 import pytest
-from made_verdicts import KINDS, verdict, write
+from made_verdicts import KINDS, model, verdict, write
 
 from sonicvacuum.cli.discover import _sentence
 from sonicvacuum.discover.faults.table import FAULTS, told
@@ -45,6 +46,15 @@ def test_the_page_says_what_to_check_first_and_escapes_it(tmp_path):
     assert "Gauges g9 and g5 look swapped, or one of them taken for both: check the cables" in text
     assert "<b>v1</b>" not in text
     assert "All that follows is of the record with this put right: gauges swapped." in text
+
+
+def test_a_time_zero_that_was_put_right_is_no_strain_besides():
+    moved = msgspec.structs.replace(model(verdict()), speed_ratio={}, trigger_us={"fast": 9.0})
+    late = [Fault(fault="time-zero", run="fast", sensor=None, probability=0.99, value=-13.0)]
+    (line,) = bench.strained(verdict(faults=late), moved, made_chains.record())
+    assert "time zero of run fast" in line
+    right = verdict(faults=late, reasons=[f"{PUT_RIGHT}: time-zero"])
+    assert bench.strained(right, moved, made_chains.record()) == []
 
 
 def test_verdicts_without_slips_and_of_older_days_are_read():

@@ -50,10 +50,15 @@ def _slip(one, records) -> str:
 
 def corrected(verdict: Verdict) -> str:
     """That what follows is of the record put right, "" where nothing was."""
-    said = next((r for r in verdict.reasons if r.startswith(PUT_RIGHT)), "").removeprefix(PUT_RIGHT)
+    said = _put_right(verdict)
     # Ids of slips in plain words; minus signs stay.
     right = re.sub(r"(?<=[a-z])-(?=[a-z])", " ", said)
     return f"All that follows is of the record with this put right{right}." if said else ""
+
+
+def _put_right(verdict):
+    """Ids of the slips that were put right, as the reasons have them, "" where none was."""
+    return next((r for r in verdict.reasons if r.startswith(PUT_RIGHT)), "").removeprefix(PUT_RIGHT)
 
 
 def _header(one):
@@ -176,7 +181,7 @@ def strained(verdict: Verdict, model: Model, record: Record) -> list[str]:
 
 def _moves(verdict, model, record) -> Iterator[tuple[float, str]]:
     """(shift over its error, sentence)."""
-    told = {f.run for f in verdict.faults if f.fault == "time-zero" and f.corrected}
+    told = {f.run for f in verdict.faults if f.fault == "time-zero" and f.fault in _put_right(verdict)}
     for run in record.runs:
         ratio, shift = model.speed_ratio.get(run.id, 1.0), model.trigger_us.get(run.id, 0.0)
         said = _asked(f"the striker's speed in run {run.id}", ratio)
