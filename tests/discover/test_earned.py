@@ -1,5 +1,6 @@
 """A set whose last effect hardly earns its evidence is not told from one thing outside the catalogue."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
@@ -65,3 +66,28 @@ def test_two_more_that_only_together_explain_what_is_left_are_named(monkeypatch)
         one = decided(monkeypatch, pair, others, more=two)
         assert (one.named, one.left) == (named, 0.3 if named == list(two.effects) else NOTHING.p)
         assert (two in one.combinations) == (named == list(two.effects))
+
+
+@pytest.mark.parametrize(
+    ("earned", "failed", "whole"), [(50.0, False, True), (9.0, False, False), (50.0, True, False)]
+)
+def test_a_set_that_leaves_nothing_is_no_part_of_something_unknown(monkeypatch, earned, failed, whole):
+    """A pair that only a search with a smooth misfit as noise had found was named beside `unknown`, with
+    0.05, and a gap that left 1500 in χ² had 0.33.
+    """
+    final = SimpleNamespace(objective=100.0, hypothesis=SimpleNamespace(ids=("gravity", "tsuji")))
+    pair = replace(found("gravity tsuji", earned), fit=final)
+    grown = SimpleNamespace(best=pair, size=SimpleNamespace(size=0.0), tried={})
+    turns = SimpleNamespace(grow=lambda null, start: grown, rivals=lambda one: one)
+    seen = SimpleNamespace(p=0.4, failed=failed, size=SimpleNamespace(size=0.1))
+    monkeypatch.setattr(decision.several, "Turns", lambda *_: turns)
+    monkeypatch.setattr(decision.restart, "moved", lambda forward, one: one)
+    monkeypatch.setattr(decision, "left", lambda *_, **__: seen)
+    monkeypatch.setattr(decision.pairs, "combination", lambda null, one, setup: pair)
+    monkeypatch.setattr(decision.Case, "_without_smooth", lambda *_: None)
+    monkeypatch.setattr(decision.Case, "_beside", lambda *_: "beside something unknown")
+    monkeypatch.setattr(decision.Case, "_whole", lambda self, one, *_: one)
+    case = decision.Case(None, SimpleNamespace(objective=500.0), None, [], None, None)
+    gap = SimpleNamespace(fit="its fit", effect="contact-gap")
+    decided = case._out_of_smooth(gap, 12.0, 0.0, {}, 10.0)
+    assert decided == (pair if whole else "beside something unknown")

@@ -91,7 +91,8 @@ class Case:
         whole = self._without_smooth(needed, most, alarms, best.fit, alone, 2, [])
         if whole is not None:
             return whole
-        grown = several.Turns(self.forward, self.known, needed, self.setup).grow(self.null, self.null)
+        turns = several.Turns(self.forward, self.known, needed, self.setup)
+        grown = turns.grow(self.null, self.null)
         without = left(self.forward, self.null, self.known)
         size = 100.0 * without.size.size
         reason = f"a smooth misfit of {size:.2g} % of the peak explains more than {best.effect}"
@@ -100,7 +101,24 @@ class Case:
         final = restart.moved(self.forward, grown.best.fit)
         behind = short(self.null.objective - final.objective, most)
         after = left(self.forward, final, self.known, behind=behind)
+        if not after.failed and pairs.combination(self.null, final, self.setup).log_bayes > alone:
+            return self._nothing_left(turns, grown, final, after, most, alarms, [])
         return self._beside(grown, needed, {**alarms, "set": after.p}, after, [])
+
+    def _nothing_left(
+        self, turns: several.Turns, grown: several.Grown, final: Fit, after: Left, most, alarms, tried
+    ) -> Decision:
+        """Effects, one or several, that leave nothing."""
+        if len(final.hypothesis.ids) > 1:
+            final, after = self._rivalled(turns, final, after, most)
+        alarms, effects = {**alarms, "set": after.p}, list(final.hypothesis.ids)
+        if len(effects) == 1:
+            reason = f"{effects[0]} leaves nothing significant"
+            return Decision(effects, final, alarms, [reason], after.p, tried)
+        own = pairs.combination(self.null, final, self.setup)
+        others = () if grown.size.size else grown.tried.values()
+        tried = explanations.together(tried, others, own)
+        return self._whole(own, others, alarms, after, tried, most)
 
     def _more(self, needed, most, shape, alarms, seen: Left) -> Decision:
         """Name the first pair that leaves nothing and gains enough over the best single; else go on."""
@@ -244,20 +262,13 @@ class Case:
             most = unknown.simplest(grown.forward, grown.null)[1]
             behind = short(grown.null.objective - grown.best.fit.objective, most)
         after = left(self.forward, final, self.known, behind=behind) if effects else seen
-        if len(effects) > 1 and not after.failed:
-            final, after = self._rivalled(turns, final, after, most)
-            effects = list(final.hypothesis.ids)
+        if effects and not after.failed:
+            return self._nothing_left(turns, grown, final, after, most, alarms, tried)
         alarms["set"] = after.p
-        others = () if grown.size.size else grown.tried.values()
         if len(effects) > 1:
             own = pairs.combination(self.null, final, self.setup)
+            others = () if grown.size.size else grown.tried.values()
             tried = explanations.together(tried, others, own)
-            if not after.failed:
-                return self._whole(own, others, alarms, after, tried, most)
-        if effects and not after.failed:
-            return Decision(
-                effects, final, alarms, [f"{effects[0]} leaves nothing significant"], after.p, tried
-            )
         if behind > 0.0:
             return self._unknown(alarms, [f"{shape} explains more than any effect or set"], after, tried)
         return self._beside(grown, needed, alarms, after, tried)
