@@ -155,6 +155,22 @@ def test_what_can_be_put_right_is(empty, model):
     assert not masked.runs[0].present[1, AT].any()
 
 
+def test_a_peak_that_the_model_reads_as_narrow_is_masked_and_no_spike(empty, model):
+    """Hard beads that met once more, three samples on the peak, were told as a spike with 0.999."""
+    narrow = np.zeros(700)
+    narrow[620:623] = 0.8, 2.0, 0.4
+    record = altered(empty, "g7", lambda y: spiked(y + narrow))
+    # Higher and a little later than in the record, as of a nominal model that something is missing from.
+    model = {run: {**own, "g7": own["g7"] + 1.2 * np.roll(narrow, 3)} for run, own in model.items()}
+    assert np.abs(AT - 621).min() > 20
+    bench, (one,) = examine(record, model)
+    assert (one.fault, one.value) == ("spikes", 6.0)
+    masked = bench.masked(together((bench.record,)))
+    assert not masked.runs[0].present[1, [*AT, 621]].any()
+    quiet, found = examine(altered(empty, "g7", lambda y: y + narrow), model)
+    assert found == [] and not together((quiet.record,)).notes
+
+
 def test_what_begins_within_a_quiet_stretch_is_neither_drift_nor_noise():
     rng = np.random.default_rng(np.random.SeedSequence(13))
     for _ in range(20):
