@@ -204,3 +204,23 @@ def test_single_effects_are_led_lower_by_pairs_that_are_found_late_too(monkeypat
     monkeypatch.setattr(decision.Case, "_anew", lambda self, better: better)
     case = decision.Case(None, None, None, [], None, None)
     assert case._more(12.0, 0.0, None, {}, None) == ["the other power"]
+
+
+def test_a_law_that_stopped_in_another_minimum_of_the_nuisances_begins_beside_the_leading_one():
+    """Kuwabara–Kono damping had stopped at 0.75 of its time, speeds and time zeros making up for that, and
+    a contact that relaxes in no time, which is the same damping, was named with 0.83.
+    """
+    forward = Forward(experiment(made([("kuwabara-kono", {"time_us": 0.6})], seed=6)[0]), 1)
+    null, setup = wide.nominal(forward), singles.setup_of(forward)
+    free = variants(effect("kuwabara-kono"), setup)[0]
+    kuwabara, at = Hypothesis((Component(effect("kuwabara-kono"), free),)), np.log([[0.6]])
+    leading = fit(forward, kuwabara, at, null.nu[None])
+    off = linearise(forward, kuwabara, at + np.log(0.75), leading.nu[None] + 1.0)
+    stopped = Fit(kuwabara, off)
+    first = Candidate("relaxing-contact", leading, 500.0, 100.0)
+    near, far = (Candidate("kuwabara-kono", stopped, 500.0 - less, 90.0) for less in (10.0, 100.0))
+    same, better, behind = restart.beside_leading(forward, null, [first, near, far])
+    assert (same, behind) == (first, far)
+    assert better.fit.objective == pytest.approx(leading.objective, abs=0.1)
+    assert better.log_bayes == pytest.approx(90.0 + 0.5 * (better.gain - near.gain))
+    assert restart.beside_leading(forward, null, [first, better]) == [first, better]

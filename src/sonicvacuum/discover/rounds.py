@@ -17,7 +17,7 @@ from sonicvacuum.discover.judge.rivals import Rival, of_odds
 from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.experiment import Experiment
 from sonicvacuum.discover.model.forward import Forward
-from sonicvacuum.discover.search import around, directions, screen, singles
+from sonicvacuum.discover.search import around, directions, restart, screen, singles
 
 # Candidates whose Δχ² is this far behind the best are not followed to their minimum.
 NEAR = 15.0
@@ -120,7 +120,7 @@ def investigate(
     )
     if passes:
         # Only now: other places are more tries, for which the threshold does not allow.
-        found = _along(forward, null, found)
+        found = _beside_leading(forward, null, _along(forward, null, found))
     stages.begin("sets of effects" if passes else "verdict")
     case = Case(forward, null, scores, found, known, setup)
     decision = case.decide() if passes else case.nothing(few)
@@ -304,6 +304,12 @@ def _along(forward, null, found):
             if start is not result[k].fit:
                 moved(k, refined(forward, start) or start)
     return enough.first(forward, evidence.ranked(result, forward.experiment.prior_odds))
+
+
+def _beside_leading(forward, null, found):
+    """Candidates of one strength followed from where the leading one has left the nuisances."""
+    better = restart.beside_leading(forward, null, found)
+    return enough.first(forward, evidence.ranked(better, forward.experiment.prior_odds))
 
 
 def _moved(c, null, better, flags):

@@ -12,7 +12,9 @@ import numpy as np
 from sonicvacuum.discover.fit import bounds, evidence, refit
 from sonicvacuum.discover.fit.evidence import Candidate, Combination
 from sonicvacuum.discover.fit.normal import linearise
+from sonicvacuum.discover.fit.places import stronger
 from sonicvacuum.discover.fit.refit import Fit, fit, polish
+from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Hypothesis, of_one_strength, without
 from sonicvacuum.discover.search import secants
@@ -22,6 +24,9 @@ from sonicvacuum.effects import Setup
 # Trials of an effect; the best ones, one at each place, that the joint fit starts from, and its steps. What a
 # start leaves at first tells nothing: others have to follow an effect that moves far.
 TRIALS, FOLLOWED, ITERATIONS = 60, 3, 12
+# Strengths over the one found that a single effect is begun with beside another one's nuisances, if it gains
+# no less than the leading one by more than this in χ².
+AROUND, BESIDE = np.geomspace(0.5, 2.0, 7), 40.0
 # A single effect is fitted anew where a pair leads it to a minimum that is lower by more than this.
 LOWER = 6.0
 
@@ -115,6 +120,30 @@ def lower(
                 flags = ("beyond",) * (one is not inside) + ("bound",) * held
                 better[name] = alone(null, one, own, flags)
     return [*(known | better).values()] if better else None
+
+
+def beside_leading(forward: Forward, null: Fit, found: list[Candidate]) -> list[Candidate]:
+    """Single effects of one strength along the chain, where nuisances as the leading effect leaves them lead
+    to a lower minimum fitted anew: speeds and time zeros that make up for each other have several.
+    """
+    first = max(found, key=lambda c: c.gain)
+
+    def anew(branch, c):
+        strength = c.fit.hypothesis.coordinates[0]
+        u = stronger(strength, c.fit.u, AROUND[:, None])
+        nu = np.repeat(first.fit.nu[None], len(u), axis=0)
+        one = fit(branch, c.fit.hypothesis, u, nu, keep=1, reach=c.fit.objective - LOWER)
+        return alone(null, one, c) if one.objective < c.fit.objective - LOWER else c
+
+    near = [c for c in found if c is not first and c.gain > first.gain - BESIDE and _of_one(c.fit.hypothesis)]
+    better = dict(zip(map(id, near), abreast.each(forward, anew, near), strict=True))
+    return [better.get(id(c), c) for c in found]
+
+
+def _of_one(hypothesis: Hypothesis) -> bool:
+    """Whether there is one parameter, and no place."""
+    (component,) = hypothesis.components
+    return len(component.free) == 1 and component.place is None
 
 
 def led(null: Fit, one: Fit, singles: list[Candidate]) -> list[Candidate] | None:
