@@ -44,7 +44,7 @@ def test_a_preload_is_found_past_the_minima_that_lie_nearer(force, seed):
     fine = refit.finely(forward, best.fit)
     found = fine.hypothesis.coordinates[0].value(fine.u)[0]
     assert found == pytest.approx(force, rel=0.1)  # a step of the search's minima; the others are 0.4 off
-    # χ² has several minima a few per cent apart, in either of which rounding may leave a fit, and whose widths
+    # χ² has several minima a few per cent apart, in any of which rounding may leave a fit, and whose widths
     # are no errors: how far the truth is off is told by what it leaves with all else fitted.
     held = Hypothesis((Component(CATALOGUE.effect(PRELOAD), (), {"force_N": force}),))
     truth = refit.fit(forward.finely(), held, np.zeros((1, 0)), fine.nu)

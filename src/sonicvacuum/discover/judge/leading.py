@@ -1,17 +1,18 @@
 """The leading explanations of a gross misfit at their best, where walls or speeds are hardly known.
 
 These make up for each other and for what is missing, so that an explanation has many minima, and misses the
-one that another finds. The best ones are fitted from all over what is hardly known. From where these end all
-others are, with their own effects at any strength: where the speeds of the shots make up for a loss that is
-not there, a loss has no slope that leads to it.
+one that another finds. The best ones are fitted from all over what is hardly known, and followed along the
+valleys in which fits creep. From where these end all others are, with their own effects at any strength:
+where the speeds of the shots make up for a loss that is not there, a loss has no slope that leads to it.
 """
 
 from collections.abc import Sequence
 from functools import partial
+from itertools import product
 
 import numpy as np
 
-from sonicvacuum.discover.fit import evidence, wide
+from sonicvacuum.discover.fit import evidence, valley, wide
 from sonicvacuum.discover.fit.evidence import Combination
 from sonicvacuum.discover.fit.refit import Fit, finished, fit
 from sonicvacuum.discover.model import abreast
@@ -26,6 +27,8 @@ LEADERS, TIMES, STAYS, WORTH = 3, 3, 0.98, 2.0
 # Starts beside the leaders that are followed; not to their minimum, where that is no lower than so many times
 # what the best leaves.
 FOLLOWED, NEAR = 4, 1.5
+# Of all values of a parameter beside the strength every so many is tried.
+THINNED = 3
 
 
 def at_their_best(
@@ -50,7 +53,7 @@ def at_their_best(
         asked = [k for k in order if k not in settled and fits[k].objective < WORTH * least][:leaders]
         if not asked:
             break
-        all_over = partial(wide.again, more=np.array([one.nu for one in fits]), finish=False)
+        all_over = partial(_all_over, more=np.array([one.nu for one in fits]))
         better = abreast.each(forward, all_over, [fits[k] for k in asked])
         for k, one in zip(asked, better, strict=True):
             settled |= {k} if one.objective > STAYS * fits[k].objective else set()
@@ -64,8 +67,14 @@ def at_their_best(
     return own + ranked[ASKED:]
 
 
+def _all_over(forward, one: Fit, more: np.ndarray) -> Fit:
+    """The better of a fit and of one from all over what is hardly known, as low as its valley leads."""
+    return valley.along(forward, wide.again(forward, one, more, finish=False))
+
+
 def _finished(forward, one: tuple[Fit, bool]) -> Fit:
-    return finished(forward, one[0]) if one[1] else one[0]
+    """A fit at its lowest, with its last steps, where it is near the best one."""
+    return finished(forward, valley.along(forward, one[0])) if one[1] else one[0]
 
 
 def _explained(null: Fit, c: Combination, one: Fit) -> Combination:
@@ -92,7 +101,7 @@ def _beside(forward, one: Fit, leaders: Sequence[Fit], near: float) -> Fit:
 
 def _starts(one: Fit, leader: Fit) -> list[tuple[np.ndarray, np.ndarray]]:
     """Coordinates (p,) and nuisances (q,) of an explanation where a leader stands: effects that both have as
-    the leader has them, one of the others at a time at any strength, all others as they are.
+    the leader has them, one of the others at a time at any strength and of any shape, all others as they are.
     """
     theirs = {
         c.effect.id: leader.u[at]
@@ -106,8 +115,10 @@ def _starts(one: Fit, leader: Fit) -> list[tuple[np.ndarray, np.ndarray]]:
             own.append((c, at))
     rows = [(u, leader.nu)]
     for c, at in own:
-        for strength in c.free[0].starts():
+        # A contact that relaxes has no slope to how soon it does where its strength is far off.
+        others = [np.append(u[at.start + k], f.starts()[::THINNED]) for k, f in enumerate(c.free) if k]
+        for values in product(c.free[0].starts(), *others):
             row = u.copy()
-            row[at.start] = strength
+            row[at] = values
             rows.append((row, leader.nu))
     return rows
