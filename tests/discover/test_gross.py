@@ -246,8 +246,8 @@ def test_what_an_explanation_shares_with_a_leader_begins_as_the_leader_has_it():
 
 
 def test_an_effect_of_two_parameters_begins_at_any_of_both():
-    """A relaxing contact that began with the time it had elsewhere was missed in one of nine real records: 422
-    per datum in place of 205.
+    """A relaxing contact that began with the time it had elsewhere was missed in one of nine real records:
+    422 per datum in place of 205.
     """
     own = CATALOGUE.effect("relaxing-contact")
     component = Component(own, variants(own, setup_of(Forward(experiment(made((), 0.0)))))[0])

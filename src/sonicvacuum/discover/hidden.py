@@ -4,7 +4,8 @@ Two effects of which either nearly makes up for the other leave nothing when one
 asks for the pair (`judge.behind`). Slopes tell how probable it is beside the named ones. Where that is not
 faint it is fitted: the named effects may stand in a minimum of their own, from which no slope leads to the
 lower one that they share with what hides; and where time zeros take up nearly all of a small change, as they
-do of a low-pass, slopes tell little of what a larger one leaves.
+do of a low-pass, slopes tell little of what a larger one leaves. Two laws of damping may hide behind one
+that is neither of them, too (`mixtures`).
 """
 
 import math
@@ -17,19 +18,21 @@ from sonicvacuum.discover.fit.calibration import of_package
 from sonicvacuum.discover.fit.evidence import Combination
 from sonicvacuum.discover.judge import behind, explanations, rivals
 from sonicvacuum.discover.rounds import Investigation
-from sonicvacuum.discover.search import pairs, restart, singles
+from sonicvacuum.discover.search import mixtures, pairs, restart, singles
 from sonicvacuum.discover.search.screen import Screen
 
-# A set that hides is fitted where slopes make it as probable as this.
-FITTED = 0.05
+# A set that hides is fitted where slopes make it as probable as this. Of pairs in place of one law so many
+# are, where algebra promises at most so much less in χ² than that law gains, if that is large: one law leaves
+# some hundredth of what two like it change, and a second one has to earn ten.
+FITTED, INSTEAD, LESS, LARGE = 0.05, 4, 20.0, 1000.0
 
 
 @dataclass(frozen=True)
 class Hiding:
-    """One effect beside the named ones, as they are fitted together.
+    """One effect beside the named ones, or two in place of a law of damping, as they are fitted together.
 
     Attributes:
-        effect: which one.
+        effect: which one, or both.
         together: the set.
         more: Δχ² that it gains beyond what slopes promise; negative where it is less.
     """
@@ -54,12 +57,13 @@ def told(found: Investigation, scores: Screen) -> tuple[Investigation, Screen]:
     if len(found.named) >= policy.MOST_EFFECTS:
         return replace(found, probabilities=odds), scores
     hiding = _fitted(found, [n for n, p in odds.items() if p > FITTED and n not in found.probabilities])
-    otherwise = [one for one in hiding.values() if abs(one.more) > restart.LOWER]
+    instead = _instead(found)
+    otherwise = [one for one in hiding.values() if abs(one.more) > restart.LOWER] + list(instead.values())
     odds, sets = _weighed(found, odds, otherwise), found.combinations
     for one in otherwise:
         sets = explanations.together(sets, (), one.together)
     found = replace(found, probabilities=odds, combinations=sets)
-    likeliest = hiding.get(max(odds, key=odds.get))
+    likeliest = (hiding | instead).get(max(odds, key=odds.get))
     if likeliest is None or not likeliest.together.fit.objective < found.final.objective:
         return found, scores
     found = _with(found, likeliest, scores)
@@ -84,6 +88,25 @@ def _fitted(found: Investigation, names: list[str]) -> dict[str, Hiding]:
     return hiding
 
 
+def _instead(found: Investigation) -> dict[str, Hiding]:
+    """Pairs of laws in place of the one that is named, each fitted."""
+    forward, null = found.forward, found.null
+    gained = null.objective - found.final.objective
+    if len(found.named) != 1 or found.named[0] != found.candidates[0].effect or gained < LARGE:
+        return {}
+    least = gained - LESS
+    known = {frozenset(c.effects) for c in found.combinations}
+    asked = [s for s in mixtures.starts(forward, null, found.candidates) if s.gain > least]
+    asked = [s for s in asked if s.effects not in known][:INSTEAD]
+    hiding = {}
+    for one in pairs.followed(forward, asked, found.final.objective):
+        if np.isfinite(one.objective):
+            together = pairs.combination(null, one, singles.setup_of(forward))
+            more = found.final.objective - one.objective
+            hiding[explanations.key(together.effects)] = Hiding(" + ".join(together.effects), together, more)
+    return hiding
+
+
 def _weighed(found: Investigation, odds: dict[str, float], otherwise: list[Hiding]) -> dict[str, float]:
     """Probabilities with the sets that slopes promised too little or too much of by their own evidence."""
     sets, prior = [one.together for one in otherwise], found.forward.experiment.prior_odds
@@ -99,10 +122,12 @@ def _weighed(found: Investigation, odds: dict[str, float], otherwise: list[Hidin
 
 
 def _with(found: Investigation, one: Hiding, scores: Screen) -> Investigation:
-    """The same with one more effect named, fitted beside the others."""
+    """The same with one more effect named beside the others, or two in place of one."""
     alone = " + ".join(found.named)
     reason = f"both together are likelier than {alone} alone"
-    if one.more > restart.LOWER or behind.hides(scores, one.effect):
+    if not set(found.named) <= set(one.together.effects):
+        reason = f"{one.effect} do nearly what {alone} does, and {reason}"
+    elif one.more > restart.LOWER or behind.hides(scores, one.effect):
         reason = f"{one.effect} does nearly what {alone} does, and {reason}"
     else:
         reason = f"what {one.effect} explains beside {alone} might be noise, but {reason}"

@@ -18,18 +18,19 @@ from sonicvacuum.discover.fit.refit import Fit, finished, fit, polish
 from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, of_one_strength, variants
-from sonicvacuum.discover.search import around, directions, restart, screen, secants, strengths
+from sonicvacuum.discover.search import around, directions, mixtures, restart, screen, secants, strengths
 from sonicvacuum.discover.search.planes import Start, linear, variant
 from sonicvacuum.discover.search.starts import setup_of, starts_of
 from sonicvacuum.effects import Setup
 
 # Singles that pairs start from.
 STARTED = 4
-# Pairs refitted from the nominal screen, from single fits, and in each round of exchanges.
-LINEAR, BESIDE, EXCHANGED, ROUNDS = 3, 3, 4, 2
+# Pairs refitted from the nominal screen, from single fits, in place of the best one, and in each round of
+# exchanges.
+LINEAR, BESIDE, MIXED, EXCHANGED, ROUNDS = 3, 3, 3, 4, 2
 # What may stand in for an effect of the best pair promises this share of what that gains beside the other; so
-# many are fitted.
-STANDS, STANDING = 0.7, 3
+# many are fitted, so often as that leads to another pair.
+STANDS, STANDING, AGAIN = 0.7, 3, 4
 # Pairs that are started again, and what that has to gain in log evidence before others follow it.
 LEADING, WORTH = 4, 0.5
 # Beside a pair that leaves so many times the noise, so many others are tried.
@@ -56,6 +57,7 @@ class Pairs:
 
     def __init__(self, forward: Forward, null: Fit, scores: screen.Screen, candidates: list[Candidate]):
         self.forward, self.null, self.setup = forward, null, setup_of(forward)
+        self.candidates = candidates
         let_go = partial(_let_go, candidates)
         self.seen = [let_go(s) for s in linear(scores, self.setup)]
         started = [c for c in candidates[:STARTED] if c.gain > 0.0]
@@ -73,6 +75,7 @@ class Pairs:
         """The best pairs, best first."""
         self._refit(_best(self.asked, self.found, BESIDE))
         self._refit(_best(self.seen, self.found, LINEAR))
+        self._refit(_best(mixtures.starts(self.forward, self.null, self.candidates), self.found, MIXED))
         self._exchange()
         self._stood_in()
         self._refine()
@@ -123,7 +126,7 @@ class Pairs:
         """In place of either effect of the best pair, what promises nearly as much there; beside one near a
         bound whatever promises most: it may tend there to another law, of which no start was made.
         """
-        for _ in range(ROUNDS):
+        for _ in range(AGAIN):
             if not self.found:
                 return
             best = self.ranked[0]

@@ -3,7 +3,8 @@
 In a chain without preload a slightly lighter bead does not do the opposite of a slightly heavier one, so that
 slopes at off mislead even for small strengths; of a strong effect they tell little in any chain. A finite
 change Δ of the data gains 2 b − G, with b its score and G its squared length once the model's own columns are
-projected out.
+projected out. What a law of damping changes grows nearly as its strength does: between the strengths tried it
+gains b²/G. As tried they would be ranked by how near each comes to one of these by chance.
 """
 
 from collections.abc import Sequence
@@ -25,6 +26,8 @@ STRENGTHS = (0.03, 0.1, 0.3, 1.0, 3.0, 10.0)
 # The same where what was found leaves much, and no start may be missed.
 FINE_RATIOS, FINE_STRENGTHS = np.geomspace(0.005, 0.8, 10), np.geomspace(0.01, 30.0, 16)
 PLACES = ("bead", "contact")
+# Halfway from one strength to the next in the logarithm.
+HALFWAY = 10.0**0.25
 
 
 def applies(effect: Effect) -> bool:
@@ -99,10 +102,33 @@ def tried(
     if not rows:
         return []
     seen = _screened(forward, fit, component, rows)
-    gain = 2.0 * seen.projected[0] - np.diag(seen.projected[1])
+    score, squared = seen.projected[0], np.diag(seen.projected[1])
+    share = _shares(component, score, squared)
+    gain = share * (2.0 * score - share * squared)
     order = np.argsort(-gain, kind="stable")[:most]
     names = tuple(c.parameter.name for c in free)
-    return [Secant(names, *rows[k], float(gain[k]), *seen.moved(k, 1.0)) for k in order]
+    ends = [(rows[k][0], scaled(free[0], rows[k][1], share[k])) for k in order]
+    return [
+        Secant(names, *end, float(gain[k]), *seen.moved(k, share[k]))
+        for k, end in zip(order, ends, strict=True)
+    ]
+
+
+def _shares(component: Component, score, squared) -> np.ndarray:
+    """(n,) what each change is taken times, no farther than halfway to the next strength; 1 of effects that
+    do not damp.
+    """
+    if not (component.effect.dissipative and component.free[0].endless):
+        return np.ones(len(score))
+    best = np.divide(score, squared, out=np.ones(len(score)), where=squared > 0.0)
+    return best.clip(1.0 / HALFWAY, HALFWAY)
+
+
+def scaled(strength: Coordinate, u: np.ndarray, share: float) -> np.ndarray:
+    """Coordinates of an effect with so many times its strength, whose logarithm is the first of them."""
+    if share == 1.0:
+        return u
+    return np.array([np.clip(u[0] + np.log(share), strength.low, strength.high), *u[1:]])
 
 
 def one_a_place(trials: Sequence[Secant]) -> list[Secant]:
