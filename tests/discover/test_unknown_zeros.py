@@ -10,9 +10,12 @@ from made_records import DAMPING, made
 from made_slips import altered
 
 from sonicvacuum.discover import session
-from sonicvacuum.discover.faults import changes, lines, timing
+from sonicvacuum.discover.faults import changes, lines, timing, zeros
 from sonicvacuum.discover.faults.competition import Search
 from sonicvacuum.discover.faults.found import Bench, Finding
+from sonicvacuum.discover.faults.judged import Judged
+from sonicvacuum.discover.faults.judging import Judge
+from sonicvacuum.discover.faults.slips import Slip
 from sonicvacuum.discover.faults.weights import as_likely
 from sonicvacuum.discover.model.nominal import predicted
 from sonicvacuum.discover.model.problem import experiment
@@ -76,6 +79,49 @@ def test_time_zeros_that_effects_find_as_stated_were_no_slip(late, kept):
     assert search.bench.record.block.trigger_sigma_us == (60.0 if kept else 1.0)
 
 
+def test_time_zeros_that_effects_find_as_stated_but_for_one_run_are_that_run_s():
+    """A pulse that the effect delays in all runs hid by how much one was late, and in which."""
+    record, nu = made([("kuwabara-kono", {"time_us": DAMPING})], seed=12)
+    search = Search(Bench(off(record, (0.0, 9.0), 1.0)), CATALOGUE, 1, [])
+    search.bench = Bench(changes.time_zero(search.bench.record, {}, 60.0))
+    search.findings = [Finding("time-zero", probability=0.9, corrected=True)]
+    found = search._zeros_as_stated(search._investigate())
+    (told,) = search.findings
+    assert (found.named, told.run, told.corrected) == (["kuwabara-kono"], "v1", True)
+    assert told.value == pytest.approx(-9.0 - nu[found.forward.layout.trigger(1)], abs=1.0)
+    assert told.probability == 0.9
+    assert search.bench.record.block.trigger_sigma_us == 1.0
+
+
+@pytest.mark.parametrize(("late", "told"), [((0.0, 12.0), "v1"), ((-14.0, 0.0), "v0"), ((9.0, -8.0), None)])
+def test_a_run_that_is_late_alone_leaves_the_others_zeros_as_stated(late, told):
+    """The zeros of all runs explain as much, and shared what one run's time zero is."""
+    search = Search(Bench(off(made((), seed=12)[0], late, 1.0)), CATALOGUE, 1, [])
+    ranked = search.ranked(search.nominal())
+    assert (ranked[0].slip.fault, ranked[0].slip.run) == ("time-zero", told)
+    assert (None in {j.slip.run for j in ranked if j.slip.fault == "time-zero"}) is (told is None)
+    assert [j.slip.fault for j in search.aside] == ([] if told is None else ["time-zero"])
+
+
+@pytest.mark.parametrize("gain", [98.7, 80.0])
+def test_zeros_that_are_all_off_are_told_with_how_far_at_the_price_of_those_without(empty, gain):
+    """At that of all places in a record an empty one was a faster striker and a lighter bead."""
+    record = off(empty, (-6.0, -6.0), 1.0)
+    own = Judged(*asked(record), 0.0, 98.7, 40.0, SimpleNamespace(bench=Bench(record)))
+    far = Judged(Slip("time-zero", None, value=lambda _: 12.0, occam=-19.0), 0.0, gain, 30.0)
+    clock = Judged(Slip("clock", None, width=1.0), 0.1, 20.0, 9.0)
+    (first, second), aside = zeros.simplest([own, far, clock])
+    assert (second, aside) == (clock, [])
+    if gain < 90.0:
+        assert first is own
+    else:
+        assert (first.slip.value(0.0), first.log_odds, first.slip.occam) == (
+            12.0,
+            own.log_odds,
+            own.slip.occam,
+        )
+
+
 @pytest.mark.parametrize("level", [0.0, 3.0])
 def test_what_never_moves_lies_nowhere_in_time_and_along_no_line(empty, level):
     """Traces of zeros lay a whole record early, along lines of infinite weight; one at a level drowned the
@@ -95,3 +141,16 @@ def test_what_never_moves_lies_nowhere_in_time_and_along_no_line(empty, level):
 def test_slips_as_likely_as_the_first_are_those_that_explain_alike():
     rivals = [SimpleNamespace(log_odds=odds) for odds in (487.8, 487.6, 456.3)]
     assert as_likely(rivals) == rivals[:2]
+
+
+def test_a_look_at_unknown_time_zeros_keeps_shifts_in_microseconds():
+    """Nuisances count standard errors: -8 us of 1 us became -210 us of 25 us, so that this was never fitted,
+    and an empty record was a striker of 2.6 times its speed beside a bead of a third of its mass, with 0.95.
+    """
+    record = off(made((), seed=12)[0], (-8.0, -8.0), 1.0)
+    search = Search(Bench(record), CATALOGUE, 1, [])
+    judge = Judge(search.nominal(), search.judged)
+    looked = judge.look(*asked(record))
+    (followed,) = judge.follow_all([looked])
+    assert looked.gain == pytest.approx(followed.gain, abs=5.0)  # slopes, near the fit
+    assert followed.gain > 30.0

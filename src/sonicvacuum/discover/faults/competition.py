@@ -169,7 +169,7 @@ class Search(Searching):
             better = self._instead(found, ranked)
             if better is None:
                 break
-            found, ranked = self._factors_anew(better), []
+            found, ranked = self._zeros_as_stated(self._factors_anew(better)), []
         order = sorted(counted_on(self._as_seen(found), found), key=lambda f: -f.probability)
         return Outcome(found, tuple(order), self.bench.record, self.simulations + self._alone.simulations)
 
@@ -201,13 +201,13 @@ class Search(Searching):
         return bool(self._matching)
 
     def _beside_one_effect(self, ranked: list[Judged], model: Model) -> Judged | None:
-        """A slip beside which one effect explains the record, see `alone`."""
+        """A slip beside which one effect explains the record, see `alone`; any run's own zero, for one's."""
+        ranked = sorted([*ranked, *self.aside], key=lambda j: -j.log_odds)
         gross = excess(model) > max(policy.SURE_GAIN, policy.BURIED * data(model.forward))
         shown = any(judged.slip.shown for judged in self.behind)
         if excess(model) < policy.SURE_GAIN or not (wholes(ranked) or gross or shown):
             return None
-        one = self._beside_the_leading(model)
-        return one or self._alone.explained(ranked, model, self.behind)
+        return self._beside_the_leading(model) or self._alone.explained(ranked, model, self.behind)
 
     def _beside_the_leading(self, model: Model) -> Judged | None:
         """The only slip that leaves noise beside the effect that explains nearly all, but not all, by itself:

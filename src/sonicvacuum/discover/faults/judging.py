@@ -72,6 +72,13 @@ class Judge:
             nu[getattr(forward.layout, slip.instead)(run)] = 0.0
         return nu
 
+    def _units(self, forward: Forward) -> np.ndarray:
+        """(q,) what the model's nuisances are multiplied by for a changed record: they count standard errors,
+        and a slip may be that these are larger than stated.
+        """
+        before, now = self.model.forward.nuisance_sigma, forward.nuisance_sigma
+        return np.divide(before, now, out=np.ones_like(now), where=(now > 0.0) & (before > 0.0))
+
     def _residuals(self, record, slip=None, near=False):
         """`_linearised` at the model's parameters; with a `slip` at its `_nuisances` and at none."""
         one = self.model.fit
@@ -85,6 +92,7 @@ class Judge:
         Where the record is `near` the one as it is, slopes that take a simulation each are those of that one.
         """
         forward, one = self._forward(record), self.model.fit
+        starts = starts * self._units(forward)
         many_u, held = np.repeat(one.u[None], len(starts), axis=0), self._columns if near else None
         # Nuisances take up nearly all of what a slip of time or speed changes: the slopes that all sizes are
         # held against must not err by as much as is left.
@@ -281,7 +289,8 @@ class Judge:
         size = float(np.clip(size, slip.start - far, slip.start + far)) if slip.continuous else 0.0
         bench, forward = self._put_right(slip, size)
         one = self.model.fit
-        anew = [self._nuisances(slip), 0.0 * one.nu] if afresh or not start else []
+        own = self._nuisances(slip) * self._units(forward)
+        anew = [own, 0.0 * one.nu] if afresh or not start else []
         nu = ([start.nu] if start else []) + anew
         one, reach = start or one, self._reach(slip, forward)
         many_u = np.repeat(one.u[None], len(nu), axis=0)

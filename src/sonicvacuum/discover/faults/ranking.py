@@ -30,6 +30,7 @@ from sonicvacuum.discover.faults.starts import FACTORS, run_clock, run_clocks, u
 from sonicvacuum.discover.faults.table import FAULTS
 from sonicvacuum.discover.faults.timing import late_runs, time_zero, unknown_zeros
 from sonicvacuum.discover.faults.weights import ALIKE
+from sonicvacuum.discover.faults.zeros import simplest
 from sonicvacuum.discover.fit import smooth
 from sonicvacuum.discover.fit.refit import fit, polish
 from sonicvacuum.discover.fit.wide import far, nominal
@@ -72,6 +73,7 @@ class Ranking:
         simulations: chains simulated so far.
         behind: gauges exchanged, and slips that traces show, fitted beside the last model, which gain nothing
             by themselves.
+        aside: time zeros of each run's own, fitted beside the last model, where that of one explains as much.
         far: whether the last model leaves so much that simulations need not be as accurate as noise asks.
     """
 
@@ -79,6 +81,7 @@ class Ranking:
         self.bench, self.catalogue, self.threads = bench, catalogue, threads
         self.findings, self.simulations = list(plain), 0
         self.behind: list[Judged] = []
+        self.aside: list[Judged] = []
         self.far = False
 
     def make(self, bench: Bench) -> Experiment:
@@ -181,12 +184,13 @@ class Ranking:
         """Those that gain enough, the likeliest first."""
         self.simulations += judge.simulations
         kept = [j for j in followed if j.gain > policy.LEAST_GAIN and j.log_odds > 0.0]
+        simple, self.aside = simplest(kept)
         self.behind = [
             j
             for j in followed
             if (j.slip.fault == "gauges-swapped" and j.gain < 0.0) or (j.slip.shown and j not in kept)
         ]
-        return _one_gain(sorted(kept, key=lambda j: -j.log_odds))
+        return _one_gain(sorted(simple, key=lambda j: -j.log_odds))
 
     def as_small(self, model: Model, found: Investigation) -> list[Judged]:
         """Slips that explain what is as small as to be no misfit by itself, and was named an effect.

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sonicvacuum.discover.faults import changes, clocks, policy, several
+from sonicvacuum.discover.faults import changes, clocks, policy, several, zeros
 from sonicvacuum.discover.faults.alone import Kept, alone
 from sonicvacuum.discover.faults.examine import with_noise_of
 from sonicvacuum.discover.faults.found import Bench, Finding
@@ -20,7 +20,7 @@ from sonicvacuum.discover.faults.judging import Judge
 from sonicvacuum.discover.faults.ranking import Ranking
 from sonicvacuum.discover.faults.slips import Slip, hypotheses
 from sonicvacuum.discover.faults.strays import Strays, masked, single_samples, strays, told
-from sonicvacuum.discover.faults.timing import delay_left_open, late_runs, stated_again
+from sonicvacuum.discover.faults.timing import delay_left_open, late_runs
 from sonicvacuum.discover.faults.weights import hollow, unexplained, weight_of
 from sonicvacuum.discover.fit.enough import data
 from sonicvacuum.discover.fit.evidence import Candidate
@@ -191,27 +191,34 @@ class Searching(Ranking):
         return after
 
     def _zeros_as_stated(self, found: Investigation) -> Investigation:
-        """The effects beside time zeros as they are stated, where these explain the record as well: what an
-        effect delays looks at first like triggers that nobody knows.
+        """The effects beside time zeros as they are stated, or but for one run, where these explain the
+        record as well: what an effect delays looks at first like triggers that nobody knows.
         """
         told = [f for f in self.findings if f.corrected and f.fault == "time-zero"]
         if len(told) != 1 or (told[0].run, told[0].value) != (None, None) or found.final is found.null:
             return found
-        again = stated_again(self.bench.record, self._given)
-        if again is None:
+        record = zeros.stated_again(self.bench.record, self._given)
+        if record is None:
             return found
-        record, cost = again
         bench, one = replace(self.bench, record=record), found.final
         forward = found.forward.of(self.make(bench))
         trial = fit(forward, one.hypothesis, one.u[None], np.zeros((1, forward.layout.size)))
         self.simulations += forward.chains
-        if trial.objective - one.objective > cost:
-            return found
+        late = None
+        if trial.objective - one.objective > zeros.cost(self.bench.record):
+            judge = Judge(Model(bench, forward, trial), self.judged)
+            late = zeros.one_late(judge, Model(self.bench, found.forward, one))
+            self.simulations += judge.simulations
+            if late is None:
+                return found
+            bench = late.model.bench
         after = investigate(self.make(bench), self.threads)
         self.simulations += found.forward.chains
         if unexplained(after) and not unexplained(found):
             return found
-        self.bench, self.findings = bench, [f for f in self.findings if f is not told[0]]
+        others = [f for f in self.findings if f.fault != "time-zero"]
+        own = late.findings(told[0].probability) if late else []
+        self.bench, self.findings = bench, others + [replace(f, corrected=True) for f in own]
         return after
 
     def _values_beside_one_effect(self, model: Model) -> bool:

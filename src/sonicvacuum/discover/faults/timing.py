@@ -11,7 +11,6 @@ from sonicvacuum.discover.correlation import correlated
 from sonicvacuum.discover.faults import changes
 from sonicvacuum.discover.faults.found import Finding
 from sonicvacuum.discover.faults.judged import Model
-from sonicvacuum.discover.faults.policy import log_prior
 from sonicvacuum.discover.faults.slips import WIDTH, Slip, constant, ignoring
 from sonicvacuum.discover.rounds import Investigation
 from sonicvacuum.records import Record
@@ -93,18 +92,6 @@ def unknown_zeros(record: Record, predicted) -> list[Slip]:
     return [Slip("time-zero", change, value=partial(constant, None), occam=occam)]
 
 
-def stated_again(record: Record, given: Record) -> tuple[Record, float] | None:
-    """A record whose time zeros are known as well as stated once more, and what more χ² that may cost: as
-    much as a time zero of their own in each run must gain. None where nothing was changed.
-    """
-    now, before = record.block.trigger_sigma_us, given.block.trigger_sigma_us
-    if now == before:
-        return None
-    interval = max(s.interval_s for s in record.signals.values()) * 1e6
-    cost = 2.0 * len(record.signals) * math.log(max(now / interval, 1.0)) - 2.0 * log_prior(1)
-    return changes.triggered(record, before), cost
-
-
 def delay_left_open(record: Record, id: str, predicted) -> Record:
     """A record in which a gauge was put earlier, its delay known to a pulse's width from there on: it was
     told by the nominal model's pulses, which an effect that is not known yet makes earlier or later.
@@ -150,19 +137,23 @@ def late_runs(record: Record, model: Model, predicted) -> list[Slip]:
             continue
         # What the fit adds to true times is taken off the recorded ones.
         start = -strain * sigma if abs(strain) > STRAINED else late[run.id]
-        slip = Slip(
-            "time-zero",
-            partial(_one_late, run.id, max(sigma, 0.0)),
-            run.id,
-            alternatives=len(record.signals),
-            width=WIDTH["time-zero"],
-            step=0.05,
-            value=float,
-            start=start,
-            instead="trigger",
-        )
-        found.append(slip)
+        found.append(late_run(record, run.id, start))
     return found
+
+
+def late_run(record: Record, run: str, start: float) -> Slip:
+    """The slip that one run's own trigger came late or early, by about so many us."""
+    return Slip(
+        "time-zero",
+        partial(_one_late, run, max(record.trigger_sigma_s * 1e6, 0.0)),
+        run,
+        alternatives=len(record.signals),
+        width=WIDTH["time-zero"],
+        step=0.05,
+        value=float,
+        start=start,
+        instead="trigger",
+    )
 
 
 def _one_late(run, sigma, record, size):
