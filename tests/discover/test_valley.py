@@ -47,7 +47,7 @@ def test_a_fit_that_creeps_is_followed_to_the_lowest_point(creeping):
     assert refit.polish(forward, one, valley.SHOWN, finish=False).objective > 10.0
     found = valley.along(forward, one)
     assert found.u == pytest.approx(MIDDLE, abs=1e-3)  # a twentieth of the error along it
-    assert found.objective < 0.01
+    assert found.objective < 0.05  # less than a fit has to gain by a step
 
 
 def test_at_the_lowest_point_a_fit_stays(creeping):
@@ -61,3 +61,11 @@ def test_fits_begin_within_bounds(creeping, two):
     forward.middle = np.array([c.high for c in two.coordinates])
     found = valley.along(forward, one)
     assert np.all(found.u <= forward.middle)
+
+
+def test_no_fit_is_followed_beyond_where_fits_begin(creeping, monkeypatch):
+    """In one of nine real records the valley led to shots ten times as fast as stated."""
+    forward, one = creeping
+    monkeypatch.setattr(valley.wide, "MOST", 0.5 * np.abs(one.nu).max())
+    found = valley.along(forward, one)
+    assert found.objective == refit.polish(forward, one, valley.SHOWN, finish=False).objective
