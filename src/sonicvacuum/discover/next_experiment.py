@@ -13,7 +13,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-import scipy
 from msgspec import UNSET
 
 from sonicvacuum.discover.fit.refit import Fit
@@ -25,6 +24,7 @@ from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.rounds import Investigation
 from sonicvacuum.discover.verdict import Next
+from sonicvacuum.special import functions
 
 # Explanations beside the best that are held apart: the nearest where nothing is left alike, and of those that
 # are left alike so many.
@@ -124,7 +124,7 @@ def put_behind(weights: np.ndarray, apart: np.ndarray) -> np.ndarray:
             that of the column.
     """
     ahead = 2.0 * (weights[:, None] - weights) + apart - ALIKE
-    behind = scipy.special.ndtr(ahead / (2.0 * np.sqrt(np.maximum(apart, 1e-12))))
+    behind = functions().ndtr(ahead / (2.0 * np.sqrt(np.maximum(apart, 1e-12))))
     behind[:, range(len(weights)), range(len(weights))] = 1.0
     return behind
 

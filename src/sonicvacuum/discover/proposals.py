@@ -1,9 +1,9 @@
 """Where draws of the posterior are proposed: even points, Student's t, valleys that bend."""
 
 import numpy as np
-import scipy
 
 from sonicvacuum.discover.fit.ridge import Valley, root_of
+from sonicvacuum.special import functions
 
 # Degrees of freedom of Student's t: its tails are heavier than those of any likelihood that ends.
 FREEDOM = 5.0
@@ -30,8 +30,8 @@ def students(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     density, up to a constant.
     """
     d = points.shape[1] - 1
-    wide = np.sqrt(FREEDOM / scipy.special.chdtri(FREEDOM, points[:, d]))[:, None]
-    scaled = wide * scipy.special.ndtri(points[:, :d])
+    wide = np.sqrt(FREEDOM / functions().chdtri(FREEDOM, points[:, d]))[:, None]
+    scaled = wide * functions().ndtri(points[:, :d])
     return scaled, -0.5 * (FREEDOM + d) * np.log1p(np.square(scaled).sum(axis=1) / FREEDOM)
 
 
@@ -39,7 +39,7 @@ def student(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """(n, 1) draws of one dimension from (n, 1) points between 0 and 1, and (n,) logarithms of their density,
     up to a constant: quantiles, which lie more evenly than draws by way of a second number do.
     """
-    scaled = scipy.special.stdtrit(FREEDOM, points)
+    scaled = functions().stdtrit(FREEDOM, points)
     return scaled, -0.5 * (FREEDOM + 1.0) * np.log1p(np.square(scaled[:, 0]) / FREEDOM)
 
 

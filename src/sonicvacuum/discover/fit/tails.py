@@ -1,32 +1,32 @@
 """Tails of the distributions that the tests ask for: probabilities of values beyond a given one.
 
-The functions of `scipy.special` that `scipy.stats` calls for them; `scipy.stats` itself takes longer to load
-than a record of traces takes to be searched. (scipy loads its parts when they are first used: `import scipy`
-alone costs nothing, `from scipy.special import …` a quarter of a second wherever this module is imported.)
+The functions that `scipy.stats` calls for them: it takes longer to load than a record of traces takes to be
+searched.
 """
 
 import numpy as np
-import scipy
+
+from sonicvacuum.special import functions
 
 
 def chi_squared(value: float, freedom: float) -> float:
     """Probability that χ² of so many degrees of freedom exceeds a value."""
-    return float(scipy.special.chdtrc(freedom, max(value, 0.0)))
+    return float(functions().chdtrc(freedom, max(value, 0.0)))
 
 
 def chi_squared_at(p: float, freedom: float) -> float:
     """Value that χ² of so many degrees of freedom exceeds with probability p."""
-    return float(scipy.special.chdtri(freedom, p))
+    return float(functions().chdtri(freedom, p))
 
 
 def normal(value):
     """Probability that a standard normal number exceeds a value (any shape)."""
-    return scipy.special.ndtr(-np.asarray(value))
+    return functions().ndtr(-np.asarray(value))
 
 
 def poisson(count: int, mean: float) -> float:
     """Probability of `count` events or more where `mean` are expected."""
-    return float(scipy.special.pdtrc(count - 1, mean)) if count > 0 else 1.0
+    return float(functions().pdtrc(count - 1, mean)) if count > 0 else 1.0
 
 
 def discovery_rate(p: np.ndarray) -> np.ndarray:
