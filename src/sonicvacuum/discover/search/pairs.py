@@ -17,17 +17,18 @@ from sonicvacuum.discover.fit.evidence import Candidate, Combination, log_bayes
 from sonicvacuum.discover.fit.refit import Fit, finished, fit, polish
 from sonicvacuum.discover.model import abreast
 from sonicvacuum.discover.model.forward import Forward
-from sonicvacuum.discover.model.hypothesis import Component, Hypothesis, of_one_strength, variants
+from sonicvacuum.discover.model.hypothesis import Component, Hypothesis
 from sonicvacuum.discover.search import around, directions, mixtures, restart, screen, secants, strengths
 from sonicvacuum.discover.search.planes import Start, linear, variant
 from sonicvacuum.discover.search.starts import setup_of, starts_of
+from sonicvacuum.discover.search.sums import summed
 from sonicvacuum.effects import Setup
 
 # Singles that pairs start from.
 STARTED = 4
-# Pairs refitted from the nominal screen, from single fits, in place of the best one, and in each round of
-# exchanges.
-LINEAR, BESIDE, MIXED, EXCHANGED, ROUNDS = 3, 3, 3, 4, 2
+# Pairs refitted from the nominal screen, from single fits, in place of the best one, in each round of
+# exchanges, and from the trials of all effects.
+LINEAR, BESIDE, MIXED, EXCHANGED, ROUNDS, SUMMED = 3, 3, 3, 4, 2, 4
 # What may stand in for an effect of the best pair promises this share of what that gains beside the other; so
 # many are fitted, so often as that leads to another pair.
 STANDS, STANDING, AGAIN = 0.7, 3, 4
@@ -77,6 +78,7 @@ class Pairs:
         self._refit(_best(self.seen, self.found, LINEAR))
         self._refit(_best(mixtures.starts(self.forward, self.null, self.candidates), self.found, MIXED))
         self._exchange()
+        self._refit(_best(summed(self.forward, self.null, self.setup), self.found, SUMMED))
         self._stood_in()
         self._refine()
         self._with_other_strengths()
@@ -172,7 +174,9 @@ class Pairs:
         for one in found:
             self._note(one)
         least = min((p.fit.objective for p in self.found.values()), default=np.inf)
-        near = [one for one in found if places.placed(one) and one.objective < least + BEHIND]
+        # Where even the best one leaves more than noise, it is no measure of what a place may gain.
+        reach = least + max(BEHIND, least - enough.data(self.forward))
+        near = [one for one in found if places.placed(one) and one.objective < reach]
         settled = partial(places.settled, setup=self.setup)
         for one in abreast.each(self.forward, settled, near, "places of pairs"):
             self._note(one)
@@ -296,12 +300,8 @@ def everywhere(
         return _tried(beside, component, trials, left) if trials else None
 
     present = (*beside.hypothesis.ids, *known, *forward.experiment.excluded)
-    components = [
-        Component(effect, free)
-        for effect in setup.catalogue.candidates(setup, present)
-        for free in filter(of_one_strength, variants(effect, setup))
-    ]
-    return [s for s in abreast.each(forward, start, components) if s is not None]
+    able = secants.components(setup, present)
+    return [s for s in abreast.each(forward, start, able) if s is not None]
 
 
 def _tried(beside: Fit, component: Component, trials, left: float) -> Start:

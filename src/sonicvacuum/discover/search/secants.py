@@ -89,19 +89,13 @@ def tried(
     `sizes` (n,) are coordinates of the strength, see `coarsely` and `finely`; `places` are all that the
     effect may have, unless given.
     """
-    effect, free = component.effect, component.free
-    if places is None:
-        places = effect.candidates(setup) if effect.places else (None,)
-    rows = [
-        (place, u)
-        for place in places
-        for shape in shape_grid(effect)
-        for size in sizes
-        if _inside(free, u := np.array([size, *(c.inverse(shape[c.parameter.name]) for c in free[1:])]))
-    ]
+    free = component.free
+    rows = places_and_sizes(component, setup, sizes, places)
     if not rows:
         return []
-    seen = _screened(forward, fit, component, rows)
+    directions, columns = changes(forward, fit, component, rows)
+    base = forward.columns(fit.hypothesis, fit.u[None], fit.nu[None], precise=True)
+    seen = screen.from_columns(forward, fit, directions, base, columns)
     score, squared = seen.projected[0], np.diag(seen.projected[1])
     share = _shares(component, score, squared)
     gain = share * (2.0 * score - share * squared)
@@ -111,6 +105,31 @@ def tried(
     return [
         Secant(names, *end, float(gain[k]), *seen.moved(k, share[k]))
         for k, end in zip(order, ends, strict=True)
+    ]
+
+
+def components(setup: Setup, present: Sequence[str]) -> list[Component]:
+    """Every effect of the catalogue but those present, once for each of its strengths."""
+    return [
+        Component(effect, free)
+        for effect in setup.catalogue.candidates(setup, present)
+        for free in filter(of_one_strength, variants(effect, setup))
+    ]
+
+
+def places_and_sizes(
+    component: Component, setup: Setup, sizes: np.ndarray, places: Sequence[int] | None = None
+) -> list[tuple[int | None, np.ndarray]]:
+    """Places and coordinates at which an effect is tried, its shapes included; see `tried`."""
+    effect, free = component.effect, component.free
+    if places is None:
+        places = effect.candidates(setup) if effect.places else (None,)
+    return [
+        (place, u)
+        for place in places
+        for shape in shape_grid(effect)
+        for size in sizes
+        if _inside(free, u := np.array([size, *(c.inverse(shape[c.parameter.name]) for c in free[1:])]))
     ]
 
 
@@ -125,10 +144,11 @@ def _shares(component: Component, score, squared) -> np.ndarray:
 
 
 def scaled(strength: Coordinate, u: np.ndarray, share: float) -> np.ndarray:
-    """Coordinates of an effect with so many times its strength, whose logarithm is the first of them."""
+    """Coordinates of an effect with so many times its strength, the first of them."""
     if share == 1.0:
         return u
-    return np.array([np.clip(u[0] + np.log(share), strength.low, strength.high), *u[1:]])
+    moved = u[0] + np.log(share) if strength.endless else u[0] * share
+    return np.array([np.clip(moved, strength.low, strength.high), *u[1:]])
 
 
 def one_a_place(trials: Sequence[Secant]) -> list[Secant]:
@@ -160,8 +180,12 @@ def _inside(free, u) -> bool:
     return shapes and free[0].low < u[0] < free[0].high
 
 
-def _screened(forward, fit, component, rows):
-    """The screen whose directions are the finite changes themselves."""
+def changes(
+    forward: Forward, fit: Fit, component: Component, rows: Sequence[tuple[int | None, np.ndarray]]
+) -> tuple[tuple[Direction, ...], list[np.ndarray]]:
+    """A direction for each trial, and for each run the changes (n, M) of the whitened data that the trials
+    make beside a fit.
+    """
     effect, free = component.effect, component.free
     where = np.array([place for place, _ in rows])
     values = {c.parameter.name: c.value(np.array([u[k] for _, u in rows])) for k, c in enumerate(free)}
@@ -176,6 +200,4 @@ def _screened(forward, fit, component, rows):
         return effect.apply(setup, **given)
 
     family = Family(tuple(Direction(effect.id, strength.name, place=p) for p, _ in rows), change)
-    base = forward.columns(fit.hypothesis, fit.u[None], fit.nu[None], precise=True)
-    columns = ways.finite(forward, fit.hypothesis, fit.u, fit.nu, family)
-    return screen.from_columns(forward, fit, family.directions, base, columns)
+    return family.directions, ways.finite(forward, fit.hypothesis, fit.u, fit.nu, family)
