@@ -264,20 +264,27 @@ class Searching(Ranking):
         ]
 
     def _errors_as_stated(self, found: Investigation) -> Investigation:
-        """The effects beside errors as a table states them, where a few values that are off, or in each
-        other's place, explain beside effects what errors of another size were told for.
+        """The effects beside errors as a table states them, where they explain by themselves what errors of
+        another size were told for, or beside a few values that are off, or in each other's place.
         """
         sized, self._sized = self._sized, []
         for errors in sized:
             chosen = several.instead_of_errors(self, found, errors, policy.MOST + 1 - self._corrected())
-            if not chosen:
+            if chosen is None:
                 continue
+            before, told = self.bench, self.findings
             kind = errors.slip.fault, errors.slip.quantity
-            self.findings = [f for f in self.findings if (f.fault, f.quantity) != kind]
+            self.findings = [f for f in told if (f.fault, f.quantity) != kind]
+            self.bench = replace(before, record=errors.slip.undo(before.record))
             for one in chosen:
                 self._accept([one], one)
+            after = self._investigate()
+            if unexplained(after) and not unexplained(found) and not chosen:
+                self.bench, self.findings = before, told
+                self.simulations += after.forward.chains
+                continue
             self.simulations += found.forward.chains
-            found = self._investigate()
+            found = after
         return found
 
     def _beside_clock(self, ratio: float) -> tuple[Model, float]:

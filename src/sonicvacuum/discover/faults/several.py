@@ -60,9 +60,9 @@ def _anew(ranking: Ranking, model: Model) -> Model:
     return min([model, *(replace(model, fit=c.fit) for c in found)], key=lambda m: m.fit.objective)
 
 
-def instead_of_errors(ranking: Ranking, found: Investigation, told: Judged, most: int) -> list[Judged]:
-    """Slips, each beside those before it, that together are likelier than errors of another size; none where
-    no such slips are.
+def instead_of_errors(ranking: Ranking, found: Investigation, told: Judged, most: int) -> list[Judged] | None:
+    """Slips, each beside those before it, that together are likelier than errors of another size: none where
+    the effects are so by themselves. None where nothing is.
 
     Args:
         ranking: slips of the record as it is put right, errors of another size included.
@@ -82,7 +82,7 @@ def instead_of_errors(ranking: Ranking, found: Investigation, told: Judged, most
     while len(chosen) < most and (one := next(_of_values(ranking, model), None)):
         chosen.append(one)
         model = one.model
-    return chosen if sum(j.log_odds for j in chosen) > least else []
+    return chosen if sum(j.log_odds for j in chosen) > least else None
 
 
 def _likeliest(found: Investigation) -> tuple[Fit, float]:
