@@ -12,9 +12,12 @@ from itertools import combinations
 import numpy as np
 
 from sonicvacuum.discover.fit.evidence import Candidate
+from sonicvacuum.discover.fit.normal import from_slopes
 from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.model.forward import Forward
 from sonicvacuum.discover.model.hypothesis import Hypothesis
+from sonicvacuum.discover.search import restart, screen
+from sonicvacuum.discover.search.directions import Direction
 from sonicvacuum.discover.search.planes import Start
 from sonicvacuum.discover.search.secants import scaled
 
@@ -34,16 +37,17 @@ def starts(forward: Forward, null: Fit, found: Sequence[Candidate]) -> list[Star
     laws = [c for c in found if _mixes(c)]
     if len(laws) < 3 or laws[0] is not found[0]:
         return []
-    left, changes = _projected(forward, laws)
-    products, scores = changes @ changes.T, changes @ left
+    seen = _screened(forward, laws)
+    scores, products = seen.projected
+    left = restart.promised(seen.fit)
     result = []
     for pair in combinations(range(1, len(laws)), 2):
         at = np.ix_(pair, pair)
         share = np.linalg.lstsq(products[at], scores[list(pair)], rcond=1e-9)[0]
         if not np.all((share > SHARES[0]) & (share < SHARES[1])):
             continue
-        objective = float(left @ left - scores[list(pair)] @ share)
-        result.append(_start([laws[k] for k in pair], share, laws[0].fit.nu, null.objective - objective))
+        gain = null.objective - left + float(scores[list(pair)] @ share)
+        result.append(_start([laws[k] for k in pair], share, laws[0].fit.nu, gain))
     return sorted(result, key=lambda s: -s.gain)
 
 
@@ -55,29 +59,25 @@ def _mixes(c: Candidate) -> bool:
     return along and strength.endless and np.isfinite(c.fit.objective)
 
 
-def _projected(forward, laws):
-    """(data + nuisances,) what the nominal model leaves at the nuisances of the first law, and (laws, …) what
-    each one changes of it, both without what nuisances take up.
+def _screened(forward, laws) -> screen.Screen:
+    """What the nominal model leaves at the nuisances of the first law, whose slopes beside that take up what
+    they can, and as directions what each law changes of it.
     """
-    first = laws[0].fit
+    first, nothing = laws[0].fit, (Hypothesis(), np.zeros((1, 0)))
     columns = forward.columns(first.hypothesis, first.u[None], first.nu[None], precise=True)
-    plain = forward.sampled(Hypothesis(), np.zeros((1, 0)), first.nu[None])
-    found = [forward.sampled(c.fit.hypothesis, c.fit.u[None], first.nu[None]) for c in laws]
-    p, q = len(first.u), forward.layout.size
-    slopes, left, changes = [], [], []
-    for run, own in enumerate(columns):
-        part = np.zeros((q, own.shape[2]))
-        part[forward.local(run)] = own[0, 1 + p :]
-        slopes.append(part)
-        left.append(forward.data(run) - plain[run][0])
-        changes.append(np.array([one[run][0] - plain[run][0] for one in found]))
-    slopes, left, changes = np.hstack(slopes), np.concatenate(left), np.hstack(changes)
-    # Counts of pulses jump, and what is not shown is no number.
-    good = np.isfinite(left) & np.isfinite(changes).all(axis=0) & np.isfinite(slopes).all(axis=0)
-    basis = np.linalg.qr(np.hstack([slopes[:, good], np.eye(q)]).T)[0]
-    left = np.concatenate([left[good], -first.nu])
-    changes = np.hstack([changes[:, good], np.zeros((len(laws), q))])
-    return left - basis @ (basis.T @ left), changes - (changes @ basis) @ basis.T
+    plain = forward.sampled(*nothing, first.nu[None])
+    acting = [forward.sampled(c.fit.hypothesis, c.fit.u[None], first.nu[None]) for c in laws]
+    base = [
+        np.concatenate([bare[:, None], own[:, 1 + len(first.u) :]], axis=1)
+        for bare, own in zip(plain, columns, strict=True)
+    ]
+    changed = [np.vstack(some) - bare for some, bare in zip(zip(*acting, strict=True), plain, strict=True)]
+    # What is not shown is no number.
+    changes = [np.nan_to_num(some) for some in changed]
+    normal = from_slopes(forward, 0, nothing[1], first.nu[None], base)
+    strengths = [c.fit.hypothesis.coordinates[0].parameter.name for c in laws]
+    directions = tuple(Direction(c.effect, name) for c, name in zip(laws, strengths, strict=True))
+    return screen.from_columns(forward, Fit(nothing[0], normal, True), directions, base, changes)
 
 
 def _start(pair, share, nu, gain):

@@ -23,7 +23,7 @@ PARALLEL = 1e-3
 
 
 def summed(forward: Forward, null: Fit, setup: Setup) -> list[Start]:
-    """The most promising start of each pair of effects beside the nominal model, the best first."""
+    """The most promising start of each pair of effects that gains anything, the best first."""
     able = secants.components(setup, forward.experiment.excluded)
     sizes = [secants.places_and_sizes(c, setup, secants.coarsely(c.free[0])) for c in able]
     tried = [(c, *row) for c, rows in zip(able, sizes, strict=True) for row in rows]
@@ -35,7 +35,8 @@ def summed(forward: Forward, null: Fit, setup: Setup) -> list[Start]:
         first, second = (np.flatnonzero(names == name) for name in pair)
         best = np.unravel_index(np.argmax(gain[np.ix_(first, second)]), (len(first), len(second)))
         i, j = first[best[0]], second[best[1]]
-        found.append(_start(seen, tried, (i, j), (share[i, j], share[j, i]), gain[i, j]))
+        if gain[i, j] > 0.0:
+            found.append(_start(seen, tried, (i, j), (share[i, j], share[j, i]), gain[i, j]))
     return sorted(found, key=lambda s: -s.gain)
 
 
@@ -54,7 +55,7 @@ def _screened(forward, null, able) -> screen.Screen:
 
 def _together(score: np.ndarray, gram: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """(K, K) gain of any two of K trials, and what the first is taken times for it, no farther than halfway
-    to the next strength; −∞ where the two are one.
+    to the next strength; −∞ where the two are one, or one of them shows no number.
     """
     own = np.diag(gram)
     plane = own[:, None] * own[None, :] - np.square(gram)
