@@ -4,7 +4,8 @@ A table whose header names other channels than the one before holds these of the
 the same channels, or none, holds the next shots.
 """
 
-from dataclasses import dataclass
+import re
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -21,6 +22,10 @@ from sonicvacuum.scope.table import Table
 ON = "A table whose times go on where those before it end belongs to the same shot."
 # Steps between samples above this multiple of the usual one part shots, which have at least so many samples.
 GAP, FEWEST = 100.0, 8
+# A line that names the channel of the table below it, and nothing else.
+_CHANNEL = re.compile(
+    r"\W*((?:channel|chan|ch|kanal|voie|canal|trace|math|ref)[ _-]?\w{1,2})\W*", re.IGNORECASE
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,8 +51,12 @@ def shots(table: Table, companion: list[str], path) -> list[Shot]:
     """The shots in a text, in order; InputError where a further header does not fit its columns."""
     found, keys = _header(table, [line.split(",") for line in companion])
     result, seen, begin = [], set(), 0
-    for k, part in enumerate(table.parts()):
+    parts = table.parts()
+    for k, (part, title) in enumerate(zip(parts, _titles(parts, found), strict=True)):
         own, said = (found, keys) if k == 0 else _further(part, found, keys, path)
+        if title:
+            own = [c if c.role != "value" else replace(c, name="") for c in own]
+            said = replace(said, values=said.values | {"name": [title]}, rows=said.rows | {"name": []})
         names = set(_names(own, said))
         if not names or names & seen:
             seen, begin = set(), max((s[0] for s in result), default=0)
@@ -61,6 +70,20 @@ def shots(table: Table, companion: list[str], path) -> list[Shot]:
         result += [(begin + j + 1, columns, own, said, notes) for j, columns in enumerate(pieces)]
     several = max(number for number, *_ in result) > 1
     return [Shot(number, several, *rest) for number, *rest in result]
+
+
+def _titles(parts, found):
+    """The channel that a line of its own names above each of several tables of one channel; "" where these
+    lines are lacking, or all alike.
+    """
+    named = [_title(part) for part in parts] if sum(c.role == "value" for c in found) == 1 else []
+    return named if all(named) and len(set(named)) > 1 else [""] * len(parts)
+
+
+def _title(part):
+    rows = ([c for c in row if c.strip()] for row in reversed(part.header))
+    alone = (_CHANNEL.fullmatch(row[0]) for row in rows if len(row) == 1)
+    return next((m.group(1) for m in alone if m), "")
 
 
 def _goes_on(last, columns, found):
