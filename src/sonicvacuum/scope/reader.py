@@ -87,24 +87,32 @@ def _channels(shot: Shot, layout: Layout, path, why):
     names = _names(found, keys, path)
     values = [c.place for c in found if c.role == "value"]
     # Times stand before their channels; where none do, the first further on counts for all.
-    clock = (
-        next((c for c in found if c.role == "time"), None) if values and found[0].place == values[0] else None
-    )
-    place = 0
+    clocks = [c for c in found if c.role == "time"][:1] if values and found[0].place == values[0] else []
+    place, beside = 0, False
     for column in found:
         if column.role == "value":
             values, kept = _held(columns[column.place])
             if len(values) < 2:
                 place += 1
                 continue
-            base = _base(clock, column, columns, kept, keys, place, why)
+            base = _base(_clock(clocks, column, columns), column, columns, kept, keys, place, why)
             channel = _channel(names[place], column, values, base, keys, layout, place, shot.several)
             if shot.several:
                 channel = replace(channel, segment=shot.number)
             yield channel
             place += 1
-        elif clock is None or column.role == "time":
-            clock = column
+        elif not clocks or column.role == "time":
+            clocks = [*clocks, column] if beside else [column]
+        beside = column.role == "time"
+
+
+def _clock(clocks, column, columns):
+    """Of times side by side, as recorders with several rates write them, those that end first of all that
+    last as long as the channel; the last where none does, or several are alike. None without any.
+    """
+    rows = roles.ends(columns[column.place])
+    long = [c for c in reversed(clocks) if roles.ends(columns[c.place]) >= rows]
+    return min(long, key=lambda c: roles.ends(columns[c.place]), default=clocks[-1] if clocks else None)
 
 
 def _held(values):

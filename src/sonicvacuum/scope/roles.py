@@ -105,7 +105,8 @@ def _roles(found, table):
 def _with_twins(found, table):
     """Also times further on that are called otherwise: columns before values that rise evenly.
 
-    They are in a unit of time, or labelled as the first time but for a number or a letter: `t1,F1,t2,F2`.
+    They are in a unit of time, or labelled as the first time but for a number or a letter: `t1,F1,t2,F2`; or
+    they stand beside times of another number of rows, as those of a faster rate do.
     """
     result, first = list(found), next((c for c in found if c.role == "time"), None)
     for k, column in enumerate(found[:-1]):
@@ -115,14 +116,27 @@ def _with_twins(found, table):
         # What stands beside times or behind counts alone is no trace of them, but may be the first times.
         apart = k > 1 or (k == 1 and found[0].role == "counter" and first is None)
         before = found[k + 1].role == "value" and (first is None or result[k - 1].role == "value")
-        if column.role == "value" and (timed or alike) and apart and before:
-            values = table.columns[column.place]
-            # Times of a shorter trace end before the others.
-            held = np.flatnonzero(np.isfinite(values))
-            if len(held) and even(values[: held[-1] + 1]):
-                result[k] = replace(column, role="time")
-                first = first or result[k]
+        faster = timed and k and result[k - 1].role == "time" and _ends_apart(column, found[k - 1], table)
+        wanted = column.role == "value" and (((timed or alike) and apart and before) or faster)
+        if wanted and _rises(table.columns[column.place]):
+            result[k] = replace(column, role="time")
+            first = first or result[k]
     return result
+
+
+def _ends_apart(one, other, table):
+    return ends(table.columns[one.place]) != ends(table.columns[other.place])
+
+
+def _rises(values):
+    """Whether numbers rise evenly to their end; times of a shorter trace end before the others."""
+    return bool(ends(values)) and even(values[: ends(values)])
+
+
+def ends(values: np.ndarray) -> int:
+    """Rows up to the last number of a column, 0 where it has none."""
+    held = np.flatnonzero(np.isfinite(values))
+    return int(held[-1]) + 1 if len(held) else 0
 
 
 def are_twins(one: str, other: str) -> bool:

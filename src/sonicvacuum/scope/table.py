@@ -241,11 +241,15 @@ def _fits(cells, places, dialect):
 
 
 def _with_sparse(places, rows, names, dialect):
-    """Also columns that have a name and seldom a number, as of a slower channel."""
+    """Also columns that have a name and seldom a number, as of a slower channel, or as of its times, which
+    may stand before all others, in a row of names for every column.
+    """
     found = set(places)
+    named = len(names) > places[-1] and all(names[: places[-1] + 1])
     for k, name in enumerate(names):
         held = [r[k] for r in rows if k < len(r) and r[k]]
-        if name and k > places[0] and len(held) >= 2 and all(map(dialect.is_number, held)):
+        fewest = 2 if k > places[0] else BEGINNING
+        if name and (named or k > places[0]) and len(held) >= fewest and all(map(dialect.is_number, held)):
             found.add(k)
     return sorted(found)
 
