@@ -53,14 +53,19 @@ def encoding_of(data: bytes) -> str | None:
         if data.startswith(mark):
             return name
     head = data[:_LOOKED_AT]
-    if head[1::2].count(0) > _WIDE * len(head) / 2:
-        return "utf-16-le"
-    if head[::2].count(0) > _WIDE * len(head) / 2:
-        return "utf-16-be"
-    if sum(b < 9 or 13 < b < 32 for b in head) > 0.01 * len(head):
+    for name, high in (("utf-16-le", head[1::2]), ("utf-16-be", head[::2])):
+        if high.count(0) > _WIDE * len(head) / 2:
+            # Numbers, pictures and sounds in bytes are often zero there as well.
+            return None if _is_binary(head.decode(name, "replace")) else name
+    if _is_binary(head.decode("latin-1")):
         return None
     try:
         data.decode("utf-8")
     except UnicodeDecodeError:
         return "latin-1"
     return "utf-8"
+
+
+def _is_binary(text):
+    """Whether more than one character in a hundred is a control one, other than those of white space."""
+    return sum(ord(c) < 9 or 13 < ord(c) < 32 for c in text) > 0.01 * len(text)
