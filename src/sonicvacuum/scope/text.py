@@ -14,6 +14,8 @@ _MARKS = (
     (codecs.BOM_UTF16_BE, "utf-16"),
 )
 _LOOKED_AT = 4096
+# Beginning and end of a file of datasets, of which 58 holds functions of time.
+_UNIVERSAL = re.compile(r"    -1[ ]*\n {2,4}\d{2,4}[bB]?\b.*\n    -1\s*", re.DOTALL)
 # Typographic signs before digits (minus, figure and en dash and their like), which stand for a minus.
 _DASH = re.compile("[\u2212\u2012\u2013\ufe63\uff0d](?=[\\d.,∞])")
 # Share of zero bytes at every other place from which text is UTF-16 without a mark.
@@ -44,6 +46,11 @@ def read(path: Path) -> tuple[str, str]:
             f"{path}: not valid {encoding} at byte {error.start}; export the file again"
         ) from None
     text = text.rstrip("\0\x1a").replace("\r\r\n", "\n").replace("\r\n", "\n").replace("\r", "\n")
+    if _UNIVERSAL.fullmatch(text):
+        raise InputError(
+            f"{path}: is a universal file (UFF), whose samples stand several to a line; export the traces as "
+            "a table, with a column for each channel"
+        )
     return text if text.isascii() else _DASH.sub("-", text), encoding
 
 
