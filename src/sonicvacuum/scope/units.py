@@ -38,6 +38,7 @@ _WHOLE = {"S": ("s", 1.0), "kg": ("kg", 1.0), "1/s": ("Hz", 1.0), "sps": ("Hz", 
 # Forces that instruments show: decanewton, and weights at standard gravity (1 lb = 0.45359237 kg, 1959).
 _WHOLE |= {"daN": ("N", 10.0), "kgf": ("N", STANDARD_GRAVITY), "kp": ("N", STANDARD_GRAVITY)}
 _WHOLE |= {"lbf": ("N", 0.45359237 * STANDARD_GRAVITY), "Kg": ("kg", 1.0)}
+_WHOLE |= {"LBF": _WHOLE["lbf"], "Lbf": _WHOLE["lbf"], "gn": ("g", 1.0), "g's": ("g", 1.0)}
 _WHOLE |= {"%": ("%", 1.0), "bar": ("Pa", 1e5), "dB": ("dB", 1.0), "deg": ("deg", 1.0), "min": ("s", 60.0)}
 # Times in other scripts (Cyrillic, Chinese and Japanese), and as programs for microcontrollers call them.
 _WHOLE |= {"\u0441": ("s", 1.0), "м\u0441": ("s", 1e-3), "мк\u0441": ("s", 1e-6), "н\u0441": ("s", 1e-9)}
@@ -47,6 +48,8 @@ _BARE = {"millis": 1e-3, "micros": 1e-6, "mikros": 1e-6, "nanos": 1e-9}
 # Prefixes that recorders write in another case: K for kilo before these, S for seconds behind small ones.
 _CAPITAL_K = re.compile(r"K(?=V$|N$|Pa$|Hz$|Sa?/s$|Ohm$)")
 _SECONDS = re.compile(r"([munp])S")
+# Volts, of which meters say that they are not those of an alternating voltage.
+_DIRECT = re.compile(r"^(.?V)[ _]?\(?(?:DC|dc)\)?$")
 # Samples a second, however they are written.
 _SAMPLES = re.compile(r"\s*(?:samples?|sa|s)\s*/\s*(?:s|sec|seconds?)|\s*sps", re.IGNORECASE)
 _NUMBER = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?"
@@ -87,9 +90,13 @@ def _plain(text):
     if rate and rate.group(1) != "m":
         text = f"{rate.group(1)}Sa/s"
     text = _SECONDS.sub(r"\1s", text) if _SECONDS.fullmatch(text) else _CAPITAL_K.sub("k", text)
-    text = re.sub(r"/s(²|\*\*2|\^2|2|/s)$", "/s^2", text)
-    text = re.sub(r"^(.*?)\s*(·|\*|\s)\s*s\^?-2$", r"\1/s^2", text)
-    return text.replace("Ω", "Ohm").replace("ε", "strain").replace("m/sec", "m/s").strip()
+    text = (
+        _DIRECT.sub(r"\1", text).replace("m/sec", "m/s").replace("⁻", "-").replace("¹", "1").replace("²", "2")
+    )
+    text = re.sub(r"/s(\*\*2|\^2|2|/s)$", "/s^2", text)
+    text = re.sub(r"^(.*?)\s*[·⋅*.\s]\s*s\^?-2$", r"\1/s^2", text)
+    text = re.sub(r"^(.*?)\s*[·⋅*.\s]\s*s\^?-1$", r"\1/s", text)
+    return text.replace("Ω", "Ohm").replace("ε", "strain").strip()
 
 
 def spelled(word: str) -> Unit | None:
