@@ -97,6 +97,24 @@ def test_tdms_times_have_a_unit(tmp_path, label, unit, factor):
     assert (channel.start_s, channel.interval_s) == pytest.approx((START, STEP), rel=1e-9)
 
 
+@pytest.mark.parametrize(
+    ("label", "said", "name", "unit", "factor"),
+    [
+        ("F (kN)", "", "F", "N", 1e3),
+        ("acc [g]", "", "acc", "g", 1.0),
+        ("F (kN)", "N", "F (kN)", "N", 1.0),  # what the properties say counts
+        ("Dev1/ai0", "", "Dev1/ai0", "", 1.0),
+    ],
+)
+def test_tdms_names_bear_units_where_nothing_else_does(tmp_path, label, said, name, unit, factor):
+    properties = {"wf_increment": STEP, "unit_string": said}
+    (channel,) = read(
+        tdms(tmp_path / "a.tdms", [ChannelObject("shot", label, PULSE, properties=properties)])
+    ).channels
+    assert (channel.name, channel.unit) == (name, unit)
+    assert channel.values == pytest.approx(factor * PULSE, rel=1e-12)
+
+
 def test_tdms_times_without_a_unit_are_told(tmp_path):
     channels = [ChannelObject("shot", "Time", 1e6 * TIMES), ChannelObject("shot", "g9", PULSE)]
     (channel,) = read(tdms(tmp_path / "a.tdms", channels)).channels

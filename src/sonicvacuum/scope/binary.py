@@ -88,12 +88,13 @@ def _warnings():
 
 def _timed(numeric):
     """Channels of a TDMS file, with a time channel of the same group and length where there is one."""
-    names = unique([c.name for _, c, _ in numeric])
+    labels = [(c.name, None) if _said(c) else split_unit(c.name) for _, c, _ in numeric]
+    names = unique([name for name, _ in labels])
     times = {(g, len(v)): (c, v) for g, c, v in numeric if _is_time(c)}
-    for name, (group, channel, values) in zip(names, numeric, strict=True):
+    for name, (_, labelled), (group, channel, values) in zip(names, labels, numeric, strict=True):
         if _is_time(channel):
             continue
-        said, unit, notes = _said(channel), unit_of(_said(channel)), []
+        said, unit, notes = _said(channel), unit_of(_said(channel)) or labelled, []
         if not unit:
             notes.append(
                 f"The unit {said} is not known; numbers are as written." if said else "No unit given."
