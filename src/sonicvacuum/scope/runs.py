@@ -1,5 +1,6 @@
 """Which files and channels make one run: by what the user says, else by the names of files and channels."""
 
+import os
 import re
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -36,6 +37,13 @@ class Shot:
 
 def shots(files: list[Path], options: Options) -> list[Shot]:
     """The runs in files, in the order of the files; InputError for what does not fit together."""
+    if (options.interval_s or 0.0) > COARSEST:
+        raise InputError(
+            f"--interval: is {options.interval_s:g} s, and a contact is over within some ms; give the time "
+            "between samples with its unit, as in 2us"
+        )
+    for group in (files, *options.runs.values()):
+        _once(group)
     named = {f for group in options.runs.values() for f in group}
     recordings = {f: read(f) for f in dict.fromkeys((*files, *named))}
     groups = [(run, [recordings[f] for f in group]) for run, group in options.runs.items()]
@@ -44,8 +52,16 @@ def shots(files: list[Path], options: Options) -> list[Shot]:
     used = [s.id for s in found]
     for twice in {u for u in used if used.count(u) > 1}:
         raise InputError(f"two runs are called {twice}; name them by --run NAME=FILE")
-    _all_mapped(found, options)
+    _all_mapped(found, options, [c.name for r in recordings.values() for c in r.channels])
     return found
+
+
+def _once(files):
+    """Refuse a file that is given twice, under whatever path."""
+    places = [os.path.realpath(f) for f in files]
+    twice = next((f for f, p in zip(files, places, strict=True) if places.count(p) > 1), None)
+    if twice is not None:
+        raise InputError(f"{twice}: is given twice; give it once")
 
 
 def _grouped(recordings):
@@ -139,14 +155,16 @@ def _gauge(channel, recording, several, options):
     return None if options.channels else _id(names[-1])
 
 
-def _all_mapped(found, options):
+def _all_mapped(found, options, names):
     """Every channel and gauge that an option names must be there."""
     gauges = {g for s in found for g in s.channels}
-    for option, wanted in (
-        ("--channel", options.channels.values()),
-        ("--scale", options.scales),
-        ("--place", options.places),
-    ):
+    for key, gauge in options.channels.items():
+        if gauge not in gauges:
+            raise InputError(
+                f"--channel {key}={gauge}: no channel is called {key!r}; there are "
+                f"{', '.join(dict.fromkeys(names))}"
+            )
+    for option, wanted in (("--scale", options.scales), ("--place", options.places)):
         for gauge in wanted:
             if gauge not in gauges:
                 raise InputError(
