@@ -13,8 +13,8 @@ from sonicvacuum.scope.reader import read
 from sonicvacuum.scope.recording import Channel, Recording
 from sonicvacuum.scope.timebase import FINE, NO_TRIGGER, SECONDS
 
-# A channel's number in the name of a file, as in F0000CH1, C2Trace00001, shot_Ch3.
-_MARK = re.compile(r"(?<![A-Za-z])ch?[ _-]?([1-8])(?!\d)", re.IGNORECASE)
+# A channel's number in the name of a file, as in F0000CH1, C2Trace00001, shot_Ch3, shot-channel4.
+_MARK = re.compile(r"(?<![A-Za-z])(?:ch(?:an(?:nel)?)?|kanal|c)[ _-]?([1-8])(?!\d)", re.IGNORECASE)
 # Intervals differing by less are the same; starts within this part of an interval are the same.
 SAME = 1e-6
 TOGETHER = 0.01
