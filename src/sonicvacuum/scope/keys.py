@@ -2,7 +2,7 @@
 
 import re
 from dataclasses import dataclass, field
-from itertools import pairwise, zip_longest
+from itertools import pairwise, takewhile, zip_longest
 
 from sonicvacuum.scope.dialect import Dialect
 from sonicvacuum.scope.units import quantity, unit_of
@@ -42,6 +42,8 @@ MARKER = re.compile(r"\W*((waveform|measured|raw) )?(data|values|daten|messwerte
 # Keys that mean other things too; another key of the same meaning overrules them.
 _VAGUE = {"start", "interval", "samples", "points", "size", "units", "unit", "labels", "channel", "channels",
           "ch", "resolution", "clock", "sampling", "rate", "dx", "t0", "starttime"}  # fmt: skip
+# A key and its value in one cell.
+_INLINE = re.compile(r"([A-Za-z][\w ]*?)\s*[:=]\s*(.+)$")
 # A number with a decimal comma, which none of thousands can be.
 _DECIMAL = re.compile(r"[-+]?(?:\d+,(?:\d+[eE]|\d{1,2}(?!\d)|\d{4})|(?:0|\d{4,}),\d)")
 # Meaning → base unit of the number that its value must be; anything else says nothing of it.
@@ -106,9 +108,8 @@ class Keys:
         parted = [w for v in values for w in _parted(v) if w]
         if not meaning or not parted:
             return
-        if meaning in _BASE and len(parted) == 2 and unit_of(parted[1]) and quantity(parted[0], self.decimal):
-            # A number and its unit in cells of their own.
-            parted, row = [" ".join(parted)], []
+        if meaning in _BASE:
+            parted, row = self._numbers(parted, _BASE[meaning], unit, row)
         if meaning in _BASE and not self._tells(name, parted, unit):
             self.odd.setdefault(meaning, (key.strip(), parted[0]))
             return
@@ -120,6 +121,15 @@ class Keys:
             plain = parted == [v.strip().strip('"').strip() for v in values if v.strip().strip('"').strip()]
             self.rows[meaning] = row if row[1:] == values and plain else []
             self.units[meaning] = unit
+
+    def _numbers(self, values, base, unit, row):
+        """The values of a key of numbers and their row, without the keys and words that follow the first."""
+        first = quantity(values[0], self.decimal)
+        if len(values) > 1 and first and first[1] is None and unit_of(values[1]):
+            # A number and its unit in cells of their own.
+            return [" ".join(values[:2])], []
+        alike = all(_number(v, base, unit, self.decimal) is not None for v in values)
+        return (values, row) if alike else (values[:1], [])
 
     def _tells(self, name, values, unit):
         """Whether the first value of a key is a number of what the key means."""
@@ -228,16 +238,24 @@ def _pairs(row):
             mark = "," if re.match(r"\d{3}\D", cells[1]) else "."
             yield found.group(1), [f"{found.group(2)}{mark}{cells[1]}"]
         else:
-            yield found.group(1), [found.group(2).rstrip(":"), *cells[1:]]
+            # Values of other channels may follow, and so may other keys with their own.
+            value = found.group(2).rstrip(":")
+            yield found.group(1), [value, *takewhile(lambda cell: _is_value(cell, value), cells[1:])]
     else:
         yield first, [c for c in cells[1:] if c != cells[0]]
     for key, value in pairwise(cells[1:]):
         if _name(key)[0] in _MEANING and re.search(r"[A-Za-z]", key) and key != cells[0]:
             yield key, [value]
     for cell in cells[1:]:
-        inline = re.match(r"([A-Za-z][\w ]*?)\s*[:=]\s*(.+)$", cell)
+        inline = _INLINE.match(cell)
         if inline:
             yield inline.group(1), [inline.group(2)]
+
+
+def _is_value(cell, first):
+    """Whether a cell behind a value is one more, maybe behind its channel's name, and no key with its own."""
+    inline = _INLINE.match(cell)
+    return not inline or bool(_INLINE.match(first) and not is_key(inline.group(1)))
 
 
 def _ends_number(cell):
