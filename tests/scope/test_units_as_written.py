@@ -12,6 +12,7 @@ from sonicvacuum.scope.units import STANDARD_GRAVITY, scale, unit_of
         ("VDC", "V", 1.0), ("Vdc", "V", 1.0), ("V DC", "V", 1.0), ("mVDC", "V", 1e-3), ("mV dc", "V", 1e-3),
         ("LBF", "N", 4.4482216152605), ("gn", "g", 1.0), ("g's", "g", 1.0),
         ("m·s⁻²", "m/s^2", 1.0), ("m s-2", "m/s^2", 1.0), ("m/sec²", "m/s^2", 1.0), ("m.s^-2", "m/s^2", 1.0),
+        ("кН", "N", 1e3), ("мВ", "V", 1e-3), ("м/с²", "m/s^2", 1.0), ("мм/с", "m/s", 1e-3),
         ("m·s⁻¹", "m/s", 1.0), ("mm s-1", "m/s", 1e-3), ("m s^-1", "m/s", 1.0),
     ],
 )  # fmt: skip

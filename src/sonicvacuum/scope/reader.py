@@ -24,6 +24,8 @@ _HEAD = 20_000
 _MARK = re.compile(r"(?:^|[-_. ])((?:CH|C|F|M|R|REF|MATH)\d)(?=$|[-_. ]|Trace)", re.IGNORECASE)
 # Recorders write numbers of this size for a sample beyond the range (Agilent and others: 9.91e37).
 OVERFLOW = 9.0e36
+# Letters that hardly stand in a label of times of Latin-1: other alphabets, in encodings of their own.
+_FOREIGN = re.compile(r"[^\x00-\x7f\xb5]")
 # More columns of fewer samples than this are rows of a table that lies on its side.
 MOST_BESIDE = 16
 
@@ -50,7 +52,8 @@ def read(path) -> Recording:
     channels, said = [], [] if encoding.startswith("utf-8") else [f"Text is {encoding}."]
     for shot in shots(table, layout.companion(path) if layout.companion else [], path):
         said += [n for n in shot.notes if n not in said]
-        channels += _channels(shot, layout, path, _why(table))
+        found = [_legible(c) for c in shot.found] if encoding == "latin-1" else shot.found
+        channels += _channels(replace(shot, found=found), layout, path, _why(table))
     if not channels:
         odd = next((_told(table, k) for k in sorted(table.odd)), "")
         if odd:
@@ -62,6 +65,12 @@ def read(path) -> Recording:
             "each trace is a row; export each trace as a column"
         )
     return Recording(path, layout.name, tuple(channels), (*said, *cut, *table.notes))
+
+
+def _legible(column):
+    """Times without a unit that is read, whose label is of another encoding: what it says is not known."""
+    odd = column.role == "time" and column.unit is None and not column.said and _FOREIGN.search(column.name)
+    return replace(column, said=column.name) if odd else column
 
 
 def _why(table):

@@ -40,8 +40,15 @@ _WHOLE |= {"daN": ("N", 10.0), "kgf": ("N", STANDARD_GRAVITY), "kp": ("N", STAND
 _WHOLE |= {"lbf": ("N", 0.45359237 * STANDARD_GRAVITY), "Kg": ("kg", 1.0)}
 _WHOLE |= {"LBF": _WHOLE["lbf"], "Lbf": _WHOLE["lbf"], "gn": ("g", 1.0), "g's": ("g", 1.0)}
 _WHOLE |= {"%": ("%", 1.0), "bar": ("Pa", 1e5), "dB": ("dB", 1.0), "deg": ("deg", 1.0), "min": ("s", 60.0)}
-# Times in other scripts (Cyrillic, Chinese and Japanese), and as programs for microcontrollers call them.
+# Units in other scripts (Cyrillic, Chinese, Japanese), and times as programs for microcontrollers call them.
 _WHOLE |= {"\u0441": ("s", 1.0), "м\u0441": ("s", 1e-3), "мк\u0441": ("s", 1e-6), "н\u0441": ("s", 1e-9)}
+_WHOLE |= {"В": ("V", 1.0), "мВ": ("V", 1e-3), "мкВ": ("V", 1e-6), "Н": ("N", 1.0), "мН": ("N", 1e-3)}
+_WHOLE |= {
+    "кН": ("N", 1e3),
+    "м/\u0441": ("m/s", 1.0),
+    "мм/\u0441": ("m/s", 1e-3),
+    "м/\u0441^2": ("m/s^2", 1.0),
+}
 _WHOLE |= {"秒": ("s", 1.0), "毫秒": ("s", 1e-3), "微秒": ("s", 1e-6), "u秒": ("s", 1e-6), "m秒": ("s", 1e-3)}
 _WHOLE |= {"ミリ秒": ("s", 1e-3), "マイクロ秒": ("s", 1e-6), "mus": ("s", 1e-6), "u s": ("s", 1e-6)}
 _BARE = {"millis": 1e-3, "micros": 1e-6, "mikros": 1e-6, "nanos": 1e-9}
@@ -93,7 +100,7 @@ def _plain(text):
     text = (
         _DIRECT.sub(r"\1", text).replace("m/sec", "m/s").replace("⁻", "-").replace("¹", "1").replace("²", "2")
     )
-    text = re.sub(r"/s(\*\*2|\^2|2|/s)$", "/s^2", text)
+    text = re.sub(r"/([s\u0441])(\*\*2|\^2|2|/s)$", r"/\1^2", text)
     text = re.sub(r"^(.*?)\s*[·⋅*.\s]\s*s\^?-2$", r"\1/s^2", text)
     text = re.sub(r"^(.*?)\s*[·⋅*.\s]\s*s\^?-1$", r"\1/s", text)
     return text.replace("Ω", "Ohm").replace("ε", "strain").strip()
