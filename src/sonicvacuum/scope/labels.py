@@ -187,6 +187,7 @@ def labels(table: Table) -> Labels:
     found = {k: _row(table, k) for k in range(last, max(-1, last - LOOKED_AT), -1)}
     wide = {k: cells for k, cells in found.items() if cells is not None}
     at = next((k for k, cells in wide.items() if _are_units(cells, table)), None)
+    at = _unit_of_time(wide, table) if at is None else at
     names = _names_at(wide, at, last, table)
     if names is None and at is not None and _only_letters(wide[at], table):
         names, at = at, None
@@ -205,10 +206,27 @@ def alone(table: Table, place: int) -> Unit | None:
         below = unit_of(_at(row, place)) if place and meaning(row[0]) == "unit" else None
         if below and below.base == "s":
             return below
-        name, unit = split_unit(_at(row, place))
+        cell = _at(row, place)
+        name, unit = ("time", unit_of(cell)) if _says_time(cell) else split_unit(cell)
         single = sum(map(bool, row)) == 1 and TIME.fullmatch(name) and not is_key(name)
         if single and unit and unit.base == "s":
             return unit
+    return None
+
+
+def _says_time(cell):
+    """Whether a cell is a unit of time and hardly anything else."""
+    unit = unit_of(cell)
+    return unit is not None and unit.base == "s" and cell.strip("()[]<> ").lower() != "min"
+
+
+def _unit_of_time(wide, table):
+    """The row of units of which that of time alone is known, beside a row that names a time without one."""
+    for k, cells in wide.items():
+        for place in table.places if any(map(_says_time, cells)) else ():
+            near = [_at(wide.get(j), place) for j in (k - 1, k + 1)]
+            if _says_time(_at(cells, place)) and any(TIME.fullmatch(n) and not unit_of(n) for n in near):
+                return k
     return None
 
 
