@@ -30,3 +30,25 @@ def test_rows_of_names_stay_names(tmp_path, head):
     (channel,) = recording(tmp_path, head + rows(TIMES, PULSE)).channels
     factor = 1e-3 if head.startswith("ms") else 1.0
     assert channel.interval_s == pytest.approx(factor * 1e-6, rel=1e-9)
+
+
+@pytest.mark.parametrize("key", ["Unit", "Units", "VUnit"])
+@pytest.mark.parametrize("unit", ["mN", "N", "cnt"])
+def test_a_row_of_units_whose_key_stands_before_the_table(tmp_path, key, unit):
+    factor = 1e-3 if unit == "mN" else 1.0
+    (channel,) = recording(tmp_path, f"{key},ms,{unit}\nTime,F\n" + rows(1e3 * TIMES, PULSE)).channels
+    assert (channel.name, channel.unit) == ("F", "cnt" if unit == "cnt" else "N")
+    assert channel.values == pytest.approx(factor * PULSE, rel=1e-9)
+    assert channel.interval_s == pytest.approx(1e-6, rel=1e-9)
+
+
+def test_a_unit_of_time_in_the_header_is_none_of_a_channel(tmp_path):
+    (channel,) = recording(tmp_path, "Unit: ms\nTime (s),F\n" + rows(TIMES, PULSE)).channels
+    assert channel.unit == "" and channel.values == pytest.approx(PULSE, rel=1e-9)
+
+
+def test_units_of_channels_that_were_not_saved(tmp_path):
+    head = "Vertical Units,V,mV,A\nTime (s),CH1,CH2\n"
+    found = recording(tmp_path, head + rows(TIMES, PULSE, 1e3 * SECOND)).channels
+    for channel, volts in zip(found, (PULSE, SECOND), strict=True):
+        assert channel.unit == "V" and channel.values == pytest.approx(volts, rel=1e-9)

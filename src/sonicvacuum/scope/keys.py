@@ -65,6 +65,7 @@ class Keys:
         odd: meaning → key and value as written where the value is no number of it.
         decimal: mark in numbers.
         channels: number of channels, as many as a row of values may have.
+        width: cells in a row of samples, 0 where there are none.
     """
 
     decimal: str
@@ -74,6 +75,7 @@ class Keys:
     units: dict[str, str] = field(default_factory=dict)
     vague: set[str] = field(default_factory=set)
     odd: dict[str, tuple[str, str]] = field(default_factory=dict)
+    width: int = 0
 
     def text(self, meaning: str, place: int, column: int) -> str:
         """What is said of one channel: at its place, else in its column, else the one value for all."""
@@ -85,6 +87,9 @@ class Keys:
         # More values than channels stand in the columns of the samples, those of times among them. The key
         # itself takes the first cell, so channels that begin there are one cell further on.
         at = column if len(row) - 1 > self.channels and column > place else place + 1
+        if meaning == "unit" and len(row) == self.width + 1 and _of_time(row[1]):
+            # The key stands before the table, and the first of the units is that of its times.
+            at = column + 1
         return row[at].strip() if at < len(row) else ""
 
     def number(self, meaning: str, base: str, place: int = 0, column: int = 0) -> float | None:
@@ -150,7 +155,12 @@ class Keys:
             )
         ]
         vague = {m for m in self.vague if m in mine} | (other.vague - mine)
-        return Keys(self.decimal, self.channels, *merged, vague, other.odd | self.odd)
+        return Keys(self.decimal, self.channels, *merged, vague, other.odd | self.odd, self.width)
+
+
+def _of_time(text):
+    unit = unit_of(text)
+    return unit is not None and unit.base == "s"
 
 
 def _number(text, base, unit, decimal):
@@ -188,9 +198,9 @@ def keyed(line: str) -> list[str] | None:
     return None
 
 
-def read(rows: list[list[str]], dialect: Dialect, channels: int = 1) -> Keys:
-    """Keys of rows of cells, above so many channels."""
-    keys = Keys(dialect.decimal, channels)
+def read(rows: list[list[str]], dialect: Dialect, channels: int = 1, width: int = 0) -> Keys:
+    """Keys of rows of cells, above so many channels and rows of samples of so many cells."""
+    keys = Keys(dialect.decimal, channels, width=width)
     rows = [_whole(row) for row in rows]
     for row, below in zip_longest(rows, rows[1:], fillvalue=()):
         alone = [c for c in row if c.strip()]

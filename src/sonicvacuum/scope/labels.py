@@ -203,7 +203,9 @@ def labels(table: Table) -> Labels:
 def alone(table: Table, place: int) -> Unit | None:
     """The unit of time above one column: in a label that stands by itself, or in a row that begins `Unit`."""
     for row in table.header[-LOOKED_AT:]:
-        below = unit_of(_at(row, place)) if place and meaning(row[0]) == "unit" else None
+        # The key stands above the first column, or before the table.
+        before = len(row) == table.places[-1] + 2
+        below = unit_of(_at(row, place + before)) if place + before and meaning(row[0]) == "unit" else None
         if below and below.base == "s":
             return below
         cell = _at(row, place)

@@ -181,6 +181,8 @@ def _unit(column, keys, layout, place, notes):
     """Base unit and factor of a channel: the column's label, else the header's word, else the layout's."""
     said = keys.text("unit", place, column.place)
     header = unit_of(said)
+    if header and header.base == "s":  # of the times beside it
+        said, header = "", None
     if column.said and not header:
         known = all(map(unit_of, column.said.split(", ")))
         told = f"That the unit is {column.said}" if known else f"The unit {column.said}"

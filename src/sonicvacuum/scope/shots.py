@@ -107,7 +107,8 @@ def _names(found, keys):
 def _header(table, more=()):
     found, rows = roles.columns(table)
     channels = sum(c.role == "value" for c in found)
-    return found, header_keys.read([*table.beside, *rows, *more], table.dialect, channels)
+    width = table.places[-1] + 1
+    return found, header_keys.read([*table.beside, *rows, *more], table.dialect, channels, width)
 
 
 def _further(part, found, keys, path):
