@@ -27,6 +27,8 @@ _OTHER = re.compile(
     r"|strain|dehnung|volt(s|age)?|spannung|current|strom|force|kraft|load|temp(erature|eratur)?",
     re.IGNORECASE,
 )
+# What is said of times in a line of words.
+_REMARK = re.compile(r"\b(?:times?|zeit(?:en)?|t)\b(?:\s+\w+)?\s+in\s+(\S+)", re.IGNORECASE)
 # Names of times that as often name a coordinate or an input.
 _VAGUE = re.compile("t|x|in", re.IGNORECASE)
 # Steps of a column of times may differ from the usual by the rounding of what is printed.
@@ -59,10 +61,19 @@ def columns(table: Table) -> tuple[list[Column], list[list[str]]]:
         name, unit = split_unit(said.name(k))
         below = said.unit(k)
         unit = unit_of(below) or unit or spelled(name) or alone(table, k)
+        if unit is None and k == table.places[0] and TIME.fullmatch(name):
+            unit = _remarked(table)
         odd = "" if unit else unknown_unit(said.name(k)) or _unread(below) or said.stray(k)
         found.append((Column(k, "value", name, unit, odd), below))
     others = [column.name for column, _ in found]
     return [_timed(c, said.name(c.place), table, others) for c in _roles(found, table)], said.rest
+
+
+def _remarked(table):
+    """The unit of time of which a line of words above the table speaks, `times in ms`; None without one."""
+    found = [m.group(1).strip(".,;:)]") for line in table.raw for m in _REMARK.finditer(line)]
+    units = {unit for unit in map(unit_of, found) if unit and unit.base == "s" and unit.factor <= 1.0}
+    return units.pop() if len(units) == 1 else None
 
 
 def _timed(column, label, table, names):
