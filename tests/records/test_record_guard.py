@@ -134,8 +134,9 @@ def test_a_page_is_not_written_into_a_record(place, monkeypatch, capsys):
 
 def test_a_page_of_no_verdict_is_refused(place, monkeypatch, capsys):
     (place / "out").mkdir()
-    told = "out: has no verdict.json; give a folder that sonicvacuum discover wrote"
-    assert told in refused(monkeypatch, capsys, "page", "out")
+    told = "has no verdict.json; give a folder that sonicvacuum discover wrote"
+    for folder in ("out", "rec"):
+        assert f"{folder}: {told}" in refused(monkeypatch, capsys, "page", folder)
 
 
 def test_a_record_that_is_given_twice_need_not_be_renamed(place, monkeypatch, capsys):

@@ -25,9 +25,9 @@ def page(folders, png, own):
 
     known = catalogue(own)
     for folder in map(Path, folders):
-        check_out(folder)
         if not (folder / "verdict.json").is_file():
             raise InputError(f"{folder}: has no verdict.json; give a folder that sonicvacuum discover wrote")
+        check_out(folder)
         # What is not a discovery's folder is refused before anything is drawn.
         section(folder, known)
         with reading(folder, "run sonicvacuum discover again"):
