@@ -52,3 +52,12 @@ def test_units_of_channels_that_were_not_saved(tmp_path):
     found = recording(tmp_path, head + rows(TIMES, PULSE, 1e3 * SECOND)).channels
     for channel, volts in zip(found, (PULSE, SECOND), strict=True):
         assert channel.unit == "V" and channel.values == pytest.approx(volts, rel=1e-9)
+
+
+@pytest.mark.parametrize("mark", ["# ", "#", "% "])
+@pytest.mark.parametrize("units", ["(us),(N)", "us,N", "[us],[N]", "us,"])
+def test_names_and_units_behind_the_mark_of_a_comment(tmp_path, mark, units):
+    text = f"{mark}Time,F\n{mark}{units}\n" + rows(1e6 * TIMES, PULSE)
+    (channel,) = recording(tmp_path, text).channels
+    assert (channel.name, channel.unit) == ("F", "N" if "N" in units else "")
+    assert channel.interval_s == pytest.approx(1e-6, rel=1e-9)

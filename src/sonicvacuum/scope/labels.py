@@ -16,6 +16,8 @@ COUNTER = re.compile(
     r"(sequence|(sample|scan)s?([ _-]?(no|nr|number|#))?\.?|nr|no|index|idx|#|points?|n|i)\.?", re.I
 )
 COUNTS = re.compile(r"(sequence|samples?|index|points?|#|no\.?)", re.IGNORECASE)
+# The mark of a comment, before a word or a bracket: alone it may be a name or a unit.
+_COMMENT = re.compile(r"^[#%]+\s*(?=[\w(\[<{\"])")
 # Rows above the samples in which names and units are looked for.
 LOOKED_AT = 6
 # Symbols of units that are as likely the letter of a channel.
@@ -208,7 +210,7 @@ def alone(table: Table, place: int) -> Unit | None:
         below = unit_of(_at(row, place + before)) if place + before and meaning(row[0]) == "unit" else None
         if below and below.base == "s":
             return below
-        cell = _at(row, place)
+        cell = _COMMENT.sub("", _at(row, place))
         name, unit = ("time", unit_of(cell)) if _says_time(cell) else split_unit(cell)
         single = sum(map(bool, row)) == 1 and TIME.fullmatch(name) and not is_key(name)
         if single and unit and unit.base == "s":
@@ -302,8 +304,7 @@ def _wide(cells, table):
 def _cuts(table, k):
     """The row as the samples are cut, or where it is cut by other marks than these, by those."""
     first, *rest = table.header[k]
-    # The mark of a comment, before a word: alone it may be a name or a unit.
-    cells, raw = [re.sub(r"^[#%]+\s*(?=\w)", "", first), *rest], table.raw[k].strip().lstrip("#%").strip()
+    cells, raw = [_COMMENT.sub("", first), *rest], table.raw[k].strip().lstrip("#%").strip()
     width = table.places[-1] + 1
     blanks = table.dialect.delimiter is None
     yield cells if (len(cells) == width if blanks else len(cells) >= width) else []
