@@ -43,7 +43,7 @@ MARKER = re.compile(r"\W*((waveform|measured|raw) )?(data|values|daten|messwerte
 _VAGUE = {"start", "interval", "samples", "points", "size", "units", "unit", "labels", "channel", "channels",
           "ch", "resolution", "clock", "sampling", "rate", "dx", "t0", "starttime"}  # fmt: skip
 # A key and its value in one cell.
-_INLINE = re.compile(r"([A-Za-z][\w ]*?)\s*[:=]\s*(.+)$")
+_INLINE = re.compile(r"([A-Za-z][\w ]*?(?:\s*[(\[][^()\[\]]*[)\]])?)\s*[:=]\s*(.+)$")
 # A number with a decimal comma, which none of thousands can be.
 _DECIMAL = re.compile(r"[-+]?(?:\d+,(?:\d+[eE]|\d{1,2}(?!\d)|\d{4})|(?:0|\d{4,}),\d)")
 # Meaning → base unit of the number that its value must be; anything else says nothing of it.
@@ -240,10 +240,10 @@ def _pairs(row):
     found = re.match(r"([^:=]*?)\s*[:=]+\s*(.*)$", first)
     if found and found.group(1):
         # Groups of three digits behind a comma that a comma cuts, as in 500,000.
-        thousands = re.fullmatch(r"\d{1,3}", found.group(2)) and cells[1:]
+        thousands = re.fullmatch(r"[1-9]\d{0,2}", found.group(2)) and cells[1:]
         if thousands and all(re.fullmatch(r"\d{3}", c) for c in cells[1:]) and cells[1][0] == "0":
             yield found.group(1), ["".join([found.group(2), *cells[1:]])]
-        elif re.fullmatch(r"[-+]?\d+", found.group(2)) and len(cells) == 2 and _ends_number(cells[1]):
+        elif re.fullmatch(r"[-+]?\d+", found.group(2)) and _decimals(found.group(2), cells[1:]):
             # A decimal comma that cuts a number, as in 1,5 us; 1,000 kHz may be one of thousands.
             mark = "," if re.match(r"\d{3}\D", cells[1]) else "."
             yield found.group(1), [f"{found.group(2)}{mark}{cells[1]}"]
@@ -268,10 +268,15 @@ def _is_value(cell, first):
     return not inline or bool(_INLINE.match(first) and not is_key(inline.group(1)))
 
 
-def _ends_number(cell):
-    """Whether a cell is decimals with their unit."""
-    found = re.fullmatch(r"\d+\s*(\D+)", cell)
-    return bool(found and unit_of(found.group(1)))
+def _decimals(whole, cells):
+    """Whether a cell, with which the row ends or behind which another key follows, is decimals: behind 0, or
+    with their exponent or unit.
+    """
+    found = re.fullmatch(r"\d+([eE][-+]?\d+)?\s*(\D*)", cells[0]) if cells else None
+    if not found or (len(cells) > 1 and not _INLINE.match(cells[1])):
+        return False
+    zero = whole.strip("+-") == "0"
+    return bool(unit_of(found.group(2)) or (not found.group(2) and (found.group(1) or zero)))
 
 
 def _parted(value):

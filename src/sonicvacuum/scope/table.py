@@ -22,6 +22,8 @@ BEGINNING = 4
 LONGEST_HEADER = 100_000
 # Lines behind the samples from which on they are left out of what is looked at there.
 FOOTER = 10
+# A key and one number with a decimal comma.
+_VALUE = re.compile(r"[^,:=]*[:=]\s*[-+]?\d*,\d[^,]*$")
 # Rows beside which a header may stand.
 BESIDE = 200
 
@@ -151,6 +153,8 @@ def _without_footer(text):
 def _header_cells(line, dialect):
     """Cells of a header row, which may be cut by another mark where the samples stand in one column."""
     cells = dialect.cells(line)
+    if dialect.decimal == "," and _VALUE.match(line) and len(cells) == 1:
+        return cells
     mark = next((m for m in "\t;," if m in line), None)
     if dialect.delimiter is None and len(cells) > 1:
         if mark and is_key(line.split(mark)[0]):
