@@ -91,6 +91,16 @@ def test_the_page_needs_nothing_but_itself_and_no_id_stands_twice(folders, kind)
     assert len(page.ids) == len(set(page.ids))
 
 
+def test_no_colour_of_one_theme_is_spoken_of(tmp_path):
+    """Cells without a comparison are white on white pages only."""
+    folder = write(tmp_path / "gaps", "single")
+    lines = (folder / "where.csv").read_text().splitlines()
+    (folder / "where.csv").write_text("\n".join(lines[:-1]) + "\n")
+    text = told(write_page(folder).parent)
+    assert "unshaded where there is nothing to compare" in text
+    assert "white where" not in text
+
+
 def test_times_do_not_enter_the_page(folders):
     assert "12.345" not in told(folders["single"])
 
