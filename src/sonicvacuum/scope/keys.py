@@ -33,6 +33,7 @@ MEANINGS = {
                   "xunitlabel", "xaxisunit", "xaxisunits"},
     "name": {"source", "tracename", "channeldata", "channel", "channels", "trace", "channelname",
              "channelnames", "channeltitle", "labels", "waveformsource", "kanal", "ch", "multichannelsource"},
+    "format": {"ptfmt", "ptformat", "pointformat"},
     "scale": {"verticalscale", "voltsdiv", "voltdiv", "vscale"},
     "factor": {"scalefactor", "scalingfactor", "multiplier", "calibrationfactor", "conversionfactor", "gain",
                "sensitivity", "factor", "faktor", "kalibrierfaktor", "skalierungsfaktor"},

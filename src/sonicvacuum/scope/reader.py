@@ -8,7 +8,7 @@ import numpy as np
 
 from sonicvacuum.files import InputError
 from sonicvacuum.scope import roles, text
-from sonicvacuum.scope.binary import is_binary, read_binary
+from sonicvacuum.scope.binary import ENVELOPE, is_binary, read_binary
 from sonicvacuum.scope.dialect import is_like_number
 from sonicvacuum.scope.labels import TIME, split_unit
 from sonicvacuum.scope.layouts import Layout, recognise
@@ -168,6 +168,8 @@ def _channel(name, column, values, base, keys, layout, place, several):
     told = keys.text("factor", place, column.place)
     if (number := quantity(told)) and number[0] != 1.0:
         notes.append(f"The header's factor, {told}, counts as in the numbers already; if not, give --scale.")
+    if keys.text("format", place, column.place).upper().startswith("ENV"):
+        notes.append(ENVELOPE)
     count = keys.number("count", "", place, column.place)
     if count and not several and abs(count - len(values)) > 1:
         notes.append(f"The header announces {count:g} samples, the file holds {len(values)}.")
