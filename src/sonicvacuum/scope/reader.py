@@ -77,7 +77,7 @@ def _why(table):
     """Why a table has no times, where it has no column of them."""
     names = next((row for row in reversed(table.header) if len(row) > table.places[0]), [])
     for k in sorted(table.odd):
-        if k < len(names) and k < table.places[0] and TIME.fullmatch(split_unit(names[k])[0]):
+        if k < len(names) and TIME.fullmatch(split_unit(names[k])[0]):
             return f"the column of times is not read: {_told(table, k)}"
     first = split_unit(names[table.places[0]])[0] if names else ""
     if first and roles.even(table.columns[table.places[0]]) and not TIME.fullmatch(first):
@@ -145,7 +145,7 @@ def _base(clock, column, columns, kept, keys, place, why) -> TimeBase:
     if clock.role == "counter" or (
         clock.unit is None and roles.counts(times) and keys.values.get("interval")
     ):
-        return _shifted(from_header(keys, place, column.place), kept)
+        return _shifted(from_header(keys, place, column.place, why), kept)
     return from_column(times[kept], clock.unit, keys, place, column.place, clock.said)
 
 
