@@ -52,11 +52,14 @@ def strikers(record: Record, key: str, log_ratio: float, runs=None) -> Record:
 
 
 def bead_count(record: Record, by: int, from_wall: bool = False) -> Record:
-    """A chain with so many beads more; gauges stay where they are as counted from one end or the other."""
+    """A chain with so many beads more; gauges and single beads that differ stay where they are as counted
+    from one end or the other.
+    """
     chain = record.block.chain
     changed = msgspec.structs.replace(chain, beads=chain.beads + by)
     sensors = record.block.sensors
     if from_wall:
+        changed = msgspec.structs.replace(changed, bodies={n + by: b for n, b in chain.bodies.items()})
         sensors = [
             s if s.bead is None else msgspec.structs.replace(s, bead=s.bead + by)
             for s in record.block.sensors

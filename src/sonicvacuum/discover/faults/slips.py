@@ -188,9 +188,12 @@ def _counted_otherwise(record, embedded):
 
 
 def _counts(record, embedded):
-    if record.beads < 2 or record.specimen.bodies.exceptions:
+    single = record.specimen.bodies.exceptions
+    # A bead more or less is one of the chain's own kind, at the end from which nothing is counted.
+    ends = (False, True) if embedded or single else (False,)
+    ends = [from_wall for from_wall in ends if (1 if from_wall else record.beads) not in single]
+    if record.beads < 2:
         return
-    ends = (False, True) if embedded else (False,)
     for by, from_wall in itertools.product((-1, 1), ends):
         places = [g.bead + (by if from_wall else 0) for g in embedded]
         if all(1 <= p <= record.beads + by for p in places):
