@@ -28,6 +28,9 @@ FADED = 0.6
 CLEARLY = 3.0
 # Upside down: the matched filter finds more below than above, by this factor.
 INVERTED = 1.5
+# A motion gauge reads the reflected pulse upside down: at a shift at which the model, slid along itself,
+# shows this share of its power below zero, either way up is what the other one shows of the echo.
+ECHO = 0.25
 
 
 def verdict(trace: np.ndarray, model: np.ndarray, sigma: float) -> str:
@@ -74,7 +77,20 @@ def _way_off(trace, model, sigma):
     larger, other = max(up, down), max(min(up, down), 0.0)
     if larger * swing < _least(power, sigma) or larger < INVERTED * other:
         return ""
-    return "upright" if up > down else "inverted"
+    if up > down:
+        return "upright"
+    return "" if _echo(found, own) else "inverted"
+
+
+def _echo(found, own):
+    """Whether the largest value below zero of a trace slid along the model may be an upright gauge's echo: it
+    stands where the model's echo lies on the pulse, and further from the model's own time than the largest
+    value above. Both have the shift 0 in their middle.
+    """
+    middle = len(own) // 2
+    above, below = int(found.argmax()) - middle, int(found.argmin()) - middle
+    place = middle + below - above
+    return abs(below) > abs(above) and 0 <= place < len(own) and own[place] < -ECHO
 
 
 def _least(power, sigma):
