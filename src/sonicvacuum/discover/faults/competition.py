@@ -44,6 +44,7 @@ from sonicvacuum.discover.faults.weights import (
     odds_of,
     part_without,
     parts,
+    refused,
     unexplained,
     weight_beside,
     weight_of,
@@ -196,9 +197,7 @@ class Search(Searching):
             return False
         found = self._alone.beside(model)
         self._matching = {c.effect for c in found if c.gain > judged.gain - ALIKE}
-        if any(tables.beyond_chance(judged, c.gain) for c in found):
-            return True
-        return bool(self._matching)
+        return bool(self._matching) or any(tables.beyond_chance(judged, c.gain) for c in found)
 
     def _beside_one_effect(self, ranked: list[Judged], model: Model) -> Judged | None:
         """A slip beside which one effect explains the record, see `alone`; any run's own zero, for one's."""
@@ -239,9 +238,10 @@ class Search(Searching):
             # mistaken for anything else, and may leave as much as an effect makes.
             most = most_of(found.null.objective, size)
             rivals = [j for j in ranked if j.gain > (policy.ALONE if j.slip.far else 1.0) * most]
-            rivals += self._beside_the_best(found)
         else:
             rivals = [*ranked, *self._in_place(found)]
+        if left or refused(found):
+            rivals += self._beside_the_best(found)
         # Runs whose stated errors are strained may be all that betrays a slip beside the right effect.
         final = Model(self.bench, found.forward, found.final)
         if found.final is not found.null and (left or suspicious(final)):
@@ -304,8 +304,7 @@ class Search(Searching):
         hopeless = put_right < as_is - math.log(1.0 / policy.SHOWN)
         if not left and hopeless and not self._nearly_all(best, found):
             return None
-        bench = self.bench
-        before = list(self.findings)
+        bench, before = self.bench, list(self.findings)
         self._accept(rivals, best)
         after = self._investigate()
         base = best.log_odds if best.model.fit.hypothesis.components == () else odds_of(best, found, after)

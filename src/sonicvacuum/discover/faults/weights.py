@@ -11,7 +11,7 @@ from sonicvacuum.discover.faults.table import FAULTS
 from sonicvacuum.discover.fit import evidence
 from sonicvacuum.discover.fit.refit import Fit
 from sonicvacuum.discover.judge import explanations
-from sonicvacuum.discover.rounds import Investigation
+from sonicvacuum.discover.rounds import Investigation, significant
 
 # Slips and an effect within this Δχ² explain alike.
 ALIKE = 9.0
@@ -22,6 +22,12 @@ NUISANCES = {fault.alias for fault in FAULTS.values()} - {""}
 def unexplained(found: Investigation) -> bool:
     """Whether something is left that nothing found explains."""
     return "unknown" in found.named
+
+
+def refused(found: Investigation) -> bool:
+    """Whether nothing is named although one effect passes the noise of the catalogue: another test failed."""
+    best, prior = found.candidates[:1], found.forward.experiment.prior_odds
+    return not found.named and any(significant(c, found.threshold, prior) for c in best)
 
 
 def logs_of(found: Investigation) -> dict[str, float]:
