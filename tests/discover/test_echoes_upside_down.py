@@ -39,3 +39,29 @@ def test_a_gauge_upside_down_is_still_told(late):
     early = np.roll(reading(11.0, 150.0, 400.0), late)
     assert expected.verdict(NOISE - early, reading(11.0, 150.0, 400.0), SIGMA) == "inverted"
     assert expected.verdict(NOISE + early, reading(11.0, 150.0, 400.0), SIGMA) == ""
+
+
+def hump(at, width):
+    """What a vibrometer reads of a pulse."""
+    return np.exp(-0.5 * ((TIME - at) / width) ** 2)
+
+
+# Contacts a fifth stiffer than the model's: pulse and echo come earlier, and the model's echo after the end.
+VELOCITY = hump(205.0, 20.0)
+STIFF = hump(194.0, 18.0) - 0.8 * hump(400.0, 22.0)
+
+
+def test_of_a_pulse_and_its_echo_the_earlier_one_tells_the_way_up():
+    slid = expected.correlated(NOISE - STIFF, VELOCITY)
+    assert slid.max() > -slid.min() / expected.INVERTED  # the matched filter alone does not tell
+    assert expected.verdict(NOISE - STIFF, VELOCITY, SIGMA, echo=-1.0) == "inverted"
+    assert expected.way(NOISE + STIFF, VELOCITY, SIGMA, echo=-1.0) == "upright"
+
+
+def test_an_echo_ahead_of_what_is_larger_tells_nothing():
+    late = hump(205.0, 20.0) * 0.8 - hump(400.0, 22.0)
+    assert expected.verdict(NOISE + late, VELOCITY, SIGMA, echo=-1.0) == ""
+
+
+def test_forces_come_back_the_same_way_up():
+    assert expected.verdict(NOISE - STIFF, VELOCITY, SIGMA) == ""

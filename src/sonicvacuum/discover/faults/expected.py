@@ -33,8 +33,9 @@ INVERTED = 1.5
 ECHO = 0.25
 
 
-def verdict(trace: np.ndarray, model: np.ndarray, sigma: float) -> str:
-    """ "silent", "inverted" or "" for (T,) measured and predicted readings and the noise of one sample.
+def verdict(trace: np.ndarray, model: np.ndarray, sigma: float, echo: float = 1.0) -> str:
+    """ "silent", "inverted" or "" for (T,) measured and predicted readings, the noise of one sample, and the
+    sign in which the gauge reads an echo.
 
     The matched filter is the model's reading slid over the trace: a pulse is found wherever it is in time.
     """
@@ -49,24 +50,24 @@ def verdict(trace: np.ndarray, model: np.ndarray, sigma: float) -> str:
     if loud and silent and not _small(trace, model):
         return "silent"
     clear = loud or np.sqrt(power) > TURNED * sigma
-    return "inverted" if clear and way(trace, model, sigma) == "inverted" else ""
+    return "inverted" if clear and way(trace, model, sigma, echo) == "inverted" else ""
 
 
-def way(trace: np.ndarray, model: np.ndarray, sigma: float) -> str:
+def way(trace: np.ndarray, model: np.ndarray, sigma: float, echo: float = 1.0) -> str:
     """ "upright", "inverted" or "", where a pulse is too weak to tell, of (T,) readings as in `verdict`."""
     if not float(model @ model) > 0.0:
         return ""
-    told = _way_off(trace - np.median(trace), model, sigma)
+    told = _way_off(trace - np.median(trace), model, sigma, echo)
     # A pulse far broader than the model's, of a chain that loses much, may be most of the record: beside its
     # median, rest looks like a pulse the other way.
     first = trace[: max(FEWEST, len(trace) // BEGINNING)]
     if told and len(first) <= len(preceding(trace, model)):
-        other = _way_off(trace - np.median(first), model, sigma)
+        other = _way_off(trace - np.median(first), model, sigma, echo)
         return told if other in (told, "") else ""
     return told
 
 
-def _way_off(trace, model, sigma):
+def _way_off(trace, model, sigma, echo):
     """The way up of a pulse in a trace whose level is taken off."""
     power = float(model @ model)
     found = correlated(trace, model) / power
@@ -75,11 +76,21 @@ def _way_off(trace, model, sigma):
     own = correlated(model, model) / power
     swing = max(1.0, INVERTED * max(float(-own.min()), 0.0))
     larger, other = max(up, down), max(min(up, down), 0.0)
-    if larger * swing < _least(power, sigma) or larger < INVERTED * other:
+    if larger * swing < _least(power, sigma):
         return ""
-    if up > down:
-        return "upright"
-    return "" if _echo(found, own) else "inverted"
+    told = "upright" if up > down else "inverted"
+    if larger < INVERTED * other:
+        return told if echo < 0.0 and _first(found, own) else ""
+    return "" if told == "inverted" and _echo(found, own) else told
+
+
+def _first(found, own):
+    """Whether the larger of the largest values above and below zero of a trace slid along the model is the
+    earlier one: of a motion gauge the other is then the echo, which comes later and the other way, where the
+    model reads none that could lie on the pulse.
+    """
+    up, down = int(found.argmax()), int(found.argmin())
+    return (up < down) == (found[up] > -found[down]) and float(own.min()) > -ECHO
 
 
 def _echo(found, own):

@@ -81,7 +81,7 @@ def _judged(record, run, own, readings, model, noise):
     """Gauge id → word of `expected.verdict`; nothing is said of gauges whose pulse comes after the record's
     end if it is as late as others, or dies out before it arrives if it falls as it does ahead of them.
     """
-    judged = {g.id: expected.verdict(readings[g.id], model[g.id], noise[g.id]) for g in own}
+    judged = {g.id: expected.verdict(readings[g.id], model[g.id], noise[g.id], g.what.echo) for g in own}
     ways = {g.id: record.beads - position(g, record.beads, 1.0) for g in own}
     heard = [id for id, word in judged.items() if word != "silent"]
     ahead = [(ways[id], expected.share(readings[id], model[id])) for id in heard]
@@ -119,7 +119,7 @@ def _inverted(gauge, told, readings, predicted, sigma):
     if "inverted" not in told.values():
         return []
     ways = {
-        run: "inverted" if word == "inverted" else expected.way(readings[run][gauge.id], model, sigma)
+        run: word or expected.way(readings[run][gauge.id], model, sigma, gauge.what.echo)
         for run, word in told.items()
         if word != "silent" and (model := predicted.get(run, {}).get(gauge.id)) is not None
     }
