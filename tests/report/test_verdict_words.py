@@ -268,3 +268,19 @@ def test_every_side_of_a_feature_can_be_told_against_a_prediction():
     for sides in misfit.SIDES.values():
         for said in sides:
             assert any(word in ("more", "less") or word.endswith("er") for word in said.split())
+
+
+def test_what_is_far_more_probable_than_what_stands_for_it_is_told_first():
+    """Data that leave a rival at 0.002 were said not to tell it from what has 0.99."""
+    alike, named = [["viscous-drag", "linear-dashpot"]], ["viscous-drag"]
+    odds = {"none": 0.0, "unknown": 0.005, "viscous-drag": 0.993, "linear-dashpot": 0.002}
+    sure = verdict(named=named, probabilities=odds, confusable=alike, parameters={})
+    text = words.headline(sure)
+    assert text.startswith("What is missing: Viscous drag (viscous-drag)")
+    assert text.endswith("practically certain (0.99); linear dashpot in its place is not ruled out.")
+    assert words.alternatives(sure).startswith(
+        "By far the likeliest is viscous drag; linear dashpot in its place is not ruled out."
+    )
+    even = odds | {"viscous-drag": 0.9, "linear-dashpot": 0.095}
+    text = words.headline(verdict(named=named, probabilities=even, confusable=alike, parameters={}))
+    assert "one of viscous drag or linear dashpot, which these data cannot tell apart" in text

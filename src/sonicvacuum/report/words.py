@@ -13,6 +13,8 @@ from sonicvacuum.report.phrases import chance, in_words, joined, share
 
 # Explanations less probable than this are told only where few are, and than the second are no rivals.
 LEAST_TOLD, LEAST_RIVAL = 0.005, 0.01
+# With more than this share of what it and its rivals have one effect is told first, and these are left open.
+CLEARLY = 0.95
 
 
 def drawn(draws) -> str:
@@ -166,13 +168,30 @@ _COUNTS = {2: "Two", 3: "Three", 4: "Four", 5: "Five", 6: "Six"}
 
 def _one_of(verdict, told, catalogue):
     """A single effect with others that these data cannot tell from it."""
-    members, odds = verdict.confusable[0], verdict.probabilities
-    beside = ["unknown"] if "unknown" in verdict.named else []
-    each = [odds.get(key([name, *beside]), 0.0) for name in members]
+    members, each = verdict.confusable[0], _each(verdict, verdict.confusable[0])
+    if _clearly(each):
+        return f"What is missing: {told}. That is {in_words(each[0])}; {_open(verdict, catalogue)}"
     return (
         f"What is missing is one of {_names(members, catalogue)}, which these data cannot tell apart: "
         f"together {in_words(min(1.0, sum(each)))}. Most probable among them, {share(each[0])}: {told}."
     )
+
+
+def _each(verdict, members):
+    """Probability of a single effect that is named, first, and of those that may stand in its place."""
+    beside = ["unknown"] if "unknown" in verdict.named else []
+    return [verdict.probabilities.get(key([name, *beside]), 0.0) for name in members]
+
+
+def _clearly(each):
+    """Whether the first of some effects, each with its probability, is far more probable than the others."""
+    return each[0] > CLEARLY * sum(each)
+
+
+def _open(verdict, catalogue):
+    """What data do not decide against in place of a single effect, far less probable though it is."""
+    others = verdict.confusable[0][1:]
+    return f"{_names(others, catalogue)} in its place {'is' if len(others) == 1 else 'are'} not ruled out."
 
 
 def _nothing(verdict, catalogue):
@@ -233,6 +252,8 @@ def alternatives(verdict: Verdict, catalogue: Catalogue = CATALOGUE) -> str:
         f"These data cannot tell {plain(own, catalogue)} from {_names(others, catalogue)}."
         for own, others in alike
     ]
+    if len(found) == 1 and alike and _clearly(_each(verdict, verdict.confusable[0])):
+        parts = [f"By far the likeliest is {plain(found[0], catalogue)}; {_open(verdict, catalogue)}"]
     if found:
         beside, named = _beside(verdict, catalogue), _names(found, catalogue, "and")
         none = f"No {'other effect' if beside else 'rival'} comes near"
