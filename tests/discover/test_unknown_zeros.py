@@ -154,3 +154,21 @@ def test_a_look_at_unknown_time_zeros_keeps_shifts_in_microseconds():
     (followed,) = judge.follow_all([looked])
     assert looked.gain == pytest.approx(followed.gain, abs=5.0)  # slopes, near the fit
     assert followed.gain > 30.0
+
+
+@pytest.mark.parametrize(
+    ("late", "value"), [((3.1, 2.9, 3.0), -3.0), ((3.0, 1.0, 2.0), None), ((3.0, 3.0), None)]
+)
+def test_zeros_that_turn_out_to_be_off_alike_are_told_with_how_far(late, value):
+    """Less than eight samples off, all runs were said to have a time zero of their own each."""
+    record = made((), seed=12, speeds=(0.3, 0.5, 0.9)[: len(late)])[0]
+    found = Search(Bench(record), CATALOGUE, 1, []).nominal()
+    layout, nu = found.forward.layout, np.zeros_like(found.fit.nu)
+    for k, us in enumerate(late):
+        nu[layout.trigger(k)] = 1e-6 * us / found.forward.nuisance_sigma[layout.trigger(k)]
+    beside = SimpleNamespace(forward=found.forward, final=SimpleNamespace(nu=nu))
+    told, other = Finding("time-zero", corrected=True), Finding("spikes", corrected=True)
+    first, second = timing.counted_on((told, other), beside)
+    assert first.value == (value if value is None else pytest.approx(value))
+    assert second == other
+    assert timing.counted_on((replace(told, corrected=False),), beside)[0].value is None

@@ -21,6 +21,8 @@ FAR = 8.0
 STRAINED = 3.0
 # No gauge is late by more than this share of a record.
 MOST = 0.5
+# Time zeros of so many runs or more that differ from their mean by less than this share of it are off alike.
+FEWEST, SHARED = 3, 0.25
 # A pulse has arrived where it exceeds this share of its peak, as a scope's trigger level would have it.
 ARRIVED = 0.1
 
@@ -103,7 +105,8 @@ def delay_left_open(record: Record, id: str, predicted) -> Record:
 
 def counted_on(findings: Sequence[Finding], found: Investigation) -> tuple[Finding, ...]:
     """Slips, the time zero of all runs and the delays of gauges with what the effects found ask for besides:
-    how late pulses are was told by the nominal model's.
+    how late pulses are was told by the nominal model's. Of time zeros that each run has for itself, by how
+    much they are off where all turn out to be off alike.
     """
     layout, runs = found.forward.layout, found.forward.experiment.runs
     late = 1e6 * found.final.nu * found.forward.nuisance_sigma
@@ -112,12 +115,22 @@ def counted_on(findings: Sequence[Finding], found: Investigation) -> tuple[Findi
     delays = {layout.named(k): float(late[k]) for k in layout.other("delay")}
 
     def counted(finding):
-        if not finding.corrected or finding.run is not None or finding.value is None:
+        if not finding.corrected or finding.run is not None:
             return finding
+        if finding.value is None:
+            alike = finding.fault == "time-zero" and _alike(late[places])
+            return replace(finding, value=-zero) if alike else finding
         more = {"time-zero": -zero, "gauge-delayed": delays.get(finding.sensor, 0.0)}
         return replace(finding, value=finding.value + more.get(finding.fault, 0.0))
 
     return tuple(counted(f) for f in findings)
+
+
+def _alike(late):
+    """Whether the time zeros (R,) of all runs are off by about as much."""
+    if len(late) < FEWEST:
+        return False
+    return bool(np.abs(late - late.mean()).max() < SHARED * abs(float(late.mean())))
 
 
 def late_runs(record: Record, model: Model, predicted) -> list[Slip]:
