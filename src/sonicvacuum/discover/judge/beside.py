@@ -85,7 +85,7 @@ class Beside:
             nearest = seen.p < policy.SHAPED and self._inside(fit_, k)
             if nearest or (k not in kept and not self._ahead(fit_, k)):
                 name = fit_.hypothesis.ids[k]
-                reasons.append(f"{name} may be no more than the nearest to what is left in {seen.group}")
+                reasons.append(f"{name} may be no more than the nearest to {unknown.in_words(seen.group)}")
                 fit_ = restart.fewer(grown.forward, grown.null, fit_, k)
         return fit_
 

@@ -48,7 +48,7 @@ class Left:
             return f"a smooth misfit of {100.0 * self.size.size:.2g} % of the peak"
         if self.fit.failed and self.fit.p < self.shapes.p:
             return _WORDS.get(self.fit.worst, self.fit.worst)
-        return f"a misfit in {self.shapes.group}"
+        return self.shapes.misfit
 
 
 _WORDS = {

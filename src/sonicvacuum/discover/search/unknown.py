@@ -23,6 +23,17 @@ from sonicvacuum.discover.search import profiles, screen
 from sonicvacuum.discover.search.directions import Direction, Family
 from sonicvacuum.physics.beyond import Defect
 
+# A misfit along the directions of a group, in words.
+GROUPS = {
+    "catalogue": "such as an effect of the catalogue makes",
+    "law": "such as another contact law or a drag makes",
+    "place": "such as a single bead or contact makes",
+    "profile": "such as stiffness or mass that changes along the chain makes",
+    "gauge": "such as a gauge that distorts its readings makes",
+    "run": "such as the gain or delay of a gauge in one run makes",
+    "time": "in a stretch of time about the pulse",
+    "scalars": "in single values",
+}
 # Cosines between signatures that are resolved as different.
 _RANK = 1e-3
 _BINS = np.arange(-2.0, 9.0, 1.0)
@@ -50,10 +61,20 @@ class ShapeTest:
         return self.p < policy.SHAPE_MISFIT
 
     @property
+    def misfit(self) -> str:
+        """What is left along the group of the smallest p, in words."""
+        return in_words(self.group)
+
+    @property
     def failing(self) -> np.ndarray:
         """(K',) places in the screen of the directions of all groups that are surely not empty."""
         sure = [g for g, (_, _, p) in self.groups.items() if p * len(self.groups) < policy.SHAPE_MISFIT]
         return np.flatnonzero([d.effect in sure for d in self.screen.directions])
+
+
+def in_words(group: str) -> str:
+    """A misfit along the directions of a group."""
+    return f"a misfit {GROUPS[group]}"
 
 
 def shape_test(forward: Forward, fit: Fit, catalogue: screen.Screen | None = None) -> ShapeTest:
