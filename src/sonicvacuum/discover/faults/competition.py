@@ -275,12 +275,12 @@ class Search(Searching):
 
     def _in_place(self, found: Investigation) -> list[Judged]:
         """Slips in place of one effect of a set that moves data as some slip does, or of all that do, beside
-        the others.
+        the others; and of all but one.
         """
         like = [name for name in found.named if self._like_slips(found, name)]
-        judged = []
-        for names in [[name] for name in like] + ([like] if len(like) > 1 else []):
-            if len(found.named) > len(names) and (part := part_without(found, names)):
+        judged, alone = [], [[n for n in found.named if n != one] for one in found.named]
+        for names in dict.fromkeys(map(tuple, [*([name] for name in like), like, *alone])):
+            if 0 < len(names) < len(found.named) and (part := part_without(found, names)):
                 rest, fit = part
                 judged += self._included(found, fit, weight_beside(found, rest))
         return judged

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sonicvacuum.discover.faults import changes, clocks, policy, several, zeros
+from sonicvacuum.discover.faults import changes, clocks, counted, policy, several, zeros
 from sonicvacuum.discover.faults.alone import Kept, alone
 from sonicvacuum.discover.faults.examine import with_noise_of
 from sonicvacuum.discover.faults.found import Bench, Finding
@@ -74,7 +74,7 @@ class Searching(Ranking):
         self._sized: list[Judged] = []
         # Values of tables that are off, of which only a model tells by how much.
         self._off: list[Slip] = []
-        self._given = bench.record
+        self.given = bench.record
 
     def _accept(self, ranked: list[Judged], chosen: Judged, share: float = 1.0) -> None:
         """Put a slip right; its rivals are said as far as they are probable."""
@@ -194,10 +194,11 @@ class Searching(Ranking):
         """The effects beside time zeros as they are stated, or but for one run, where these explain the
         record as well: what an effect delays looks at first like triggers that nobody knows.
         """
+        found = counted.instead_of_zeros(self, found)
         told = [f for f in self.findings if f.corrected and f.fault == "time-zero"]
         if len(told) != 1 or (told[0].run, told[0].value) != (None, None) or found.final is found.null:
             return found
-        record = zeros.stated_again(self.bench.record, self._given)
+        record = zeros.stated_again(self.bench.record, self.given)
         if record is None:
             return found
         bench, one = replace(self.bench, record=record), found.final
