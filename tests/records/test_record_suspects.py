@@ -111,6 +111,19 @@ def test_a_bead_counted_wrongly_is_named_with_the_right_one(sensor, bead, said):
     one(found, f"gauge {gauge}: its pulses come when they should at bead {said}, not at bead {bead}")
 
 
+def test_gauges_exchanged_are_not_told_as_one_of_them_elsewhere():
+    """The far gauge's pulses were said to come when they should at bead 1, ahead of where any gauge is."""
+    found = [line for line in slip(sensors__0__bead=6, sensors__1__bead=3) if "begins" not in line]
+    one(found, "gauges near and far: each one's pulses come when the other's should: are cables")
+
+
+def test_of_unlike_beads_no_number_is_told_but_on_which_side():
+    """A gauge one bead off was said to be three off, as a soft bead takes longer to pass than the average."""
+    heavier = {"chain__bodies": {8: {"mass_g": 0.46}}}
+    found = [line for line in slip(sensors__0__bead=4, **heavier) if "begins" not in line]
+    one(found, "gauge near: its pulses come when they should at a bead nearer to the striker, not at bead 4")
+
+
 def test_a_softer_chain_is_no_slip():
     """What discover is for: a modulus half as large."""
     assert slip(made().signals) == []

@@ -189,31 +189,47 @@ def _trigger(record, expected, run) -> Iterator[str]:
 
 
 def _beads(record, expected) -> Iterator[str]:
-    """A gauge whose arrivals in all runs fit another bead, better than a late trigger does."""
+    """A gauge whose arrivals in all runs fit another bead, or two that fit each other's, better than a late
+    trigger does.
+    """
     inside = {g.id: g.bead for g in record.gauges if g.bead is not None}
-    moves = [(g, at - b) for g, b in inside.items() for at in range(1, record.beads + 1) if at != b]
+    moves = [((g, at - b),) for g, b in inside.items() for at in range(1, record.beads + 1) if at != b]
+    pairs = itertools.combinations(inside, 2)
+    moves += [((a, inside[b] - inside[a]), (b, inside[a] - inside[b])) for a, b in pairs]
     stated = record.trigger_sigma_s
-    moved = {move: _misfit(expected, stated, *move) for move in moves}
+    moved = {move: _misfit(expected, stated, dict(move)) for move in moves}
     if not moved:
         return
-    plain, shifted = (_misfit(expected, sigma) for sigma in (stated, math.inf))
+    plain, shifted = (_misfit(expected, sigma, {}) for sigma in (stated, math.inf))
     (best, cost), *others = sorted(moved.items(), key=lambda item: item[1])
     ahead = min((c for _, c in others), default=math.inf)
     ahead = min(ahead, shifted)
     if plain - cost > GAIN and ahead - cost > LEAD:
-        gauge, step = best
+        if len(best) > 1:
+            names = " and ".join(gauge for gauge, _ in best)
+            yield f"gauges {names}: each one's pulses come when the other's should: are cables exchanged?"
+            return
+        ((gauge, step),) = best
+        # Unlike beads do not all take as long to pass: how many the gauge is off is not known.
+        where = f"bead {inside[gauge] + step}" if record.specimen.bodies.uniform else _side(step)
         yield (
-            f"gauge {gauge}: its pulses come when they should at bead {inside[gauge] + step}, not at bead "
+            f"gauge {gauge}: its pulses come when they should at {where}, not at bead "
             f"{inside[gauge]}; bead 1 is the struck one: is the number of the bead right?"
         )
 
 
-def _misfit(expected, trigger, moved=None, step=0):
-    """chi² of all runs' arrivals with one gauge moved by `step` beads, for a trigger known to so many s."""
+def _side(step):
+    return f"a bead {'further from' if step > 0 else 'nearer to'} the striker"
+
+
+def _misfit(expected, trigger, steps):
+    """chi² of all runs' arrivals with some gauges moved by so many beads, gauge → `steps`, for a trigger
+    known to so many s.
+    """
     total = 0.0
     for run in expected.bead_passage:
         gauges, model, data, passage = _arrivals(expected, run)
-        shifted = model + np.array([step * passage if g == moved else 0.0 for g in gauges])
+        shifted = model + np.array([steps.get(g, 0) * passage for g in gauges])
         total += _fit(trigger, shifted, data, passage) if gauges else 0.0
     return total
 
