@@ -34,8 +34,9 @@ LINEAR, BESIDE, MIXED, EXCHANGED, ROUNDS, SUMMED = 3, 3, 3, 4, 2, 4
 STANDS, STANDING, AGAIN = 0.7, 3, 4
 # Pairs that are started again, and what that has to gain in log evidence before others follow it.
 LEADING, WORTH = 4, 0.5
-# Beside a pair that leaves so many times the noise, so many others are tried.
-FAR_OFF, GROSS = 1.5, 20
+# Beside a pair that leaves so many times the noise, so many others are tried; where it leaves so many times
+# as much, neither places nor trials beside the nominal model tell of more.
+FAR_OFF, GROSS, LOST = 1.5, 20, 10.0
 # Trials of an effect that its start is made of.
 TRIALS = 3
 # Sets this far behind the best one are not followed along the chain, nor are the last steps of their fits
@@ -78,7 +79,8 @@ class Pairs:
         self._refit(_best(self.seen, self.found, LINEAR))
         self._refit(_best(mixtures.starts(self.forward, self.null, self.candidates), self.found, MIXED))
         self._exchange()
-        self._refit(_best(summed(self.forward, self.null, self.setup), self.found, SUMMED))
+        if not self._gross(LOST):
+            self._refit(_best(summed(self.forward, self.null, self.setup), self.found, SUMMED))
         self._stood_in()
         self._refine()
         self._with_other_strengths()
@@ -105,9 +107,9 @@ class Pairs:
         self._with_other_strengths()
         return self.ranked
 
-    def _gross(self) -> bool:
+    def _gross(self, times: float = FAR_OFF) -> bool:
         """Whether the best pair leaves far more than noise: what slopes promise beside it is worth little."""
-        return self.ranked[0].fit.objective > FAR_OFF * enough.data(self.forward)
+        return bool(self.found) and self.ranked[0].fit.objective > times * enough.data(self.forward)
 
     def _exchange(self):
         """Pairs that share either effect with the best one, as they started and as the best one has it."""
@@ -175,8 +177,8 @@ class Pairs:
             self._note(one)
         least = min((p.fit.objective for p in self.found.values()), default=np.inf)
         # Where even the best one leaves more than noise, it is no measure of what a place may gain.
-        reach = least + max(BEHIND, least - enough.data(self.forward))
-        near = [one for one in found if places.placed(one) and one.objective < reach]
+        more = 0.0 if self._gross(LOST) else least - enough.data(self.forward)
+        near = [one for one in found if places.placed(one) and one.objective < least + max(BEHIND, more)]
         settled = partial(places.settled, setup=self.setup)
         for one in abreast.each(self.forward, settled, near, "places of pairs"):
             self._note(one)
