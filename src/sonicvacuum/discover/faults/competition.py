@@ -39,6 +39,7 @@ from sonicvacuum.discover.faults.weights import (
     acts_like,
     alias,
     as_likely,
+    give_way,
     hollow,
     least_gain,
     odds_of,
@@ -48,7 +49,6 @@ from sonicvacuum.discover.faults.weights import (
     unexplained,
     weight_beside,
     weight_of,
-    without,
 )
 from sonicvacuum.discover.fit import evidence
 from sonicvacuum.discover.fit.enough import data
@@ -318,7 +318,7 @@ class Search(Searching):
             return after
         self.bench, self.findings = bench, before
         if p >= policy.SHOWN and not hollow(found, after):
-            self._share(found, [best], None, p)
+            self._share(found, [best], None, p, after)
         return None
 
     def _nearly_all(self, best: Judged, found: Investigation) -> bool:
@@ -329,21 +329,18 @@ class Search(Searching):
         like = len(found.named) > 1 and any(self._like_slips(found, name) for name in found.named)
         return like and best.gain > policy.SHARE * own
 
-    def _share(self, found: Investigation, rivals: list[Judged], like: Judged | None, p: float = 1.0):
+    def _share(self, found: Investigation, rivals: list[Judged], like: Judged | None, p=1.0, after=None):
         """Say slips that explain as well as the effects named, and take their share from these.
 
         With `like`, the slip among them that moves the data exactly as one effect: both weigh the same.
+        `after` are the effects with the slip put right.
         """
         weights = p * parts(rivals, like)
         for judged, weight in zip(rivals, weights, strict=False):
             if weight >= policy.SHOWN:
                 self.findings += judged.findings(float(weight))
-        share, told = float(weights[: len(rivals)].sum()), found.probabilities
-        for name, own in list(told.items()):
-            if kept := without(name, found, like):
-                told[name] -= share * own
-                told[kept] = told.get(kept, 0.0) + share * own
+        missing = give_way(found, float(weights[: len(rivals)].sum()), like, after)
         names = " or ".join(dict.fromkeys(j.slip.fault for j in rivals))
         found.reasons.append(
-            f"a slip, {names}, explains these data as well: none is missing where it was made"
+            f"a slip, {names}, explains these data as well: {missing} is missing where it was made"
         )

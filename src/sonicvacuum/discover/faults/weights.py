@@ -59,7 +59,35 @@ def _aliased(found, judged):
     return [n for n in found.named if nuisance and nuisance in acts_like(found, n)]
 
 
-def without(name: str, found: Investigation, like: Judged | None) -> str:
+def give_way(
+    found: Investigation, share: float, like: Judged | None, after: Investigation | None = None
+) -> str:
+    """Give a share of all probabilities to what is missing where a slip was made instead of effects: of all
+    that are named, or of those that act `like` it. Told in words.
+
+    Args:
+        found: effects of the record as it is; its probabilities are changed.
+        share: probability of the slip.
+        like: a slip that moves the data exactly as one effect, None where it stands for all.
+        after: effects of the record with the slip put right, where they are known.
+    """
+    told = found.probabilities
+    if like is not None:
+        missing = [n for n in found.named if n not in _aliased(found, like)]
+    else:
+        missing = [n for n in after.named if n != explanations.UNKNOWN] if after else []
+    if like is None and missing:
+        for name in {*told, *after.probabilities}:
+            told[name] = (1.0 - share) * told.get(name, 0.0) + share * after.probabilities.get(name, 0.0)
+    else:
+        for name, own in list(told.items()):
+            if kept := _without(name, found, like):
+                told[name] -= share * own
+                told[kept] = told.get(kept, 0.0) + share * own
+    return f"only {', '.join(missing)}" if missing else "none"
+
+
+def _without(name: str, found: Investigation, like: Judged | None) -> str:
     """The explanation that is left of one where a slip stands for its effects, or for those that act `like`
     it; "" where the slip stands for none of them.
     """
